@@ -98,7 +98,15 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "tem00-numerics",
             "tem00-tracer",
         ],
-        &["base64", "exr", "glam", "gltf", "ply-rs-bw", "toml"],
+        &[
+            "base64",
+            "earcut",
+            "exr",
+            "glam",
+            "gltf",
+            "ply-rs-bw",
+            "toml",
+        ],
     ),
     ("tem00-topography", &["tem00-numerics"], &["glam", "libm"]),
     (

@@ -23,6 +23,8 @@ pub(crate) enum Shading {
 pub(crate) struct Assets {
     folder: Folder,
     files: Vec<PathBuf>,
+    /// Sentences about what was left out of them.
+    notes: Vec<String>,
     /// The meshes by canonical path, in the unit of their files.
     meshes: HashMap<(PathBuf, Shading), Arc<TriangleMesh>>,
 }
@@ -33,6 +35,7 @@ impl Assets {
         Self {
             folder: folder.clone(),
             files: Vec::new(),
+            notes: Vec::new(),
             meshes: HashMap::new(),
         }
     }
@@ -47,7 +50,7 @@ impl Assets {
         if let Some(mesh) = self.meshes.get(&(canonical.clone(), shading)) {
             return Ok(Arc::clone(mesh));
         }
-        let mesh = read_mesh_with(path, 1.0, self.folder.access).map_err(|error| {
+        let (mesh, notes) = read_mesh_with(path, 1.0, self.folder.access).map_err(|error| {
             if self.folder.holds(&canonical) {
                 error
             } else {
@@ -62,6 +65,12 @@ impl Assets {
         };
         let mesh = Arc::new(mesh);
         self.note(path);
+        for note in notes {
+            let note = format!("{}: {note}", path.display());
+            if !self.notes.contains(&note) {
+                self.notes.push(note);
+            }
+        }
         self.meshes.insert((canonical, shading), Arc::clone(&mesh));
         Ok(mesh)
     }
@@ -84,8 +93,8 @@ impl Assets {
         }
     }
 
-    /// Returns the files in the order in which they were first read.
-    pub(crate) fn into_files(self) -> Vec<PathBuf> {
-        self.files
+    /// Returns the files in the order in which they were first read, and what was left out of them.
+    pub(crate) fn into_files_and_notes(self) -> (Vec<PathBuf>, Vec<String>) {
+        (self.files, self.notes)
     }
 }

@@ -52,6 +52,8 @@ pub struct SceneFile {
     /// Everything that was read: the scene file unless it was standard input, the files that it includes,
     /// then meshes and environments, each once.
     pub files: Vec<PathBuf>,
+    /// What was left out of meshes, or is doubtful about them: sentences that begin with the name of a file.
+    pub notes: Vec<String>,
 }
 
 impl SceneFile {
@@ -80,8 +82,14 @@ impl SceneFile {
             let scene = scene(root, &mut assets)?;
             let further = further(root, &scene)?;
             let mut files = root.paths();
-            files.extend(assets.into_files());
-            Ok((Self { scene, files }, further))
+            let (of_assets, notes) = assets.into_files_and_notes();
+            files.extend(of_assets);
+            let file = Self {
+                scene,
+                files,
+                notes,
+            };
+            Ok((file, further))
         })
     }
 }

@@ -150,9 +150,11 @@ pub(crate) fn turn(rotation: Rotation) -> RigidMotion {
     RigidMotion::about(DVec3::ZERO, rotation.axis, rotation.angle).unwrap_or_default()
 }
 
-/// The middle of the box around the corners of a mesh, in metres.
+/// The middle of the box around the triangles of a mesh, in metres.
 fn middle(mesh: &MeshInstance) -> DVec3 {
-    let corners = mesh.mesh().vertices().iter().map(|&v| mesh.point(v));
+    let (vertices, triangles) = (mesh.mesh().vertices(), mesh.mesh().triangles());
+    let corners = triangles.as_flattened().iter();
+    let corners = corners.map(|&corner| mesh.point(vertices[corner as usize]));
     let nothing = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (low, high) = corners.fold(nothing, |(low, high), p| (low.min(p), high.max(p)));
     0.5 * (low + high)

@@ -91,3 +91,19 @@ impl From<MeshError> for MeshFileError {
         Self::Mesh(source)
     }
 }
+
+/// Returns an error about a line of a text file, counted from 1.
+pub(super) fn format_error(line: usize, message: impl Into<String>) -> MeshFileError {
+    MeshFileError::Format {
+        line: Some(line),
+        message: message.into(),
+    }
+}
+
+/// Returns an error about a file as a whole.
+pub(super) fn wrong(message: impl Into<String>) -> MeshFileError {
+    MeshFileError::Format {
+        line: None,
+        message: message.into(),
+    }
+}

@@ -1,4 +1,4 @@
-use std::path::Path;
+use std::{borrow::Cow, path::Path};
 
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use glam::{DMat3, DMat4, DQuat, DVec3};
@@ -10,10 +10,12 @@ use gltf::{
     mesh::Mode,
     scene::Transform,
 };
-use tem00_config::{FileAccess, Folder, MAX_ASSET_BYTES, read_input};
+use tem00_config::{FileAccess, Folder, MAX_ASSET_BYTES, read_input, without_byte_order_mark};
 use tem00_numerics::check_memory;
 
-use super::{error::MeshFileError, polygons::Polygons};
+use super::error::{MeshFileError, wrong};
+use super::faces::strip;
+use super::polygons::{Polygons, note};
 
 /// Reads all triangles of the scene of a glTF 2.0 file, text or binary, each where its nodes put it.
 ///
@@ -22,16 +24,20 @@ pub(super) fn parse(
     content: &[u8],
     folder: Option<(&Path, FileAccess)>,
 ) -> Result<Polygons, MeshFileError> {
+    let content = without_byte_order_mark(content);
     // The parser subtracts the length of the header from the length that a binary file announces.
     if content.starts_with(b"glTF") && announced_length(content) < 12 {
         return Err(wrong("the glTF header is cut off"));
     }
     let Gltf { document, blob } = Gltf::from_slice_without_validation(content).map_err(describe)?;
-    check_positions(document.as_json())?;
-    let document = Document::from_json(document.into_json()).map_err(describe)?;
+    let mut root = document.into_json();
+    check_positions(&root)?;
+    leave_out_appearance(&mut root)?;
+    let document = Document::from_json(root).map_err(describe)?;
     let mut reader = Reader {
         buffers: read_buffers(&document, blob.as_deref(), folder)?,
         room: 0,
+        left_out: 0,
         polygons: Polygons::default(),
     };
     let scene = document
@@ -52,19 +58,62 @@ pub(super) fn parse(
         waiting.extend(node.children().map(|child| (child, placement)));
         waiting[first..].reverse();
     }
-    Ok(reader.polygons)
+    let mut polygons = reader.polygons;
+    let others = [
+        "primitive of points or lines",
+        "primitives of points or lines",
+    ];
+    polygons.notes.extend(note(reader.left_out, others));
+    Ok(polygons)
+}
+
+/// Takes out everything but geometry, so that it need not be valid.
+///
+/// # Errors
+///
+/// Returns an error if the file requires an extension of the geometry.
+fn leave_out_appearance(root: &mut Root) -> Result<(), MeshFileError> {
+    let mut required = root.extensions_required.drain(..);
+    if let Some(extension) = required.find(|name| !concerns_appearance(name)) {
+        return Err(wrong(format!(
+            "the file requires {extension:?}, an extension that is not read: export it without"
+        )));
+    }
+    drop(required);
+    root.animations.clear();
+    root.cameras.clear();
+    root.images.clear();
+    root.materials.clear();
+    root.samplers.clear();
+    root.skins.clear();
+    root.textures.clear();
+    for node in &mut root.nodes {
+        (node.camera, node.skin) = (None, None);
+    }
+    for primitive in root.meshes.iter_mut().flat_map(|mesh| &mut mesh.primitives) {
+        primitive.material = None;
+    }
+    Ok(())
+}
+
+/// Returns whether an extension is one of materials, textures, lights, animations or remarks, as its name says
+/// behind the mark of who made it: `KHR_materials_ior`, `EXT_texture_webp`.
+fn concerns_appearance(extension: &str) -> bool {
+    const WORDS: [&str; 6] = [
+        "animation",
+        "lights",
+        "materials",
+        "techniques",
+        "texture",
+        "xmp",
+    ];
+    let word = extension.split('_').nth(1);
+    word.is_some_and(|word| WORDS.contains(&word))
 }
 
 fn announced_length(content: &[u8]) -> u32 {
     let length = content.get(8..12).and_then(|bytes| bytes.try_into().ok());
     length.map_or(0, u32::from_le_bytes)
-}
-
-fn wrong(message: impl Into<String>) -> MeshFileError {
-    MeshFileError::Format {
-        line: None,
-        message: message.into(),
-    }
 }
 
 /// Puts an error of the parser on one line.
@@ -175,6 +224,8 @@ struct Reader {
     buffers: Vec<Vec<u8>>,
     /// The vertices and triangles that there is memory for.
     room: u64,
+    /// The number of primitives without triangles.
+    left_out: usize,
     polygons: Polygons,
 }
 
@@ -195,9 +246,13 @@ impl Reader {
         primitive: &Primitive<'_>,
         placement: &DMat4,
     ) -> Result<(), String> {
-        if primitive.mode() != Mode::Triangles {
-            let mode = primitive.mode();
-            return Err(format!("its primitives must be triangles, got {mode:?}"));
+        let mode = primitive.mode();
+        if !matches!(
+            mode,
+            Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
+        ) {
+            self.left_out += 1;
+            return Ok(());
         }
         let positions = primitive.get(&Semantic::Positions);
         let positions = self.vectors(&positions.ok_or("it has no positions")?)?;
@@ -213,8 +268,10 @@ impl Reader {
             Some(indices) => self.indices(&indices, positions.len())?,
             None => (0_u32..).take(positions.len()).collect(),
         };
-        self.check_room(positions.len(), corners.len())?;
-        self.add_triangles(&corners, placement)?;
+        // Most corners of a strip or a fan are those of three triangles.
+        let uses = if mode == Mode::Triangles { 1 } else { 3 };
+        self.check_room(positions.len(), corners.len().saturating_mul(uses))?;
+        self.add_triangles(&triangles(mode, &corners)?, placement)?;
         self.add_vertices(&positions, &normals, placement);
         Ok(())
     }
@@ -234,11 +291,7 @@ impl Reader {
     }
 
     /// Adds triangles of vertices that are added next.
-    fn add_triangles(&mut self, corners: &[u32], placement: &DMat4) -> Result<(), String> {
-        let (triangles, []) = corners.as_chunks::<3>() else {
-            let got = corners.len();
-            return Err(format!("triangles need three corners each, got {got}"));
-        };
+    fn add_triangles(&mut self, triangles: &[[u32; 3]], placement: &DMat4) -> Result<(), String> {
         let first = u32::try_from(self.polygons.vertices.len()).map_err(|_| "it is too large")?;
         // A reflection turns triangles inside out; their corners are to run the other way.
         let reflected = placement.determinant() < 0.0;
@@ -324,5 +377,23 @@ impl Reader {
             (stride >= size).then(|| bytes.chunks(stride).map(move |chunk| &chunk[..size]))
         });
         bytes.ok_or_else(|| format!("accessor {index} (from 0) reaches beyond its buffer"))
+    }
+}
+
+/// Returns the triangles of a primitive from its corners.
+fn triangles(mode: Mode, corners: &[u32]) -> Result<Cow<'_, [[u32; 3]]>, String> {
+    match (mode, corners) {
+        (Mode::TriangleStrip, _) => Ok(strip(corners).collect()),
+        (Mode::TriangleFan, [centre, rim @ ..]) => {
+            let edges = rim.windows(2);
+            Ok(edges.map(|edge| [edge[0], edge[1], *centre]).collect())
+        }
+        _ => match corners.as_chunks::<3>() {
+            (triangles, []) => Ok(triangles.into()),
+            _ => {
+                let got = corners.len();
+                Err(format!("triangles need three corners each, got {got}"))
+            }
+        },
     }
 }

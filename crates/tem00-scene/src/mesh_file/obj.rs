@@ -1,13 +1,18 @@
 use std::{borrow::Cow, collections::HashMap};
 
 use glam::DVec3;
+use tem00_config::without_byte_order_mark;
 
-use super::error::MeshFileError;
-use super::polygons::{Polygons, format_error, parse_point, triangulate};
+use super::error::{MeshFileError, format_error, wrong};
+use super::faces::Faces;
+use super::polygons::{Polygons, note, parse_point};
 
 /// Reads the vertices, their normals and the faces of a Wavefront OBJ file.
 pub(super) fn parse(content: &[u8]) -> Result<Polygons, MeshFileError> {
-    let text = String::from_utf8_lossy(content);
+    if content.starts_with(b"\xff\xfe") || content.starts_with(b"\xfe\xff") {
+        return Err(wrong("the text is in UTF-16: save it in UTF-8"));
+    }
+    let text = String::from_utf8_lossy(without_byte_order_mark(content));
     let mut file = ObjFile::default();
     let mut corners = Vec::new();
     let mut lines = text.lines().enumerate();
@@ -28,19 +33,22 @@ pub(super) fn parse(content: &[u8]) -> Result<Polygons, MeshFileError> {
                 for word in words {
                     corners.push(file.corner(word, number)?);
                 }
-                file.add_face(&corners, number)?;
+                file.add_face(&corners, number);
             }
+            Some("p" | "l" | "curv" | "curv2" | "surf") => file.left_out += 1,
             _ => {}
         }
     }
     file.check()?;
-    Ok(file.into_polygons())
+    file.into_polygons()
 }
 
 fn strip_comment(line: &str) -> &str {
-    line.split_once('#')
-        .map_or(line, |(before, _)| before)
-        .trim_ascii_end()
+    // `1.#QNAN` is a number that is none.
+    let mut marks = line.match_indices('#');
+    let comment = marks.find(|&(start, _)| !line[..start].ends_with("1."));
+    let end = comment.map_or(line.len(), |(start, _)| start);
+    line[..end].trim_ascii_end()
 }
 
 /// The indices, from 0, of a corner's vertex and of its normal if it has one.
@@ -54,7 +62,9 @@ struct Corner {
 struct ObjFile {
     vertices: Vec<DVec3>,
     normals: Vec<DVec3>,
-    triangles: Vec<[Corner; 3]>,
+    faces: Faces<Corner>,
+    /// The number of points, lines, curves and curved surfaces.
+    left_out: usize,
     /// The highest vertex and normal that a face refers to, counted from 1, and its line. Faces may
     /// refer to what comes later, so these are judged at the end.
     highest_vertex: (u64, usize),
@@ -72,7 +82,8 @@ impl ObjFile {
             return Err(format_error(line, message));
         };
         let normal = match parts.nth(1) {
-            None | Some("") => None,
+            // Some programs write 0 for none.
+            None | Some("" | "0") => None,
             Some(text) => Some(index(text, self.normals.len()).ok_or_else(|| {
                 let count = self.normals.len();
                 let allowed = format!("a normal number, from 1 up or from -1 down to -{count}");
@@ -85,14 +96,7 @@ impl ObjFile {
         Ok(Corner { vertex, normal })
     }
 
-    fn add_face(&mut self, corners: &[Corner], line: usize) -> Result<(), MeshFileError> {
-        if corners.len() < 3 {
-            let got = corners.len();
-            return Err(format_error(
-                line,
-                format!("a face needs three corners, got {got}"),
-            ));
-        }
+    fn add_face(&mut self, corners: &[Corner], line: usize) {
         for corner in corners {
             let vertex = u64::from(corner.vertex) + 1;
             self.highest_vertex = self.highest_vertex.max((vertex, line));
@@ -100,8 +104,7 @@ impl ObjFile {
                 self.highest_normal = self.highest_normal.max((u64::from(normal) + 1, line));
             }
         }
-        triangulate(corners, &mut self.triangles);
-        Ok(())
+        self.faces.push(corners.iter().copied());
     }
 
     fn check(&self) -> Result<(), MeshFileError> {
@@ -123,43 +126,44 @@ impl ObjFile {
     /// The first normal of a vertex stays with it; for every other one the vertex is repeated at the
     /// end. So the order of the file is kept, and nothing is looked up in the common case of one
     /// normal to each vertex.
-    fn into_polygons(self) -> Polygons {
-        let triangles = self.triangles.iter();
+    fn into_polygons(self) -> Result<Polygons, MeshFileError> {
+        let vertices = self.vertices;
+        let cut = self.faces.cut(|corner| vertices[corner.vertex as usize])?;
+        let points = ["point, line or curve", "points, lines and curves"];
+        let mut polygons = Polygons {
+            notes: note(self.left_out, points).into_iter().collect(),
+            vertices,
+            ..Polygons::default()
+        };
         if self.highest_normal.0 == 0 {
-            return Polygons {
-                triangles: triangles.map(|t| t.map(|corner| corner.vertex)).collect(),
-                vertices: self.vertices,
-                normals: Vec::new(),
-            };
+            polygons.take(cut, |corner| corner.vertex);
+            return Ok(polygons);
         }
-        let mut vertices = self.vertices;
-        let mut first: Vec<Option<Corner>> = vec![None; vertices.len()];
+        let mut first: Vec<Option<Corner>> = vec![None; polygons.vertices.len()];
         let mut more: HashMap<Corner, u32> = HashMap::new();
-        let mut repeated = Vec::new();
-        let triangles = triangles.map(|triangle| {
-            triangle.map(|corner| {
-                if *first[corner.vertex as usize].get_or_insert(corner) == corner {
-                    return corner.vertex;
-                }
-                *more.entry(corner).or_insert_with(|| {
-                    vertices.push(vertices[corner.vertex as usize]);
-                    repeated.push(corner);
-                    // A file of 2³² corners would be longer than 8 GB.
-                    u32::try_from(vertices.len() - 1).unwrap_or(u32::MAX)
-                })
+        let mut repeated: Vec<Corner> = Vec::new();
+        let given = first.len();
+        polygons.take(cut, |corner| {
+            if *first[corner.vertex as usize].get_or_insert(corner) == corner {
+                return corner.vertex;
+            }
+            *more.entry(corner).or_insert_with(|| {
+                repeated.push(corner);
+                // A file of 2³² corners would be longer than 8 GB.
+                u32::try_from(given + repeated.len() - 1).unwrap_or(u32::MAX)
             })
         });
-        let triangles = triangles.collect();
+        let vertices = &mut polygons.vertices;
+        for corner in &repeated {
+            vertices.push(vertices[corner.vertex as usize]);
+        }
         let corners = first.into_iter().chain(repeated.into_iter().map(Some));
         let normals = corners.map(|corner| {
             let normal = corner.and_then(|corner| corner.normal);
             normal.map_or(DVec3::ZERO, |normal| self.normals[normal as usize])
         });
-        Polygons {
-            normals: normals.collect(),
-            vertices,
-            triangles,
-        }
+        polygons.normals = normals.collect();
+        Ok(polygons)
     }
 }
 

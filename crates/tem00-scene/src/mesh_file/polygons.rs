@@ -1,7 +1,8 @@
 use glam::DVec3;
-use tem00_tracer::TriangleMesh;
+use tem00_tracer::{MeshError, TriangleMesh};
 
-use super::error::MeshFileError;
+use super::error::{MeshFileError, format_error, wrong};
+use super::faces::Cut;
 
 /// Contents of a file, in its own unit.
 #[derive(Debug, Default)]
@@ -10,42 +11,114 @@ pub(super) struct Polygons {
     /// The normals of the vertices, zero for none; empty if no vertex has one.
     pub(super) normals: Vec<DVec3>,
     pub(super) triangles: Vec<[u32; 3]>,
+    /// The number of faces with fewer than three corners.
+    pub(super) flat: usize,
+    /// Sentences about what else was left out, and what is doubtful.
+    pub(super) notes: Vec<String>,
 }
 
 impl Polygons {
-    pub(super) fn into_mesh(mut self, scale: f64) -> Result<TriangleMesh, MeshFileError> {
+    /// Makes a mesh, and says what was left out of it.
+    ///
+    /// Vertices that no triangle uses may be anything; normals that are not finite are none.
+    pub(super) fn into_mesh(
+        mut self,
+        scale: f64,
+    ) -> Result<(TriangleMesh, Vec<String>), MeshFileError> {
         for vertex in &mut self.vertices {
             *vertex *= scale;
+        }
+        self.clear_unused_vertices();
+        let no_numbers = self.normals.iter().filter(|n| !n.is_finite()).count();
+        for normal in self.normals.iter_mut().filter(|n| !n.is_finite()) {
+            *normal = DVec3::ZERO;
         }
         if self.normals.iter().all(|&normal| normal == DVec3::ZERO) {
             self.normals.clear();
         }
-        let mesh = TriangleMesh::with_normals(self.vertices, self.normals, self.triangles)?;
-        Ok(mesh)
+        let mesh = TriangleMesh::with_normals(self.vertices, self.normals, self.triangles);
+        let mut notes = self.notes;
+        let dropped = mesh.as_ref().map_or(0, TriangleMesh::dropped_triangles);
+        let left_out = [
+            (
+                self.flat + dropped,
+                ["face without area", "faces without area"],
+            ),
+            (
+                no_numbers,
+                ["normal that is not finite", "normals that are not finite"],
+            ),
+        ];
+        notes.extend(
+            left_out
+                .into_iter()
+                .filter_map(|(count, names)| note(count, names)),
+        );
+        match mesh {
+            Ok(mesh) => Ok((mesh, notes)),
+            Err(error @ MeshError::Empty { degenerate: 0 }) if !notes.is_empty() => {
+                Err(wrong(format!("{error}; {}", notes.join("; "))))
+            }
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Takes the triangles of faces; `corner` returns the index of a corner's vertex.
+    pub(super) fn take<T>(&mut self, cut: Cut<T>, corner: impl FnMut(T) -> u32) {
+        let mut corner = corner;
+        let triangles = cut.triangles.into_iter();
+        self.triangles.extend(triangles.map(|t| t.map(&mut corner)));
+        self.flat += cut.flat;
+        if let [first, ..] = *cut.crossing {
+            let count = cut.crossing.len();
+            self.notes.push(format!(
+                "faces that cross themselves: {count}, the first is face {first} (from 0); what they enclose is not \
+                 defined, and they may cover too much or too little"
+            ));
+        }
+    }
+
+    /// Puts vertices that no triangle uses into the origin if they are not finite.
+    fn clear_unused_vertices(&mut self) {
+        if self.vertices.iter().all(|vertex| vertex.is_finite()) {
+            return;
+        }
+        let mut used = vec![false; self.vertices.len()];
+        for &corner in self.triangles.as_flattened() {
+            if let Some(used) = used.get_mut(corner as usize) {
+                *used = true;
+            }
+        }
+        for (vertex, used) in self.vertices.iter_mut().zip(used) {
+            if !used && !vertex.is_finite() {
+                *vertex = DVec3::ZERO;
+            }
+        }
     }
 }
 
-/// Cuts a polygon into triangles.
+/// Says that things, in the singular or the plural, are left out, if there are any.
+pub(super) fn note(count: usize, [one, many]: [&str; 2]) -> Option<String> {
+    match count {
+        0 => None,
+        1 => Some(format!("left out: 1 {one}")),
+        _ => Some(format!("left out: {count} {many}")),
+    }
+}
+
+/// Reads a number, which may be NaN in any of the ways that programs write it.
 ///
-/// Halves of halves keep the triangles as wide as the corners allow. A fan around one corner would
-/// make slivers, which overlap so much that no hierarchy of boxes tells them apart.
-pub(super) fn triangulate<T: Copy>(corners: &[T], triangles: &mut Vec<[T; 3]>) {
-    if let [first, .., last] = corners
-        && corners.len() > 2
-    {
-        let middle = corners.len() / 2;
-        triangulate(&corners[..=middle], triangles);
-        triangles.push([*first, corners[middle], *last]);
-        triangulate(&corners[middle..], triangles);
-    }
-}
-
-/// Returns an error about a line of a text file, counted from 1.
-pub(super) fn format_error(line: usize, message: impl Into<String>) -> MeshFileError {
-    MeshFileError::Format {
-        line: Some(line),
-        message: message.into(),
-    }
+/// Those of Microsoft write `nan(ind)` and `1.#QNAN`.
+pub(super) fn parse_number(word: &str) -> Option<f64> {
+    let no_number = || {
+        let digits = word.trim_start_matches(['-', '+']).to_ascii_lowercase();
+        let marks = ["nan(", "1.#ind", "1.#qnan", "1.#snan", "1.#inf"];
+        marks
+            .iter()
+            .any(|mark| digits.starts_with(mark))
+            .then_some(f64::NAN)
+    };
+    word.parse().ok().or_else(no_number)
 }
 
 /// Returns the point, or what else `of` is, whose three coordinates are the first three words.
@@ -60,7 +133,7 @@ pub(super) fn parse_point<'a>(
         let word = words
             .next()
             .ok_or_else(|| format_error(line, format!("a {of} needs three coordinates")))?;
-        point[axis] = word.parse().map_err(|_| {
+        point[axis] = parse_number(word).ok_or_else(|| {
             format_error(line, format!("a coordinate must be a number, got {word:?}"))
         })?;
     }

@@ -1,36 +1,50 @@
 use std::collections::HashMap;
 
 use glam::DVec3;
+use tem00_config::without_byte_order_mark;
 
-use super::error::MeshFileError;
-use super::polygons::{Polygons, format_error, parse_point};
+use super::error::{MeshFileError, format_error, wrong};
+use super::polygons::{Polygons, note, parse_point};
 
 /// The header, and the number of triangles.
 const PREAMBLE: usize = 84;
 /// A normal, three corners and two spare bytes.
 const RECORD: usize = 50;
 
+/// The first bytes, among which a binary file has one that is zero: in its number of triangles, if not before.
+const HEAD: usize = 512;
+
 /// Reads an STL file, text or binary.
 ///
-/// Many binary files begin with the word `solid` that marks text, so the length decides first.
+/// Many binary files begin with the word `solid` that marks text, and some end with bytes that their length does
+/// not count. Text has no bytes that are zero.
 pub(super) fn parse(content: &[u8]) -> Result<Polygons, MeshFileError> {
     let needed = binary_length(content);
-    if needed != Some(content.len()) && content.trim_ascii_start().starts_with(b"solid") {
-        return parse_text(&String::from_utf8_lossy(content));
+    let has_zeros = content[..content.len().min(HEAD)].contains(&0);
+    let text = without_byte_order_mark(content).trim_ascii_start();
+    let begins_as_text = text
+        .get(..5)
+        .is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+    if needed != Some(content.len()) && begins_as_text && !has_zeros {
+        return parse_text(&String::from_utf8_lossy(without_byte_order_mark(content)));
     }
     match needed {
-        Some(needed) if needed <= content.len() => Ok(parse_binary(&content[PREAMBLE..needed])),
-        Some(needed) => Err(MeshFileError::Format {
-            line: None,
-            message: format!(
-                "the STL header announces {needed} bytes, but the file has {}",
-                content.len()
-            ),
-        }),
-        None => Err(MeshFileError::Format {
-            line: None,
-            message: "an STL file begins with \"solid\" or with a header of 84 bytes".to_owned(),
-        }),
+        Some(needed) if needed <= content.len() => {
+            let mut polygons = parse_binary(&content[PREAMBLE..needed]);
+            let behind = [
+                "byte behind the last triangle",
+                "bytes behind the last triangle",
+            ];
+            polygons.notes.extend(note(content.len() - needed, behind));
+            Ok(polygons)
+        }
+        Some(needed) if has_zeros => Err(wrong(format!(
+            "the STL header announces {needed} bytes, but the file has {}",
+            content.len()
+        ))),
+        _ => Err(wrong(
+            "an STL file begins with \"solid\" or with a header of 84 bytes",
+        )),
     }
 }
 

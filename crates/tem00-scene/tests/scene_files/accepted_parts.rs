@@ -469,3 +469,43 @@ fn triangle_in_gltf() -> String {
         "buffers": [{{"byteLength": 36, "uri": "data:application/octet-stream;base64,{data}"}}]}}"#
     )
 }
+
+#[test]
+fn what_no_triangle_uses_moves_no_mesh() {
+    let corners = |extra: &str| {
+        let content = format!("{TETRAHEDRON}{extra}");
+        let scene = parse_with_mesh("part.obj", &content, "centre = [0.1, 0, 0]").unwrap();
+        let Shape::Mesh(mesh) = scene.surfaces[0].shape.clone() else {
+            panic!("{scene:?}");
+        };
+        let corners = mesh.mesh().triangles().as_flattened().iter();
+        corners
+            .map(|&corner| mesh.point(mesh.mesh().vertices()[corner as usize]))
+            .collect::<Vec<_>>()
+    };
+    for extra in ["v 9 9 9\n", "v nan 0 0\n", "v 9 0 0\nv 0 9 0\nf 5 6\n"] {
+        assert_eq!(corners(extra), corners(""), "{extra}");
+    }
+}
+
+#[test]
+fn notes_of_meshes_name_their_files() {
+    let folder = TempDir::new().unwrap();
+    let content = format!("{TETRAHEDRON}f 1 1 2\nl 1 2\n");
+    fs::write(folder.path().join("part.obj"), content).unwrap();
+    let surface = "[[surface]]\nmesh.file = \"part.obj\"\n";
+    let flat = "[[surface]]\nmesh = { file = \"part.obj\", shading = \"flat\" }\n";
+    let path = folder.path().join("scene.toml");
+    fs::write(&path, [CAMERA, LASER, surface, flat].concat()).unwrap();
+    let part = folder.path().join("part.obj");
+    let expected = [
+        "left out: 1 point, line or curve",
+        "left out: 1 face without area",
+    ]
+    .map(|note| format!("{}: {note}", part.display()));
+    assert_eq!(
+        SceneFile::read(&path).unwrap().notes,
+        expected,
+        "once for both"
+    );
+}

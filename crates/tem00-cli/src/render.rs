@@ -39,12 +39,19 @@ pub(crate) fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure
         args.common.files.reading(),
         |document, _| Ok(document.text().to_owned()),
     );
-    let (SceneFile { scene, files, .. }, text) = read.map_err(|error| {
+    let (file, text) = read.map_err(|error| {
         wrong_or(&args.common.scene, Kind::Scene, || {
             let needed = "a scene needs a laser, a camera and a surface";
             Failure::file(&args.common.scene, &error, needed)
         })
     })?;
+    let SceneFile {
+        scene,
+        files,
+        notes,
+        ..
+    } = file;
+    notes.iter().for_each(|line| output::note(line));
     let scene = overruled(scene, args)?;
     if args.check {
         return check(args, &scene, out);
@@ -55,7 +62,8 @@ pub(crate) fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure
     render.warn_of_darkness()?;
     let pool = output::thread_pool(args.common.threads)?;
     let sequence = pool.install(|| render.sequence())?;
-    let report = pool.install(|| report(&render, &sequence));
+    let mut report = pool.install(|| report(&render, &sequence));
+    notes.into_iter().for_each(|line| report.note(line));
     report.tell_verdicts();
     let path = render.summary_path();
     report.save_json(&path)?;

@@ -33,14 +33,14 @@ const HELP: &str = "a scene needs a camera, a laser with [laser.line], a surface
 /// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or, with all
 /// files written, if no point is valid.
 pub(crate) fn run(args: &TriangulateArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let (scene, _) = MeasurementScene::read(&args.common.scene, args.common.files.reading())
+    let (scene, notes) = MeasurementScene::read(&args.common.scene, args.common.files.reading())
         .map_err(|error| {
             wrong_or(&args.common.scene, Kind::Scene, || {
                 Failure::file(&args.common.scene, &error, HELP)
             })
         })?;
     let settings = scene.calibration.clone();
-    let mut job = Job::new(args, scene)?;
+    let mut job = Job::new(args, scene, notes)?;
     job.warn_of_darkness()?;
     let pool = output::thread_pool(args.common.threads)?;
     job.measurement = pool.install(|| {

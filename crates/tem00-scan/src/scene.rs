@@ -1,4 +1,4 @@
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use tem00_config::{ConfigError, Document, Problem, Reading};
 use tem00_scene::SceneFile;
@@ -26,8 +26,8 @@ pub struct MeasurementScene {
 }
 
 impl MeasurementScene {
-    /// Reads a scene file with the sections `[sensor]`, `[detector]`, `[calibration]` and `[scan]`, and returns the
-    /// names of all files that it took.
+    /// Reads a scene file with the sections `[sensor]`, `[detector]`, `[calibration]` and `[scan]`, and returns
+    /// [what was left out](SceneFile::notes) of its meshes.
     ///
     /// # Errors
     ///
@@ -36,7 +36,7 @@ impl MeasurementScene {
     pub fn read<'a>(
         path: &Path,
         reading: impl Into<Reading<'a>>,
-    ) -> Result<(Self, Vec<PathBuf>), ConfigError> {
+    ) -> Result<(Self, Vec<String>), ConfigError> {
         let (file, further) = SceneFile::read_with(path, reading, further)?;
         let (sensor, detector, calibration, scan) = further;
         let measurement = Self {
@@ -46,7 +46,7 @@ impl MeasurementScene {
             calibration,
             scan,
         };
-        Ok((measurement, file.files))
+        Ok((measurement, file.notes))
     }
 }
 

@@ -26,6 +26,8 @@ pub(super) struct Job<'a> {
     pub(super) frames: IndexRange,
     pub(super) name: String,
     pub(super) files: Files,
+    /// What was left out of the meshes.
+    pub(super) notes: Vec<String>,
 }
 
 /// The results of a measurement.
@@ -47,6 +49,7 @@ impl<'a> Job<'a> {
     pub(super) fn new(
         args: &'a TriangulateArgs,
         mut scene: MeasurementScene,
+        notes: Vec<String>,
     ) -> Result<Self, Failure> {
         let name = output::name(&args.common.scene, "scene");
         let folder = output::folder(args.common.output.as_deref(), &name);
@@ -61,6 +64,7 @@ impl<'a> Job<'a> {
             measurement,
             name,
             files: Files::new(folder, raw)?,
+            notes,
         })
     }
 

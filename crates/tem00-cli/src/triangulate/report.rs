@@ -53,6 +53,7 @@ pub(super) fn report(job: &Job<'_>, measured: &Measured) -> Result<Report, Failu
     let scene = job.args.common.scene.display().to_string();
     report.data("scene", &scene);
     report.data("profiles", measured.profiles.len());
+    job.notes.iter().for_each(|note| report.note(note));
     match &measured.terms {
         Ok(terms) => {
             report.verdict(terms.verdict());

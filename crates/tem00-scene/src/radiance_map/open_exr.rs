@@ -73,7 +73,7 @@ const OF_REC_709: Chromaticities = Chromaticities {
 /// white, of luminance 1.
 ///
 /// In the chromaticity diagram white is a mean of the primaries, with weights b. A primary of chromaticity (x, y)
-/// takes part with the luminance b y / y_white (CIE 15:2018; SMPTE RP 177).
+/// takes part with the luminance `b y / y_white` (CIE 15:2018; SMPTE RP 177).
 #[expect(
     clippy::cast_possible_truncation,
     reason = "pixels are in single precision"

@@ -32,7 +32,8 @@ impl Period {
     ///
     /// No step rounds what a `f64` can hold: the number of periods and its product are whole numbers below
     /// 2⁵³, and the difference is a multiple of the last bit of x and smaller. So the period is
-    /// exact. Only what lies within rounding below zero comes out as the end of the last cell.
+    /// exact. Only what lies within rounding below zero comes out as the end of the last cell. What is not finite has the
+    /// last cell and the fraction NaN.
     #[inline(always)]
     pub(crate) fn split<const L: usize>(&self, x: &[f64; L]) -> ([usize; L], [f64; L]) {
         let mut x = *x;
@@ -57,7 +58,6 @@ impl Period {
 
     #[cold]
     fn brought_near(&self, x: f64) -> f64 {
-        assert!(x.is_finite(), "the coordinate {x} is not finite");
         x % self.length
     }
 

@@ -14,11 +14,8 @@ impl SpeckleStack {
     /// Returns the correlation γ of the intensities looked up at the samples at two coordinates u and v,
     /// on slices or between: by the counted overlaps of their pupils, exactly.
     ///
-    /// Both have the period of the stack; for a still stack it is 1.
-    ///
-    /// # Panics
-    ///
-    /// Panics unless `u` and `v` are finite.
+    /// Both have the period of the stack; for a still stack it is 1. Coordinates that are not finite have nothing in
+    /// common: 0.
     ///
     /// # Examples
     ///
@@ -34,10 +31,9 @@ impl SpeckleStack {
     /// # Ok::<(), tem00_speckle::SpeckleError>(())
     /// ```
     pub fn correlation_between(&self, u: f64, v: f64) -> f64 {
-        assert!(
-            u.is_finite() && v.is_finite(),
-            "the coordinate {u} or {v} is not finite"
-        );
+        if !(u.is_finite() && v.is_finite()) {
+            return 0.0;
+        }
         let (u, v) = (self.blended_at(u), self.blended_at(v));
         let power = |blend: &[_]| self.covariances(blend, blend)[&[0; 2]].re;
         let shared: f64 = self

@@ -18,9 +18,8 @@ const LANES: usize = 16;
 impl SpeckleStack {
     /// Returns the intensity, with mean 1, at (x, y) in samples and u in slices.
     ///
-    /// # Panics
-    ///
-    /// Panics unless `x`, `y` and `u` are finite.
+    /// A coordinate that is not finite, as that of a degenerate ray, is no place of the pattern. Nothing is known of the
+    /// speckle there but its mean, 1, which is returned: light that is multiplied by it stays as it is.
     pub fn intensity_at(&self, x: f64, y: f64, u: f64) -> f64 {
         match self.interpolation {
             Interpolation::CubicSpline => self.intensity::<4>(x, y, u),
@@ -33,11 +32,7 @@ impl SpeckleStack {
     /// returns: for light whose fields add.
     ///
     /// It is the field in the frame of the pupil of the slice at u or before it. Stacks along one path have one
-    /// frame, so that their amplitudes add.
-    ///
-    /// # Panics
-    ///
-    /// Panics unless `x`, `y` and `u` are finite.
+    /// frame, so that their amplitudes add. It is 1 where a coordinate is not finite.
     pub fn amplitude_at(&self, x: f64, y: f64, u: f64) -> Complex<f64> {
         match self.interpolation {
             Interpolation::CubicSpline => self.amplitude::<4>(x, y, u),
@@ -55,7 +50,7 @@ impl SpeckleStack {
     ///
     /// # Panics
     ///
-    /// Panics unless all slices have the same length and all coordinates are finite.
+    /// Panics unless all slices have the same length.
     ///
     /// # Examples
     ///
@@ -95,11 +90,11 @@ impl SpeckleStack {
     /// 4e−5 of the amplitude of the finest fringes, those at the intensity's cut-off, and by far less of
     /// all others. The images that cubic splines leave of the finest fringes, (2s − 1)⁻⁴ of them for
     /// speckles of s samples, the kinks of bilinear amplitudes and the jumps of nearest samples are met
-    /// by such a sum by chance.
+    /// by such a sum by chance. It is 1 where `centre`, `size` or `u` is not finite.
     ///
     /// # Panics
     ///
-    /// Panics unless `centre`, `size` and `u` are finite and `size` is not negative.
+    /// Panics if `size` is negative.
     ///
     /// # Examples
     ///
@@ -117,9 +112,12 @@ impl SpeckleStack {
     /// ```
     pub fn average_over(&self, centre: [f64; 2], size: [f64; 2], u: f64) -> f64 {
         assert!(
-            centre.iter().all(|c| c.is_finite()) && size.iter().all(|s| s.is_finite() && *s >= 0.0),
+            !size.iter().any(|side| *side < 0.0),
             "a box of the size {size:?} about {centre:?}"
         );
+        if !(is_place([centre[0], centre[1], u]) && is_place([size[0], size[1], 0.0])) {
+            return 1.0;
+        }
         let positions = self.positions(&[u]);
         let layer = self.layer(positions.slices[0], positions.between[0]);
         let nodes = [0, 1].map(|axis| {
@@ -138,6 +136,9 @@ impl SpeckleStack {
     where
         Taps<N, 1>: Kernel<1>,
     {
+        if !is_place([x, y, u]) {
+            return Complex::new(1.0, 0.0);
+        }
         let positions = self.positions(&[u]);
         let layer = self.layer(positions.slices[0], positions.between[0]);
         let [along_x, along_y, _] = &self.periods;
@@ -151,6 +152,9 @@ impl SpeckleStack {
     where
         Taps<N, 1>: Kernel<1>,
     {
+        if !is_place([x, y, u]) {
+            return 1.0;
+        }
         let positions = self.positions(&[u]);
         let layer = self.layer(positions.slices[0], positions.between[0]);
         let [along_x, along_y, _] = &self.periods;
@@ -196,7 +200,8 @@ impl SpeckleStack {
             .between
             .iter()
             .fold(alike, |alike, b| alike & (*b == between));
-        if !alike {
+        let together = (0..LANES).fold(alike, |all, i| all & is_place([x[i], y[i], u[i]]));
+        if !together {
             self.one_by_one::<N>([x, y, u], intensity);
             return;
         }
@@ -238,6 +243,12 @@ impl SpeckleStack {
             .map(|node| node.weight * along(&Taps::around(&[node.position], along_y)))
             .sum()
     }
+}
+
+/// Whether all coordinates are finite: without a branch, so that a loop fills the vector units.
+#[inline(always)]
+fn is_place([x, y, u]: [f64; 3]) -> bool {
+    (0.0 * x + 0.0 * y + 0.0 * u).is_finite()
 }
 
 #[cfg(test)]

@@ -79,7 +79,10 @@ fn the_ends_of_the_period_are_met_exactly() {
 }
 
 #[test]
-#[should_panic(expected = "is not finite")]
-fn coordinates_that_are_not_finite_are_refused() {
-    Period::new(16).split(&[1.0, f64::NAN]);
+fn coordinates_that_are_not_finite_leave_their_neighbours_as_they_are() {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let (cells, fractions) = Period::new(16).split(&[17.5, bad]);
+        assert_eq!((cells, fractions[0]), ([1, 15], 0.5));
+        assert!(fractions[1].is_nan(), "{bad}");
+    }
 }

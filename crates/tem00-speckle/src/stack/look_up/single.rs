@@ -17,7 +17,7 @@ impl SpeckleStack {
     ///
     /// # Panics
     ///
-    /// Panics unless all slices have the same length and all coordinates are finite.
+    /// Panics unless all slices have the same length.
     ///
     /// # Examples
     ///
@@ -42,8 +42,7 @@ impl SpeckleStack {
     ///
     /// # Panics
     ///
-    /// Panics unless all slices have the same length, all coordinates and `size` are finite and `size`
-    /// is not negative.
+    /// Panics unless all slices have the same length and `size` is not negative.
     pub fn average_batch_f32(
         &self,
         [x, y]: [&[f32]; 2],

@@ -261,6 +261,60 @@ fn averages_over_pixels_have_the_contrast_of_pixels() {
     }
 }
 
+/// Among places of the pattern, which keep their bits.
+#[test]
+fn a_place_that_is_none_has_the_mean_and_correlates_with_nothing() {
+    let field = PupilField::from_speckle_size([20, 24], 2.0, 9).unwrap();
+    let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+    for (kind, path, bad, axis) in ALL.into_iter().flat_map(|kind| {
+        PATHS.iter().flat_map(move |path| {
+            bad.into_iter()
+                .flat_map(move |bad| (0..3).map(move |axis| (kind, path, bad, axis)))
+        })
+    }) {
+        let stack = stack(&field, *path, kind);
+        let mut none = [3.5, 4.25, 0.5];
+        none[axis] = bad;
+        let [x, y, u] = none;
+        let case = format!("{kind:?}, {path:?}: {none:?}");
+        assert_eq!(stack.intensity_at(x, y, u), 1.0, "{case}");
+        assert_eq!(stack.amplitude_at(x, y, u).norm_sqr(), 1.0, "{case}");
+        assert_eq!(stack.average_over([x, y], [2.0, 1.0], u), 1.0, "{case}");
+        let sides = [[bad.abs(), 1.0], [1.0, bad.abs()]];
+        assert_eq!(
+            stack.average_over([3.0, 4.0], sides[axis % 2], 0.5),
+            1.0,
+            "{case}"
+        );
+        assert_eq!(stack.correlation_at(bad), 0.0, "{case}");
+        assert_eq!(stack.correlation_between(bad, 0.0), 0.0, "{case}");
+        assert_eq!(stack.correlation_between(0.5, bad), 0.0, "{case}");
+
+        let places = [0, 1, 2].map(|i| {
+            let mut places = [[3.5, 4.25, 0.5][i]; LANES + 3];
+            places[7] = none[i];
+            places
+        });
+        let there = stack.intensity_at(3.5, 4.25, 0.5);
+        let mut batch = [f64::NAN; LANES + 3];
+        let [x, y, u] = &places;
+        stack.intensity_batch(x, y, u, &mut batch);
+        let single = places.map(|places| places.map(|place| place as f32));
+        let mut rounded = [f32::NAN; LANES + 3];
+        let [x, y, u] = &single;
+        stack.intensity_batch_f32(x, y, u, &mut rounded);
+        for (i, (found, rounded)) in batch.into_iter().zip(rounded).enumerate() {
+            let expected = if i == 7 { 1.0 } else { there };
+            assert_eq!(found.to_bits(), expected.to_bits(), "{case}, {i}");
+            assert_eq!(
+                rounded.to_bits(),
+                (expected as f32).to_bits(),
+                "{case}, {i}"
+            );
+        }
+    }
+}
+
 #[test]
 #[should_panic(expected = "a box of the size")]
 fn boxes_of_negative_size_are_refused() {

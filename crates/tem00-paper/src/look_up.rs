@@ -55,12 +55,12 @@ impl BilinearStack {
     }
 
     /// Returns the intensity at (x, y) in samples and u in slices, as printed: bilinear in the
-    /// plane, linear between slices, x and y wrapped into [0, Q − 1] and u into [0, 2M − 1].
-    ///
-    /// # Panics
-    ///
-    /// Panics unless `x`, `y` and `u` are finite.
+    /// plane, linear between slices, x and y wrapped into [0, Q − 1] and u into [0, 2M − 1]. It is the mean, 1,
+    /// where a coordinate is not finite.
     pub fn intensity_at(&self, x: f64, y: f64, u: f64) -> f64 {
+        if ![x, y, u].iter().all(|coordinate| coordinate.is_finite()) {
+            return 1.0;
+        }
         let (index, f) = wrap_as_printed(u, self.slices.len());
         let here = bilinear(&self.slices[index], x, y);
         let next = bilinear(&self.slices[index + 1], x, y);
@@ -189,6 +189,16 @@ mod tests {
         }
         let mean = sum / count;
         (mean, square / count - mean * mean)
+    }
+
+    #[test]
+    fn a_place_that_is_none_has_the_mean() {
+        let stack = stack(16, 8, 1, 0);
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for [x, y, u] in [[bad, 0.0, 0.0], [0.0, bad, 0.0], [0.0, 0.0, bad]] {
+                assert_eq!(stack.intensity_at(x, y, u), 1.0, "{x}, {y}, {u}");
+            }
+        }
     }
 
     #[test]

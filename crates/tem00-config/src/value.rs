@@ -303,15 +303,45 @@ fn decimal(digits: &str, radix: u32) -> Option<f64> {
     Some(f64::from(value))
 }
 
-/// Returns the word of `words` that `word` is most likely a misspelling of, if any is close.
+/// Returns the word of `words` that `word` is most likely a misspelling or a part of, if any is close.
 pub fn nearest<'w>(word: &str, words: &[&'w str]) -> Option<&'w str> {
     // The Jaro–Winkler similarity of unrelated words is around a half, of a typo above nine tenths.
     const CLOSE: f64 = 0.8;
-    let word = word.to_lowercase();
+    let word = word.to_lowercase().replace([' ', '-'], "_");
+    let is_part = |candidate: &str| candidate.split('_').any(|part| part == word);
     words
         .iter()
         .map(|&candidate| (strsim::jaro_winkler(&word, candidate), candidate))
-        .filter(|(similarity, _)| *similarity >= CLOSE)
+        .filter(|(similarity, candidate)| *similarity >= CLOSE || is_part(candidate))
         .max_by(|(a, _), (b, _)| a.total_cmp(b))
         .map(|(_, candidate)| candidate)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_of_a_name_means_it() {
+        let metals = ["aluminium", "iron", "brass", "stainless_steel"];
+        let methods = [
+            "parabola",
+            "centre_of_gravity",
+            "log_gaussian",
+            "blais_rioux",
+        ];
+        for (word, words, meant) in [
+            ("steel", &metals[..], Some("stainless_steel")),
+            ("Steel", &metals, Some("stainless_steel")),
+            ("stainless steel", &metals, Some("stainless_steel")),
+            ("aluminum", &metals, Some("aluminium")),
+            ("lead", &metals, None),
+            ("gravity", &methods, Some("centre_of_gravity")),
+            ("blais-rioux", &methods, Some("blais_rioux")),
+            ("rioux", &methods, Some("blais_rioux")),
+            ("gauss", &methods, Some("log_gaussian")),
+        ] {
+            assert_eq!(nearest(word, words), meant, "{word}");
+        }
+    }
 }

@@ -14,6 +14,7 @@ const MAX_BYTES: u64 = 1 << 20;
 pub(crate) enum Kind {
     Scene,
     Setup,
+    Grid,
     Image,
 }
 
@@ -22,6 +23,7 @@ impl Kind {
         match self {
             Self::Scene => "a scene file",
             Self::Setup => "a set-up file",
+            Self::Grid => "the grid file of a sweep",
             Self::Image => "an image",
         }
     }
@@ -31,6 +33,7 @@ impl Kind {
         match self {
             Self::Scene => "render",
             Self::Setup => "budget",
+            Self::Grid => "sweep",
             Self::Image => "stats",
         }
     }
@@ -48,6 +51,7 @@ impl Kind {
         match kind_of_document(core::str::from_utf8(&bytes).ok()?)? {
             DocumentKind::Scene => Some(Self::Scene),
             DocumentKind::Setup => Some(Self::Setup),
+            DocumentKind::Grid => Some(Self::Grid),
             _ => None,
         }
     }

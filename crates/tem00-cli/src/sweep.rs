@@ -12,7 +12,12 @@ use self::{
     task::{RunCommand, Sweep},
 };
 use crate::{
-    args::SweepArgs, atomic::write_atomically, failure::Failure, interrupt, output,
+    args::SweepArgs,
+    atomic::write_atomically,
+    failure::Failure,
+    interrupt,
+    kind::{Kind, wrong_or},
+    output,
     progress::Progress,
 };
 
@@ -27,7 +32,11 @@ pub(crate) fn run(
     out: &mut impl Write,
     run_command: RunCommand,
 ) -> Result<(), Failure> {
-    let grid = Grid::read(&args.grid).map_err(|error| Failure::file(&args.grid, &error, HELP))?;
+    let grid = Grid::read(&args.grid).map_err(|error| {
+        wrong_or(&args.grid, Kind::Grid, || {
+            Failure::file(&args.grid, &error, HELP)
+        })
+    })?;
     if args.list {
         return list(&grid, out).map_err(|error| Failure::stdout(&error));
     }

@@ -23,15 +23,27 @@ pub enum DocumentKind {
     Scene,
     /// A set-up: what data sheets tell of a triangulation sensor.
     Setup,
+    /// A grid: the values that a sweep goes over.
+    Grid,
 }
 
 /// Tells by its sections what a document describes, so that a file of another kind can be told by name;
 /// `None` if it is not TOML, or of no known kind.
 ///
 /// A scene may have several lasers and surfaces, `[[laser]]` and `[[surface]]`; a set-up has one `[laser]`
-/// and one `[surface]`.
+/// and one `[surface]`; a grid has nothing but `[sweep]`.
 pub fn kind_of_document(text: &str) -> Option<DocumentKind> {
     let document = DeTable::parse(text.trim_start_matches('\u{feff}')).ok()?;
+    if document
+        .get_ref()
+        .keys()
+        .all(|key| key.get_ref() == "sweep")
+    {
+        return document
+            .get_ref()
+            .contains_key("sweep")
+            .then_some(DocumentKind::Grid);
+    }
     let sections = ["laser", "surface"].map(|key| document.get_ref().get(key));
     let kinds = sections
         .into_iter()
@@ -64,6 +76,11 @@ mod tests {
             ("[[surface]]", Some(DocumentKind::Scene)),
             // Both at once is a mistake in one of them.
             ("[laser]\n[[surface]]", None),
+            (
+                "[sweep]\ncommand = 1\n[[sweep.vary]]",
+                Some(DocumentKind::Grid),
+            ),
+            ("[sweep]\n[laser]", Some(DocumentKind::Setup)),
             ("[camera]", None),
             ("laser = 5", None),
             ("[laser", None),

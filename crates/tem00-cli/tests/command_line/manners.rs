@@ -14,6 +14,9 @@ fn a_file_of_another_kind_is_told_with_the_command_that_takes_it() {
     let folder = scene_folder();
     let path = folder.path();
     fs::write(path.join("b.toml"), SETUP).expect("written");
+    let grid = "[sweep]\ncommand = \"budget\"\nfile = \"b.toml\"\n[[sweep.vary]]\nkey = \"camera.f_number\"\n";
+    fs::write(path.join("g.toml"), grid).expect("written");
+    let is_grid = ["this is the grid file of a sweep", "tem00 sweep g.toml"];
     assert_code(&run(path, "pattern -o c.png --size 64"), 0);
     for (line, parts) in [
         (
@@ -31,6 +34,18 @@ fn a_file_of_another_kind_is_told_with_the_command_that_takes_it() {
         (
             "design a.toml",
             ["this is a scene file", "tem00 render a.toml"],
+        ),
+        ("budget g.toml", is_grid),
+        ("design g.toml", is_grid),
+        ("render g.toml", is_grid),
+        ("triangulate g.toml", is_grid),
+        (
+            "sweep a.toml",
+            ["this is a scene file", "tem00 render a.toml"],
+        ),
+        (
+            "sweep b.toml",
+            ["this is a set-up file", "tem00 budget b.toml"],
         ),
         ("render c.png", ["this is an image", "tem00 stats c.png"]),
         ("budget c.png", ["this is an image", "tem00 stats c.png"]),

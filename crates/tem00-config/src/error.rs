@@ -132,6 +132,11 @@ impl Problem {
         self.help = Some(printable_line(&help.into(), MAX_CHARS));
         self
     }
+
+    /// Returns the message, without its place.
+    pub fn message(&self) -> String {
+        self.message.clone()
+    }
 }
 
 #[cfg(test)]

@@ -25,6 +25,14 @@ struct Unit {
     divisor: f64,
 }
 
+/// A quantity in a message.
+struct Limit {
+    /// In SI units.
+    value: f64,
+    /// True if number and unit are one word.
+    is_one_word: bool,
+}
+
 /// Returns a word without the punctuation behind it.
 fn bare(word: &str) -> &str {
     word.trim_end_matches([',', ';', ':', '.', ')'])
@@ -34,7 +42,7 @@ fn bare(word: &str) -> &str {
 fn digits(value: f64) -> String {
     // Reading it back drops the zeros at its end.
     let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
-    if (1e-3..1e6).contains(&rounded.abs()) || rounded == 0.0 {
+    if (1e-3..1e7).contains(&rounded.abs()) || rounded == 0.0 {
         format!("{rounded}")
     } else {
         format!("{rounded:e}")
@@ -235,6 +243,15 @@ impl Dimension {
         let mut words: Vec<String> = Vec::new();
         let mut rest = message.split(' ').peekable();
         while let Some(word) = rest.next() {
+            if let Some(limit) = self.limit(word, rest.peek().copied()) {
+                let unit = match limit.is_one_word {
+                    true => Some(word),
+                    false => rest.next(),
+                };
+                let end = unit.map_or("", |unit| &unit[bare(unit).len()..]);
+                words.push(format!("{}{end}", self.written_as(limit.value, typed)?));
+                continue;
+            }
             let Ok(number) = bare(word).parse::<f64>() else {
                 words.push(word.to_owned());
                 continue;
@@ -263,6 +280,20 @@ impl Dimension {
                 .iter()
                 .fold(message, |text, aside| text.replace(aside, "")),
         )
+    }
+
+    /// Returns the quantity that a message tells in a unit that is not the SI unit: "1 µm", or "45°" in one word.
+    fn limit(&self, word: &str, next: Option<&str>) -> Option<Limit> {
+        let of = |number: &str, symbol: &str, is_one_word: bool| {
+            let unit = self.unit(symbol).filter(|unit| !unit.is_si())?;
+            let value = unit.si(number.parse().ok()?);
+            Some(Limit { value, is_one_word })
+        };
+        let one = bare(word);
+        let degrees = one
+            .strip_suffix('°')
+            .and_then(|number| of(number, "°", true));
+        degrees.or_else(|| of(one, bare(next?), false))
     }
 
     /// Returns a value in SI units as one would write it into a file: in the unit that takes the fewest
@@ -386,6 +417,30 @@ mod tests {
                 "power must be at least 0.5, got 0 W",
             ),
             (&ANGLE, "180 deg", "at most 1 rad", "at most 57.3 deg"),
+            (
+                &LENGTH,
+                "0.5 um",
+                "line_thickness must be from 1 µm to 1 m (in metres), got 5e-7",
+                "line_thickness must be from 1 um to 1000000 um, got 0.5 um",
+            ),
+            (
+                &ANGLE,
+                "2 rad",
+                "angle must be from 1° to 89° (in radians), got 2",
+                "angle must be from 0.01745 rad to 1.553 rad, got 2 rad",
+            ),
+            (
+                &LENGTH,
+                "10 mm",
+                "distance must be from 1.001 focal lengths to 1 m (in metres), got 0.01",
+                "distance must be from 1.001 focal lengths to 1000 mm, got 10 mm",
+            ),
+            (
+                &POWER,
+                "2000 W",
+                "power must be positive, at most 1000000 mW (in watts), got 2000",
+                "power must be positive, at most 1000 W, got 2000 W",
+            ),
         ] {
             assert_eq!(
                 dimension.retyped(message, typed).unwrap(),

@@ -17,8 +17,8 @@ use crate::{
 
 /// Set-up files.
 ///
-/// The section `[design]` is for searches among set-ups, `[certificate]` for who signs a budget: they are not read with
-/// the set-up.
+/// The section `[design]` is for searches among set-ups, `[certificate]` for who signs a budget, `title` for who reads it:
+/// they are not read with the set-up.
 const SETUP: Format = Format {
     noun: "set-up",
     keys: &[
@@ -35,6 +35,7 @@ const SETUP: Format = Format {
         "correlation",
         "design",
         "include",
+        "title",
     ],
     uncertain: UNCERTAIN,
     help: "setups/ has some, and docs/setup_file.md tells how to write them",
@@ -170,11 +171,22 @@ fn setup(document: &Document<'_>) -> Result<Setup, Problem> {
             None => Averages::default(),
         },
     };
-    Setup::new(description).map_err(|error| {
-        let optional = [calibration.as_ref(), environment.as_ref(), average.as_ref()];
-        let all = sections.into_iter().chain(optional.into_iter().flatten());
-        rejected(&error, &all.collect::<Vec<_>>())
-    })
+    let optional = [calibration.as_ref(), environment.as_ref(), average.as_ref()];
+    let all = sections.into_iter().chain(optional.into_iter().flatten());
+    let all: Vec<_> = all.collect();
+    // Whoever mends the first wants to know of the others.
+    let mut wrong = description.violations().into_iter();
+    if let Some(first) = wrong.next() {
+        let others: Vec<String> = wrong
+            .map(|error| rejected(&error, &all).message())
+            .collect();
+        let problem = rejected(&first, &all);
+        return Err(match &*others {
+            [] => problem,
+            others => problem.with_help(format!("moreover, {}", others.join("; "))),
+        });
+    }
+    Setup::new(description).map_err(|error| rejected(&error, &all))
 }
 
 fn needed<'a>(

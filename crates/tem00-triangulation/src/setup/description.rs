@@ -6,7 +6,7 @@ use crate::{DetectorSettings, LaserPlane, SensorDescription, TriangulationError}
 
 /// Description of a triangulation set-up by its data sheets.
 ///
-/// The laser plane stands upright on the reference plane, the camera looks at the line from the side;
+/// The laser plane stands on the reference plane, the camera looks at the line from the side;
 /// see [`Setup`](crate::Setup) for the geometry.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SetupDescription {
@@ -129,7 +129,8 @@ pub struct SetupCamera {
     pub resolution: [usize; 2],
     /// The distance from the entrance pupil to the line on the reference plane, in metres.
     pub distance: f64,
-    /// The angle between the optical axis and the laser plane, in radians.
+    /// The angle θ between the optical axis and the upright, in radians: the angle to the laser plane is
+    /// θ + [`tilt`](LaserLineData::tilt).
     pub angle: f64,
     /// The row of the image that the optical axis meets, in pixels; the middle without one.
     pub principal_row: Option<f64>,
@@ -194,38 +195,38 @@ impl SetupSurface {
 }
 
 impl SetupDescription {
-    /// Checks what can be checked number by number.
-    pub(super) fn check(&self) -> Result<(), TriangulationError> {
-        self.check_lengths()?;
-        self.check_camera()?;
-        self.check_surface()?;
-        self.check_environment()?;
+    /// Returns everything that is wrong number by number, in the order of the sections.
+    pub(crate) fn violations(&self) -> Vec<TriangulationError> {
+        let mut found = Violations(Vec::new());
+        self.check_laser(&mut found);
+        self.check_camera(&mut found);
+        self.check_surface(&mut found);
+        self.check_environment(&mut found);
         let uncertainty = self.calibration_uncertainty;
-        within(
-            "uncertainty",
-            uncertainty,
-            (0.0, 1.0),
-            "from 0 to 1 m, the standard uncertainty of the calibration",
-        )?;
+        let allowed = "from 0 to 1 m, the standard uncertainty of the calibration";
+        found.within("uncertainty", uncertainty, (0.0, 1.0), allowed);
         let Averages {
             columns, frames, ..
         } = self.average;
         for (parameter, count) in [("columns", columns), ("frames", frames)] {
             let allowed = "a number from 1 to 10000 to average over";
-            within(parameter, f64::from(count), (1.0, 1e4), allowed)?;
+            found.within(parameter, f64::from(count), (1.0, 1e4), allowed);
         }
         let [width, _] = self.camera.resolution;
-        if columns as usize > width {
-            return Err(TriangulationError::OutOfRange {
-                parameter: "columns",
-                value: f64::from(columns),
-                allowed: "at most the number of columns of the image",
-            });
-        }
-        Ok(())
+        let allowed = "at most the number of columns of the image";
+        found.within("columns", f64::from(columns), (0.0, width as f64), allowed);
+        found.0
     }
 
-    fn check_lengths(&self) -> Result<(), TriangulationError> {
+    /// Checks what can be checked number by number.
+    pub(super) fn check(&self) -> Result<(), TriangulationError> {
+        match self.violations().into_iter().next() {
+            Some(error) => Err(error),
+            None => Ok(()),
+        }
+    }
+
+    fn check_laser(&self, found: &mut Violations) {
         let LaserLineData {
             ref light,
             power,
@@ -235,30 +236,32 @@ impl SetupDescription {
             tilt,
         } = self.laser;
         let allowed = "from 100 nm to 100 µm (in metres)";
-        within("wavelength", light.wavelength, (100e-9, 100e-6), allowed)?;
-        light.line()?;
-        light.extent()?;
-        let allowed = "positive, at most 1 kW (in watts)";
-        within("power", power, (f64::MIN_POSITIVE, 1e3), allowed)?;
+        if found.within("wavelength", light.wavelength, (100e-9, 100e-6), allowed) {
+            found.add(light.line().map_err(Into::into));
+            found.add(light.extent().map_err(Into::into));
+        }
+        let allowed = "positive, at most 1000 W (in watts)";
+        found.within("power", power, (f64::MIN_POSITIVE, 1e3), allowed);
         let allowed = "from 1 µm to 1 m (in metres)";
-        within("line_thickness", line_thickness, (1e-6, 1.0), allowed)?;
-        self.line_beam()?;
+        if found.within("line_thickness", line_thickness, (1e-6, 1.0), allowed) {
+            found.add(self.line_beam());
+        }
         let allowed = "from the thickness of the line to 100 m (in metres)";
-        within("line_length", line_length, (line_thickness, 100.0), allowed)?;
-        within(
+        found.within("line_length", line_length, (line_thickness, 100.0), allowed);
+        found.within(
             "offset",
             offset,
             (-1.0, 1.0),
             "from -1 m to 1 m (in metres)",
-        )?;
+        );
         let allowed = "from -45° to 45° (in radians)";
-        within("tilt", tilt, (-0.786, 0.786), allowed)?;
+        found.within("tilt", tilt, (-0.786, 0.786), allowed);
         let pitch = self.sensor.pixel_pitch;
         let allowed = "from 0.1 µm to 1 mm (in metres)";
-        within("pixel_pitch", pitch, (0.1e-6, 1e-3), allowed)
+        found.within("pixel_pitch", pitch, (0.1e-6, 1e-3), allowed);
     }
 
-    fn check_camera(&self) -> Result<(), TriangulationError> {
+    fn check_camera(&self, found: &mut Violations) {
         let SetupCamera {
             focal_length,
             f_number,
@@ -270,43 +273,33 @@ impl SetupDescription {
         } = self.camera;
         if let Some(row) = principal_row {
             let allowed = "a row of the image, from 0 to their number";
-            within("principal_row", row, (0.0, rows as f64), allowed)?;
+            found.within("principal_row", row, (0.0, rows as f64), allowed);
         }
         let allowed = "from 0.1 mm to 100 m (in metres)";
-        within("focal_length", focal_length, (1e-4, 100.0), allowed)?;
-        within("f_number", f_number, (0.5, 1e3), "from 0.5 to 1000")?;
-        let allowed = "from 1.001 focal lengths to 1 km (in metres)";
-        within("distance", distance, (1.001 * focal_length, 1e3), allowed)?;
+        found.within("focal_length", focal_length, (1e-4, 100.0), allowed);
+        found.within("f_number", f_number, (0.5, 1e3), "from 0.5 to 1000");
+        let allowed = "from 1.001 focal lengths to 1000 m (in metres)";
+        found.within("distance", distance, (1.001 * focal_length, 1e3), allowed);
         let degree = core::f64::consts::PI / 180.0;
-        let allowed = "from 1° to 89° (in radians)";
         // A hair more than that, for what rounding does to the ends.
-        within(
-            "angle",
-            angle,
-            (0.999_999 * degree, 89.000_001 * degree),
-            allowed,
-        )
+        let range = (0.999_999 * degree, 89.000_001 * degree);
+        found.within("angle", angle, range, "from 1° to 89° (in radians)");
     }
 
-    fn check_environment(&self) -> Result<(), TriangulationError> {
+    fn check_environment(&self, found: &mut Violations) {
         let SetupEnvironment {
             temperature_change,
             base_expansion,
             mount_expansion,
         } = self.environment;
-        let allowed = "from -200 to 200 K";
-        within(
-            "temperature_change",
-            temperature_change,
-            (-200.0, 200.0),
-            allowed,
-        )?;
+        let (change, allowed) = ("temperature_change", "from -200 to 200 K");
+        found.within(change, temperature_change, (-200.0, 200.0), allowed);
         let allowed = "from -0.001 to 0.001 per kelvin";
-        within("base_expansion", base_expansion, (-1e-3, 1e-3), allowed)?;
-        within("mount_expansion", mount_expansion, (-1e-3, 1e-3), allowed)
+        found.within("base_expansion", base_expansion, (-1e-3, 1e-3), allowed);
+        found.within("mount_expansion", mount_expansion, (-1e-3, 1e-3), allowed);
     }
 
-    fn check_surface(&self) -> Result<(), TriangulationError> {
+    fn check_surface(&self, found: &mut Violations) {
         let SetupSurface {
             reflectance,
             patterns,
@@ -314,19 +307,38 @@ impl SetupDescription {
             relief,
         } = self.surface;
         let allowed = "from 0 to 1 m, of the relief finer than a resolution cell";
-        within("rms_height", relief.rms_height, (0.0, 1.0), allowed)?;
+        found.within("rms_height", relief.rms_height, (0.0, 1.0), allowed);
         let length = relief.correlation_length;
-        within("correlation_length", length, (0.0, 1.0), "from 0 to 1 m")?;
-        let allowed = "positive, at most 1";
-        within(
-            "reflectance",
-            reflectance,
-            (f64::MIN_POSITIVE, 1.0),
-            allowed,
-        )?;
+        found.within("correlation_length", length, (0.0, 1.0), "from 0 to 1 m");
+        let (range, allowed) = ((f64::MIN_POSITIVE, 1.0), "positive, at most 1");
+        found.within("reflectance", reflectance, range, allowed);
         let allowed = "from 1 to 64 independent patterns";
-        within("patterns", f64::from(patterns), (1.0, 64.0), allowed)?;
-        within("polarisation", polarisation, (0.0, 1.0), "from 0 to 1")
+        found.within("patterns", f64::from(patterns), (1.0, 64.0), allowed);
+        found.within("polarisation", polarisation, (0.0, 1.0), "from 0 to 1");
+    }
+}
+
+/// What is wrong with a description.
+struct Violations(Vec<TriangulationError>);
+
+impl Violations {
+    /// Keeps the error of a check.
+    fn add<T>(&mut self, checked: Result<T, TriangulationError>) {
+        self.0.extend(checked.err());
+    }
+
+    /// Checks that a quantity lies in a closed range, and returns whether it does.
+    fn within(
+        &mut self,
+        parameter: &'static str,
+        value: f64,
+        range: (f64, f64),
+        allowed: &'static str,
+    ) -> bool {
+        let checked = within(parameter, value, range, allowed);
+        let is_within = checked.is_ok();
+        self.add(checked);
+        is_within
     }
 }
 

@@ -220,7 +220,7 @@ fn uncertain_values_that_cannot_be_are_refused_where_they_stand() {
         (
             r#"{ value = "30 deg", uncertainty = "80 deg" }"#,
             "\"80 deg\"",
-            "one `uncertainty` below its value, angle must be from 1° to 89°",
+            "one `uncertainty` below its value, angle must be from 1 deg to 89 deg",
         ),
         (
             r#"{ value = "30 deg", uncertainty = 0.01, distribution = "gauss" }"#,

@@ -38,7 +38,7 @@ const SPECKLE_SIZES: (f64, f64) = (1.0 / 16.0, 64.0);
 ///            z
 ///    camera  |  laser, from above, in the plane y = 0
 ///        \θ  |
-///         \  |          θ: angle between optical axis and laser plane
+///         \  |          θ: angle between optical axis and z, that is the laser plane if it stands upright
 ///   L      \ |          camera at (0, −L sin θ, L cos θ), looking at the origin
 ///           \|
 ///   ---------+--------> y      the reference plane z = 0; the line runs along x
@@ -46,7 +46,7 @@ const SPECKLE_SIZES: (f64, f64) = (1.0 / 16.0, 64.0);
 ///
 /// x is to the right in the image. A height z moves the line *up* in the image, to first order by
 /// `m z sin θ`; all of the geometry is taken from the camera's projection, not from that. The plane of the laser may stand
-/// beside y = 0, or lean; see [`LaserLineData`].
+/// beside y = 0, or lean; see [`LaserLineData`]. With the tilt τ it is at the angle θ + τ to the optical axis.
 ///
 /// # Validity
 ///
@@ -228,11 +228,11 @@ fn saturation(sensor: &Sensor) -> f64 {
 /// Returns the camera of a set-up.
 ///
 /// The plane in focus of a sensor tilted by τ is turned by τ′ the other way, `tan τ′ = (L/d) tan τ`;
-/// the laser plane is a right angle less θ away from the plane across the axis, and what is higher in
-/// the image is nearer:
+/// the laser plane, which leans by ε, is a right angle less θ + ε away from the plane across the axis, and what is
+/// higher in the image is nearer:
 ///
 /// ```text
-/// tan τ = −m / tan θ
+/// tan τ = −m / tan(θ + ε)
 /// ```
 pub(crate) fn camera(description: &SetupDescription) -> Result<Camera, TriangulationError> {
     let SetupCamera {
@@ -247,6 +247,7 @@ pub(crate) fn camera(description: &SetupDescription) -> Result<Camera, Triangula
     let (sin, cos) = angle.sin_cos();
     let magnification = focal_length / (distance - focal_length);
     let tilt = if scheimpflug {
+        let (sin, cos) = (angle + description.laser.tilt).sin_cos();
         -libm::atan(magnification * cos / sin)
     } else {
         0.0

@@ -10,7 +10,7 @@ use crate::{SetupDescription, SetupQuantity};
 pub enum DesignParameter {
     /// The f-number of the lens: the size of the pupil.
     FNumber,
-    /// The angle between optical axis and laser plane, in radians.
+    /// The angle between optical axis and the upright, in radians.
     Angle,
     /// The full 1/e² thickness of the line on the part, in metres.
     LineThickness,

@@ -125,7 +125,7 @@ impl Sections {
             .length("distance", camera.distance, "mm")
             .note("from the lens to the line")
             .quantity("angle", camera.angle, (&ANGLE, "deg"))
-            .note("between the optical axis and the plane of the laser");
+            .note("between the optical axis and the upright");
         if let Some(row) = camera.principal_row {
             self.number("principal_row", row)
                 .note("that the optical axis meets");

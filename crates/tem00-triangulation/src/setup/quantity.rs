@@ -32,7 +32,7 @@ pub enum SetupQuantity {
     PixelPitch,
     /// The distance from the entrance pupil to the line, in metres.
     Distance,
-    /// The angle between optical axis and laser plane, in radians.
+    /// The angle between optical axis and the upright, in radians.
     Angle,
     /// The row of the image that the optical axis meets, in pixels.
     PrincipalRow,

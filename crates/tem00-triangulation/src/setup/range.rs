@@ -1,4 +1,4 @@
-use super::Setup;
+use super::{Setup, SetupCamera};
 
 /// A range of heights, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,10 +31,15 @@ impl Setup {
         let [_, height] = description.camera.resolution;
         let margin = 0.5 * description.detector.window as f64;
         let limit = description.camera.distance * description.camera.angle.cos();
-        let at = |y: f64| self.height_at(y);
+        // What is higher on the part is higher in the image, unless the laser leans over the camera.
+        let mut rows = [height as f64 - margin, margin];
+        if self.line().height_per_pixel < 0.0 {
+            rows.reverse();
+        }
+        let [low, high] = rows.map(|row| self.height_at(row));
         HeightRange {
-            low: at(height as f64 - margin).unwrap_or(-limit).max(-limit),
-            high: at(margin).unwrap_or(limit).min(limit),
+            low: low.unwrap_or(-limit).max(-limit),
+            high: high.unwrap_or(limit).min(limit),
         }
     }
 
@@ -47,8 +52,14 @@ impl Setup {
     /// ```
     ///
     /// with the place y of the laser plane at the height z and its tilt τ. The line has its waist on the reference
-    /// plane: a fine one spreads within its Rayleigh range, which ends the depth of field where the lens does not. A set-up
-    /// after Scheimpflug has the whole laser plane in focus.
+    /// plane: a fine one spreads within its Rayleigh range, which ends the depth of field where the lens does not.
+    ///
+    /// A set-up after Scheimpflug has the whole plane of the laser in focus where that goes through the point that the
+    /// optical axis meets. With an offset y₀ beside it, and the angle φ of the sensor, it is fine where
+    ///
+    /// ```text
+    /// Z ≥ f (1 + y₀/H + D |y₀| / (W₀ |H| cos φ))      H = L sin(θ + τ) / cos τ
+    /// ```
     pub fn depth_of_field(&self) -> HeightRange {
         self.lens_range().and(&self.line_range())
     }
@@ -62,32 +73,46 @@ impl Setup {
     }
 
     /// That of the lens, without end for a pupil so small that the disc of defocus never grows as wide as the line.
-    fn lens_range(&self) -> HeightRange {
-        if self.description().camera.scheimpflug {
-            return HeightRange {
-                low: f64::NEG_INFINITY,
-                high: f64::INFINITY,
-            };
-        }
-        let distance = self.description().camera.distance;
-        let width = self.line().width * self.description().sensor.pixel_pitch;
-        let camera = self.camera();
-        let vergence = width / (camera.pupil_diameter() * camera.image_distance());
-        let height = |inverse_depth: f64| {
-            let (sin, cos) = self.description().camera.angle.sin_cos();
-            let laser = &self.description().laser;
-            (distance + self.description().laser_offset() * sin - 1.0 / inverse_depth)
-                / (cos - libm::tan(laser.tilt) * sin)
-        };
-        let farthest = 1.0 / distance - vergence;
+    pub(super) fn lens_range(&self) -> HeightRange {
+        let description = self.description();
+        let (sin, cos) = description.camera.angle.sin_cos();
+        let beside = description.camera.distance + description.laser_offset() * sin;
+        // The depth falls with the height, but for a plane that leans out of sight.
+        let fall = cos - libm::tan(description.laser.tilt) * sin;
+        let [near, far] = self.depths_in_focus().map(|depth| (beside - depth) / fall);
         HeightRange {
-            low: if farthest > 0.0 {
-                height(farthest)
-            } else {
-                f64::NEG_INFINITY
-            },
-            high: height(1.0 / distance + vergence),
+            low: near.min(far),
+            high: near.max(far),
         }
+    }
+
+    /// The least and the greatest depth before the lens that is in focus on the plane of the laser.
+    fn depths_in_focus(&self) -> [f64; 2] {
+        let (description, camera) = (self.description(), self.camera());
+        let SetupCamera {
+            distance,
+            focal_length,
+            angle,
+            scheimpflug,
+            ..
+        } = description.camera;
+        let width = self.line().width * description.sensor.pixel_pitch;
+        if scheimpflug {
+            let (tilt, offset) = (description.laser.tilt, description.laser_offset());
+            let beside = distance * libm::sin(angle + tilt) / libm::cos(tilt);
+            let blurred = camera.pupil_diameter() * offset
+                / (width * beside * libm::cos(camera.description().tilt.angle));
+            let near = focal_length * (1.0 + offset / beside + blurred.abs());
+            return [near, f64::INFINITY];
+        }
+        let vergence = width / (camera.pupil_diameter() * camera.image_distance());
+        let farthest = 1.0 / distance - vergence;
+        let far = if farthest > 0.0 {
+            1.0 / farthest
+        } else {
+            f64::INFINITY
+        };
+        [1.0 / (1.0 / distance + vergence), far]
     }
 
     /// Returns the heights that can be measured, in metres: those that are both

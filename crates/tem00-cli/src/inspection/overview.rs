@@ -35,17 +35,17 @@ struct View {
 
 const VIEWS: [View; 3] = [
     View {
-        title: "from the front: x to the right, y up",
+        title: "from +z: x to the right, y up",
         right: DVec3::X,
         up: DVec3::Y,
     },
     View {
-        title: "from the left: z to the right, y up",
+        title: "from −x: z to the right, y up",
         right: DVec3::Z,
         up: DVec3::Y,
     },
     View {
-        title: "from above: x to the right, z down",
+        title: "from +y: x to the right, z down",
         right: DVec3::X,
         up: DVec3::NEG_Z,
     },

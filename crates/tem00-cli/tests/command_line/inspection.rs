@@ -138,7 +138,11 @@ fn what_is_seen_is_told_and_drawn() {
     );
     let path = said.lines().last().expect("the name of the drawing");
     let drawing = fs::read_to_string(folder.path().join(path)).expect("the drawing");
-    for name in ["camera", "laser 0", "surface 1", "from above", "mm"] {
+    let views = ["from +z", "from −x", "from +y"];
+    for name in ["camera", "laser 0", "surface 1", "mm"]
+        .into_iter()
+        .chain(views)
+    {
         assert!(drawing.contains(name), "{name} is not drawn");
     }
 }

@@ -114,9 +114,58 @@ pub(crate) fn table(rows: &[Row]) -> Table {
     table
 }
 
+/// Returns what the rows come to, in one sentence.
+pub(crate) fn conclusion(rows: &[Row]) -> String {
+    let compared = rows
+        .iter()
+        .filter_map(|row| Some((row, row.verdict.as_deref()?)));
+    let (agree, others): (Vec<_>, Vec<_>) = compared.partition(|(_, verdict)| *verdict == "agrees");
+    let all = agree.len() + others.len();
+    let said = |(row, verdict): &(&Row, &str)| format!("{}, {verdict}", row.quantity);
+    match (all, &*others) {
+        (0, _) => "Nothing here is compared with theory.".to_owned(),
+        (_, []) => format!("It is as theory says: all {all} numbers that are compared agree."),
+        (_, others) => format!(
+            "It is not as theory says in {} of {all} numbers that are compared: {}.",
+            others.len(),
+            others.iter().map(said).collect::<Vec<_>>().join("; ")
+        ),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_rows_come_to_one_sentence() {
+        let near = |name: &str, measured| {
+            let theory = Expectation::Near {
+                value: 1.0,
+                tolerance: 0.05,
+            };
+            Row::new(name, measured, theory)
+        };
+        let open = Row::new("mean", 3.0, Expectation::Open);
+        for (rows, expected) in [
+            (vec![open.clone()], "Nothing here is compared with theory."),
+            (
+                vec![near("contrast", 1.01), open.clone(), near("size", 0.99)],
+                "It is as theory says: all 2 numbers that are compared agree.",
+            ),
+            (
+                vec![
+                    near("contrast", 0.79),
+                    open,
+                    near("size", 1.2),
+                    near("p", 1.0),
+                ],
+                "It is not as theory says in 2 of 3 numbers that are compared: contrast, low by 0.21; size, high by 0.2.",
+            ),
+        ] {
+            assert_eq!(conclusion(&rows), expected);
+        }
+    }
 
     #[test]
     fn theory_is_null_where_there_is_none() {

@@ -157,6 +157,7 @@ impl Measurement {
         report
             .section("Statistics")
             .table(comparison::table(&self.rows));
+        report.verdict(comparison::conclusion(&self.rows));
         self.warnings.iter().for_each(|line| report.warning(line));
         self.assumptions.iter().for_each(|line| report.note(line));
         report

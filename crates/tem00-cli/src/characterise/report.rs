@@ -23,6 +23,17 @@ pub(super) fn report(
     report.data("setup", &file);
     let rows = rows(found);
     report.verdict(verdict(&rows));
+    if let Some(grooves) = &found.grooves[0] {
+        let widths = [
+            ("W_R,x", grooves.resolution),
+            ("T_FI,x", grooves.fidelity_limit),
+        ];
+        let said = widths
+            .map(|(symbol, width)| finer_than_columns(symbol, width?.value, found.field.column));
+        said.into_iter()
+            .flatten()
+            .for_each(|line| report.warning(line));
+    }
     report.note(
         "Rendered, not measured: camera, laser plane and stage are known exactly, and the artefacts are of the surface of \
          the set-up. A profile is one frame, imaged as waves: with diffraction, defocus and speckle.",
@@ -70,6 +81,20 @@ fn verdict(rows: &[Row]) -> String {
         format!(" Grooves of {x} along the profile and of {y} along the scan are seen half as deep as they are.")
     });
     noise + &widths.unwrap_or_default()
+}
+
+/// Returns what there is to say of a width along the profile that is less than two columns.
+fn finer_than_columns(symbol: &str, width: f64, column: f64) -> Option<String> {
+    let two = 2.0 * column;
+    let text = |length| MICROMETRES.with_digits(3).text(length);
+    (width < two).then(|| {
+        format!(
+            "{symbol} = {} is less than two columns, {}: whether so narrow a groove is seen hangs on where a column stands in \
+             it. Quote two columns.",
+            text(width),
+            text(two)
+        )
+    })
 }
 
 fn table(rows: &[Row]) -> Table {
@@ -176,4 +201,26 @@ fn artefacts(
         .data("repetitions", args.repetitions)
         .data("samples_per_pixel", args.spp)
         .data("seed", args.seed);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_width_below_two_columns_is_not_quoted_without_a_word() {
+        for (width, said) in [
+            (19.9e-6, true),
+            (20.1e-6, false),
+            (35e-6, false),
+            (1e-6, true),
+        ] {
+            let found = finer_than_columns("W_R,x", width, 10e-6);
+            assert_eq!(found.is_some(), said, "{width}");
+            assert!(
+                found.is_none_or(|line| line.contains("two columns, 20 µm")),
+                "{width}"
+            );
+        }
+    }
 }

@@ -159,6 +159,8 @@ fn uncertainty(
         .table(terms.table())
         .data("combined", terms.combined)
         .data("expanded", terms.expanded)
+        .data("median_expanded", terms.quantiles[0])
+        .data("quantile_95_expanded", terms.quantiles[1])
         .data("reason", Value::Null);
     drawings.terms(section, terms)?;
     section.paragraph(CORRELATIONS);

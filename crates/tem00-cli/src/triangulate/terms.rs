@@ -1,5 +1,6 @@
 //! The terms of the height uncertainty, over all points.
 
+use tem00_numerics::cast::to_usize;
 use tem00_scan::MeasuredPoint;
 use tem00_triangulation::{DVec3, UncertaintySource};
 
@@ -36,6 +37,8 @@ pub(super) struct Terms {
     pub(super) combined: f64,
     /// The expanded uncertainty of a height for a level of confidence of 95 %, in metres.
     pub(super) expanded: f64,
+    /// The median of the points' own expanded uncertainties, and the value that 95 % of them do not exceed.
+    pub(super) quantiles: [f64; 2],
 }
 
 /// The coverage factor of 95 % of a normal distribution.
@@ -112,6 +115,12 @@ impl Terms {
             terms,
             combined: variance.sqrt(),
             expanded: COVERAGE * variance.sqrt(),
+            quantiles: {
+                let of_point = |point: &MeasuredPoint| COVERAGE * point.uncertainty_along(height);
+                let mut own: Vec<f64> = valid().map(of_point).collect();
+                own.sort_by(f64::total_cmp);
+                [0.5, 0.95].map(|part| quantile(&own, part))
+            },
         })
     }
 
@@ -133,9 +142,11 @@ impl Terms {
         });
         format!(
             "Expanded uncertainty of the height of a point: U = {} (95 %, k = {COVERAGE}), as root mean \
-             square of {} points.{dominant}",
+             square of {} points; half of them have {} at most, 95 % of them {}.{dominant}",
             MICROMETRES.with_digits(3).text(self.expanded),
             self.points,
+            MICROMETRES.with_digits(3).text(self.quantiles[0]),
+            MICROMETRES.with_digits(3).text(self.quantiles[1]),
         )
     }
 
@@ -186,6 +197,12 @@ impl Terms {
     }
 }
 
+/// Returns the least value that so large a part of some does not exceed. They ascend, and there is one at least.
+fn quantile(ascending: &[f64], part: f64) -> f64 {
+    let rank = to_usize((part * ascending.len() as f64).ceil());
+    ascending[rank.clamp(1, ascending.len()) - 1]
+}
+
 /// Returns what lowers a term.
 fn remedy(name: &str) -> &'static str {
     if name == INDIRECT {
@@ -204,6 +221,25 @@ mod tests {
     fn without_a_valid_point_there_are_no_terms() {
         assert_eq!(Terms::of(&[], DVec3::Z), None);
         assert_eq!(Terms::of(&[vec![], vec![]], DVec3::Z), None);
+    }
+
+    #[test]
+    fn a_quantile_is_the_least_value_that_is_not_exceeded() {
+        let values: Vec<f64> = (1..=20).map(f64::from).collect();
+        for (count, part, expected) in [
+            (20, 0.5, 10.0),
+            (20, 0.95, 19.0),
+            (19, 0.5, 10.0),
+            (19, 0.95, 19.0),
+            (2, 0.5, 1.0),
+            (1, 0.95, 1.0),
+        ] {
+            assert_eq!(
+                quantile(&values[..count], part),
+                expected,
+                "{part} of {count}"
+            );
+        }
     }
 
     #[test]

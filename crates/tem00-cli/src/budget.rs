@@ -17,11 +17,12 @@ use tem00_triangulation::{read_setup_with, read_uncertainty};
 
 use self::{
     certificate::{CertificateData, certificate},
-    findings::{Findings, HELP},
+    findings::{Findings, HELP, SetupFile},
 };
 use crate::{
     args::BudgetArgs,
     atomic::write_atomically,
+    date,
     failure::Failure,
     kind::{Kind, wrong_or},
     output,
@@ -34,13 +35,21 @@ use crate::{
 /// Returns a failure if the input is not valid, if a file cannot be written, if the user ends it, or, with
 /// all files written, if the set-up measures nothing.
 pub(crate) fn run(args: &BudgetArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let (setup, (text, uncertainty, data)) = read_setup_with(
+    let day = date::today()?;
+    let (setup, (read, uncertainty, data)) = read_setup_with(
         &args.common.setup,
         args.common.files.reading(),
         |document, setup| {
             let uncertainty = read_uncertainty(document, setup)?;
             let data = CertificateData::read(document, uncertainty.states_height())?;
-            Ok((document.text().to_owned(), uncertainty, data))
+            let title = document.value("title");
+            let title = title.map(|title| title.string().map(str::to_owned));
+            let read = SetupFile {
+                path: &args.common.setup,
+                text: document.text().to_owned(),
+                title: title.transpose()?,
+            };
+            Ok((read, uncertainty, data))
         },
     )
     .map_err(|error| {
@@ -54,8 +63,8 @@ pub(crate) fn run(args: &BudgetArgs, out: &mut impl Write) -> Result<(), Failure
     );
     let _lock = output::prepare(&folder)?;
     let pool = output::thread_pool(args.common.threads)?;
-    let findings = pool.install(|| Findings::new(args, (setup, &uncertainty), text))?;
-    let report = report::report(&findings, draw(&findings, &folder)?);
+    let findings = pool.install(|| Findings::new(args, (setup, &uncertainty), read))?;
+    let report = report::report(&findings, draw(&findings, &folder)?, &day);
     let mut files = ["budget.json", "budget.html"]
         .map(|name| folder.join(name))
         .to_vec();

@@ -24,6 +24,8 @@ mod characterise;
 mod colour;
 mod comparison;
 #[cfg(feature = "full")]
+mod date;
+#[cfg(feature = "full")]
 mod design;
 mod digits;
 mod excerpt;

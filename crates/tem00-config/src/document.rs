@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-use crate::{Folder, Problem, Section, sources::Sources};
+use crate::{Folder, Problem, Section, Value, sources::Sources};
 
 /// A document as its files tell it, those that are included first.
 #[derive(Debug)]
@@ -29,6 +29,11 @@ impl<'a> Document<'a> {
     /// among them.
     pub fn paths(&self) -> Vec<PathBuf> {
         self.sources.files()
+    }
+
+    /// Returns a value that stands outside of all sections; that of the file that includes the others counts.
+    pub fn value(&self, key: &'static str) -> Option<Value<'a>> {
+        self.files.iter().rev().find_map(|file| file.optional(key))
     }
 
     /// Opens the table of a key, which one of the files may have.

@@ -16,11 +16,18 @@ use crate::{
 pub(super) const HELP: &str =
     "setups/ has set-up files, and docs/setup_file.md explains how to write them";
 
+/// The file of a set-up.
+pub(super) struct SetupFile<'a> {
+    pub(super) path: &'a Path,
+    /// With the changes of the command line.
+    pub(super) text: String,
+    /// What it calls the set-up.
+    pub(super) title: Option<String>,
+}
+
 /// A set-up that was looked at.
 pub(super) struct Findings<'a> {
-    /// The file that it was read from, and its text.
-    pub(super) file: &'a Path,
-    pub(super) text: String,
+    pub(super) file: SetupFile<'a>,
     pub(super) setup: Setup,
     /// The uncertainty of a height, or the reason why there is none.
     pub(super) answer: Result<Answer, Refusal>,
@@ -48,9 +55,9 @@ pub(super) struct Refusal {
 
 impl<'a> Findings<'a> {
     pub(super) fn new(
-        args: &'a BudgetArgs,
+        args: &BudgetArgs,
         (setup, uncertainty): (Setup, &SetupUncertainty),
-        text: String,
+        file: SetupFile<'a>,
     ) -> Result<Self, Failure> {
         let answer = match Budget::new(&setup) {
             Ok(budget) => Answer::new(args, (&setup, uncertainty), budget)?,
@@ -65,8 +72,7 @@ impl<'a> Findings<'a> {
             }
         };
         Ok(Self {
-            file: &args.common.setup,
-            text,
+            file,
             setup,
             answer,
         })

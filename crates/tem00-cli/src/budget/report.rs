@@ -16,10 +16,19 @@ use crate::{
     },
 };
 
-/// Returns the report; the numbers of a set-up that measures nothing are `null`.
-pub(super) fn report(findings: &Findings<'_>, drawings: Vec<String>) -> Report {
-    let mut report = Report::new("Uncertainty budget of a laser-triangulation set-up");
-    let (file, setup) = (findings.file.display().to_string(), &findings.setup);
+/// Returns the report of a day; the numbers of a set-up that measures nothing are `null`.
+///
+/// The day stands on the page alone: the same set-up and seed give the same JSON.
+pub(super) fn report(findings: &Findings<'_>, drawings: Vec<String>, day: &str) -> Report {
+    let title = findings.file.title.as_deref();
+    let mut report = Report::new(format!(
+        "Uncertainty budget of {}",
+        title.unwrap_or("a laser-triangulation set-up")
+    ));
+    let (file, setup) = (findings.file.path.display().to_string(), &findings.setup);
+    let checksum = format!("{:x}", md5::compute(&findings.file.text));
+    report.data("title", title);
+    report.data("setup_md5", &checksum);
     let (answer, refusal) = (
         findings.answer.as_ref().ok(),
         findings.answer.as_ref().err(),
@@ -44,8 +53,40 @@ pub(super) fn report(findings: &Findings<'_>, drawings: Vec<String>) -> Report {
         None => report.data("terms", json!([])),
     }
     image(report.section("The set-up").under("image"), setup);
-    report.section("Files").file(file, &findings.text);
     report
+        .section("The inputs")
+        .in_detail()
+        .table(inputs(setup))
+        .paragraph(format!(
+            "Computed on {day} from {file}, whose text has the MD5 checksum {checksum}."
+        ));
+    report.section("Files").file(file, &findings.file.text);
+    report
+}
+
+/// Returns every value that the budget is of, given or by default.
+fn inputs(setup: &Setup) -> Table {
+    let columns = [
+        Column::new("key", "key"),
+        Column::new("value", "value"),
+        Column::new("note", "note"),
+    ];
+    let mut table = Table::new("Values of the set-up", columns).under("inputs");
+    let text = setup.description().to_toml();
+    let mut section = "";
+    for line in text.lines() {
+        if let Some(name) = line.strip_prefix('[') {
+            section = name.trim_end_matches(']');
+        } else if let Some((key, value)) = line.split_once(" = ") {
+            let (value, note) = value.split_once(" # ").unwrap_or((value, ""));
+            table.row([
+                format!("{section}.{key}").into(),
+                value.trim_matches('"').into(),
+                note.into(),
+            ]);
+        }
+    }
+    table
 }
 
 /// Adds the numbers that the verdicts tell in words.

@@ -2,7 +2,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use super::{assert_code, files, folder, message, run, text};
+use super::{assert_code, files, folder, message, run, tem00, text};
 
 /// A set-up of the usual parts, with few rows.
 pub(super) const SETUP: &str = r#"
@@ -94,6 +94,92 @@ fn a_budget_is_a_table_and_five_files() {
         page.contains("<svg") && page.contains("line_thickness = &quot;0.2 mm&quot;"),
         "{page}"
     );
+}
+
+#[test]
+fn a_page_has_name_day_checksum_and_every_input_and_the_json_no_day() {
+    let folder = setup_folder("[laser]", "title = \"Rig <7>\"\n[laser]");
+    let of_day = |seconds: &str| {
+        let mut command = tem00(folder.path(), "budget a.toml --trials 10");
+        command
+            .env("SOURCE_DATE_EPOCH", seconds)
+            .output()
+            .expect("the program starts")
+    };
+    let files = |seconds: &str| {
+        assert_code(&of_day(seconds), 0);
+        ["html", "json"].map(|end| {
+            let path = folder.path().join(format!("out/a/budget.{end}"));
+            fs::read_to_string(path).expect("the report")
+        })
+    };
+    let [page, record] = files("1795651200");
+    for part in [
+        "<h1>Uncertainty budget of Rig &lt;7&gt;</h1>",
+        "Computed on 2026-11-26 from a.toml",
+        "<td>laser.wavelength</td><td>650 nm</td>",
+        // By default.
+        "<td>sensor.dark_current</td>",
+        "<td>surface.polarisation</td>",
+    ] {
+        assert!(page.contains(part), "{part} is not in\n{page}");
+    }
+    // Closed on paper as well as open: nothing of the table is inside of <details>.
+    let (open, _) = page.split_once("<details").expect("the file");
+    assert!(open.contains("<td>camera.angle</td>"), "{page}");
+    let found = json(record.as_bytes());
+    assert_eq!(found["title"], "Rig <7>", "{record}");
+    let text = fs::read(folder.path().join("a.toml")).expect("the set-up");
+    let checksum = format!("{:x}", md5::compute(text));
+    assert_eq!(found["setup_md5"], *checksum, "{record}");
+    assert!(page.contains(&checksum), "{page}");
+    // The same bits of the same seed, and of the same day a page of the same bytes.
+    assert_eq!(files("1795651201"), [page.clone(), record.clone()]);
+    let [later, same] = files("1795737600");
+    assert_eq!(same, record, "no day");
+    assert_eq!(later, page.replace("2026-11-26", "2026-11-27"));
+    for wrong in ["-1", "today", "1e9", "253402300800"] {
+        let output = of_day(wrong);
+        assert_code(&output, 2);
+        assert!(message(&output).contains("SOURCE_DATE_EPOCH"), "{wrong}");
+    }
+}
+
+#[test]
+fn all_that_is_out_of_range_is_told_at_once_in_the_units_that_were_typed() {
+    let folder = setup_folder("[laser]", "[laser]");
+    let set = [
+        (
+            "laser.line_thickness=0.5 um",
+            "line_thickness must be from 1 um to 1000000 um, got 0.5 um",
+        ),
+        (
+            "camera.f_number=2000",
+            "f_number must be from 0.5 to 1000, got 2000",
+        ),
+        (
+            "camera.distance=1 cm",
+            "distance must be from 1.001 focal lengths to 100000 cm, got 1 cm",
+        ),
+        (
+            "camera.angle=1.7 rad",
+            "angle must be from 0.01745 rad to 1.553 rad, got 1.7 rad",
+        ),
+        (
+            "laser.tilt=800 mrad",
+            "tilt must be from -785.4 mrad to 785.4 mrad, got 800 mrad",
+        ),
+    ];
+    let mut command = tem00(folder.path(), "budget a.toml --trials 0");
+    for (change, _) in set {
+        command.args(["--set", change]);
+    }
+    let output = command.output().expect("the program starts");
+    assert_code(&output, 2);
+    let told = message(&output);
+    for (_, part) in set {
+        assert!(told.contains(part), "`{part}` is not in {told}");
+    }
 }
 
 #[test]

@@ -196,7 +196,8 @@ fn a_budget_is_reported_with_its_result_first() {
     assert_code(&run(folder.path(), "budget a.toml --trials 10"), 0);
     let html = read(&folder.path().join("out/a/budget.html"));
     check(&html);
-    assert_eq!(headings(&html), ["The budget", "The set-up", "Files"]);
+    let expected = ["The budget", "The set-up", "The inputs", "Files"];
+    assert_eq!(headings(&html), expected);
     assert!(!html.contains("<script"), "there is nothing to turn");
 }
 

@@ -391,3 +391,32 @@ fn one_version_stands_everywhere() {
         .any(|line| line == format!("version: {version}"));
     assert!(cited, "CITATION.cff: not {version}");
 }
+
+/// Until there is an address of the repository nothing has been uploaded.
+#[test]
+fn nothing_is_offered_before_it_is_there() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let manifest = fs::read_to_string(root.join("Cargo.toml")).expect("a readable file");
+    if !manifest.contains("repository = \"\"") {
+        return;
+    }
+    let folders = ["crates", "bindings"].map(|name| fs::read_dir(root.join(name)));
+    let entries = folders
+        .into_iter()
+        .flat_map(|folder| folder.expect("a folder"));
+    let inside = entries.map(|entry| entry.expect("an entry").path());
+    let places = inside
+        .chain([root.to_path_buf()])
+        .map(|path| path.join("README.md"));
+    let pages: Vec<PathBuf> = places.filter(|path| path.is_file()).collect();
+    assert!(pages.len() >= ALLOWED.len() - 3, "{pages:?}");
+    for page in pages {
+        let text = fs::read_to_string(&page).expect("a readable file");
+        for line in text.lines() {
+            let registry = line.contains("docs.rs/tem00")
+                || line.contains("pip install tem00")
+                || (line.contains("cargo install") && !line.contains("--path"));
+            assert!(!registry, "{}: {line}", page.display());
+        }
+    }
+}

@@ -1,11 +1,15 @@
 //! Physics of laser light for renderers.
 //!
-//! This facade re-exports the crates of the workspace under one name. A renderer that wants only
-//! one of them depends on that one: none of the three physics crates imports another, and they meet
-//! through plain numbers. How: `docs/integration.md` in the repository.
+//! A renderer that has laser light with speckle that moves as it should calls few names: a [`Laser`] lights a point,
+//! [`Speckle`] chooses the patterns for a [`Camera`] and the poses of bodies, and [`SpeckleFrame::factor`] multiplies the
+//! light of a hit. How: `docs/integration.md` in the repository.
+//!
+//! Below them this facade re-exports the crates of the workspace under one name. A renderer that wants only
+//! one of them depends on that one: they meet through plain numbers.
 //!
 //! | module | crate | what it holds |
 //! |---|---|---|
+//! | [`shading`] | `tem00-shading` | where these meet: the factor of a hit |
 //! | [`beam`] | `tem00-beam` | Gaussian beams and laser lines as lights to evaluate and sample |
 //! | [`speckle`] | `tem00-speckle` | pupil field → pattern → stack → look-up |
 //! | [`decorrelation`] | `tem00-decorrelation` | imaging geometry → displacement → correlation |
@@ -44,6 +48,12 @@
     feature = "scan",
     doc = "| [`topography`] | `tem00-topography` | artefacts of known shape, and the characteristics of a sensor that measures them (feature `scan`) |"
 )]
+
+pub use tem00_shading as shading;
+pub use tem00_shading::{
+    Camera, CameraDescription, DMat3, DVec2, DVec3, Laser, Motion, Pose, PreparedSpeckle,
+    ShadingError, Speckle, SpeckleFrame,
+};
 
 pub use tem00_beam as beam;
 pub use tem00_camera as camera;

@@ -83,6 +83,26 @@ pub struct RadialDistortion {
     pub k3: f64,
 }
 
+impl Default for CameraDescription {
+    /// A lens of 25 mm at f/8 and 640 × 480 pixels of 3.45 µm, 0.3 m above the origin, which it looks at and has in focus.
+    fn default() -> Self {
+        Self {
+            position: 0.3 * DVec3::Z,
+            look_at: DVec3::ZERO,
+            up: DVec3::Y,
+            focal_length: 25e-3,
+            f_number: 8.0,
+            focus_distance: 0.3,
+            pixel_pitch: 3.45e-6,
+            resolution: [640, 480],
+            principal_point: None,
+            tilt: SensorTilt::default(),
+            distortion: RadialDistortion::default(),
+            depth_of_field: true,
+        }
+    }
+}
+
 impl CameraDescription {
     /// Checks everything that can be checked without the geometry.
     pub(crate) fn check(&self) -> Result<(), CameraError> {

@@ -1,5 +1,5 @@
 use num_complex::Complex;
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, disc_overlap};
 
 use crate::{
     Interpolation, PupilField, SpeckleError,
@@ -291,6 +291,58 @@ impl SpeckleStack {
             *value = value.sqrt();
         }
         self.law.coordinates_of(correlations);
+    }
+
+    /// Returns the coordinate u, in slices, where the pupil has moved by a `shift` over the speckle, in its diameters,
+    /// to one side or the other.
+    ///
+    /// The look-up there has kept as much of the reference pattern at u = 0 as that shift leaves, chat²(s), and its
+    /// speckle is that of no smaller shift. Shifts beyond the [reach](SlicePath::reach) of the path count as the reach,
+    /// and so does NaN: speckle that is new. Behind pupils that are no circle, a shift counts by what it would leave
+    /// behind one.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use tem00_speckle::{PupilField, SlicePath, SpeckleStack};
+    ///
+    /// let path = SlicePath::Straight { half_period: 32, length: 4 };
+    /// let stack = SpeckleStack::generate(&PupilField::new(64, 16, 7)?, path)?;
+    ///
+    /// let u = stack.coordinate_at(0.25);
+    /// assert!((stack.correlation_at(u) - 0.469_276_571_606_7).abs() < 1e-9);
+    /// assert_eq!(stack.coordinate_at(-0.25), -u);
+    /// assert_eq!(stack.coordinate_at(f64::INFINITY), 3.0 * path.slices_per_diameter());
+    /// # Ok::<(), tem00_speckle::SpeckleError>(())
+    /// ```
+    pub fn coordinate_at(&self, shift: f64) -> f64 {
+        let mut coordinate = [shift.abs()];
+        self.coordinates_within(self.path().reach(), &mut coordinate);
+        coordinate[0].copysign(shift)
+    }
+
+    /// Puts the coordinate of each shift, to one side, in its place, as [`coordinate_at`](Self::coordinate_at) returns it,
+    /// for a `reach` that is not that of the path: where one side of the reference gets a part of the path, or where
+    /// the slices are a part of a longer path.
+    ///
+    /// Neighbours between the same two slices are found fastest.
+    pub fn coordinates_within(&self, reach: f64, shifts: &mut [f64]) {
+        const BLOCK: usize = 64;
+        let per_diameter = self.path().slices_per_diameter();
+        for shifts in shifts.chunks_mut(BLOCK) {
+            let mut overlaps = [0.0; BLOCK];
+            let overlaps = &mut overlaps[..shifts.len()];
+            for (overlap, shift) in overlaps.iter_mut().zip(&mut *shifts) {
+                *shift = shift.min(reach);
+                *overlap = disc_overlap(*shift);
+            }
+            // Where the blend of two slices has kept as much of the reference pattern as that shift, and on along the
+            // path once nothing is left.
+            self.law.coordinates_of(overlaps);
+            for (shift, u) in shifts.iter_mut().zip(&*overlaps) {
+                *shift = u.max(*shift * per_diameter);
+            }
+        }
     }
 }
 

@@ -4,6 +4,7 @@ use tem00_beam::BeamError;
 use tem00_camera::CameraError;
 use tem00_coherence::CoherenceError;
 use tem00_decorrelation::DecorrelationError;
+use tem00_shading::ShadingError;
 use tem00_speckle::SpeckleError;
 
 /// A reason why a part of a scene could not be constructed.
@@ -36,6 +37,8 @@ pub enum TracerError {
     Imaging(DecorrelationError),
     /// The speckle pattern is not possible.
     Speckle(SpeckleError),
+    /// The light of a laser or its speckle is not possible.
+    Shading(ShadingError),
     /// The speckle patterns do not fit the memory that the scene allows.
     PatternMemory {
         /// The bytes that one laser's patterns need at least.
@@ -92,6 +95,7 @@ impl fmt::Display for TracerError {
             Self::Beam(source) => source.fmt(f),
             Self::Imaging(source) => source.fmt(f),
             Self::Speckle(source) => source.fmt(f),
+            Self::Shading(source) => source.fmt(f),
             Self::PatternMemory { needed, allowed } => write!(
                 f,
                 "the speckle patterns of a laser need at least {needed} bytes and may take {allowed}"
@@ -128,6 +132,32 @@ impl From<CoherenceError> for TracerError {
 impl From<DecorrelationError> for TracerError {
     fn from(source: DecorrelationError) -> Self {
         Self::Imaging(source)
+    }
+}
+
+impl From<ShadingError> for TracerError {
+    fn from(source: ShadingError) -> Self {
+        match source {
+            ShadingError::OutOfRange {
+                parameter,
+                value,
+                allowed,
+            } => Self::OutOfRange {
+                parameter,
+                value,
+                allowed,
+            },
+            ShadingError::Direction { parameter, allowed } => {
+                Self::Direction { parameter, allowed }
+            }
+            ShadingError::Missing(what) => Self::Missing(what),
+            ShadingError::Camera(source) => Self::Camera(source),
+            ShadingError::Spectrum(source) => Self::Spectrum(source),
+            ShadingError::Beam(source) => Self::Beam(source),
+            ShadingError::Imaging(source) => Self::Imaging(source),
+            ShadingError::Speckle(source) => Self::Speckle(source),
+            other => Self::Shading(other),
+        }
     }
 }
 

@@ -306,14 +306,14 @@ impl Inspector<'_> {
         let Some(hit) = &seen.hit else {
             return 0.0;
         };
-        let Some(light) = laser.illuminate(hit.position) else {
+        let Some(light) = laser.next_event(hit.position) else {
             return 0.0;
         };
-        let [seen_from, lit_from] = [-seen.direction, light.direction].map(|d| d.dot(hit.normal));
+        let [seen_from, lit_from] = [-seen.direction, light.wi].map(|d| d.dot(hit.normal));
         let front = !self.scene.surfaces[hit.surface].material.is_one_sided() || lit_from > 0.0;
         let lit = front && seen_from * lit_from > 0.0;
-        if lit && (self.intersector).visible(hit.position, hit.normal, light.source) {
-            let irradiance = light.irradiance * lit_from.abs();
+        if lit && (self.intersector).visible(hit.position, hit.normal, light.point) {
+            let irradiance = light.e_perp * lit_from.abs();
             irradiance * seen.length.powi(2) / seen_from.abs()
         } else {
             0.0

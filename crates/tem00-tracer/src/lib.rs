@@ -30,13 +30,13 @@ mod finish;
 mod inspection;
 mod integrator;
 mod intersector;
-mod laser;
 mod light;
 mod light_tracer;
 mod local_frame;
 mod material;
 mod mesh;
 mod metal;
+mod printed;
 mod render;
 mod sampler;
 mod scene;
@@ -46,7 +46,6 @@ mod spread;
 mod survey;
 #[cfg(test)]
 mod testing;
-mod trajectory;
 
 pub use environment::Environment;
 pub use error::TracerError;
@@ -55,7 +54,6 @@ pub use filter::{Filter, FilterSample, FilterSampler};
 pub use finish::FinishingProcess;
 pub use inspection::{LaserInspection, LightFate, LightPart};
 pub use intersector::{Intersector, Segment};
-pub use laser::{BeamShape, EmittedRay, Laser, LaserDescription, SampledIllumination};
 pub use light::{Light, LightSample};
 pub use local_frame::LocalFrame;
 pub use material::{BsdfSample, Material, OpticalRoughness, OpticalRoughnessQuery};
@@ -73,7 +71,12 @@ pub use speckle::{
     CascadeNote, CorrelationNote, PatternPlan, ReferencePoint, RoughnessNote, SpeckleChange,
     SpeckleModel, SpecklePlan,
 };
-pub use trajectory::{Keyframe, Rotation, Trajectory};
+
+/// Lasers, and motions from frame to frame.
+pub use tem00_shading::{
+    BeamShape, EmittedRay, Keyframe, Laser, LaserDescription, LaserEvent, Rotation, SampledEvent,
+    Trajectory,
+};
 
 /// The beam types that a scene is described with.
 pub use tem00_beam::{FanGeometry, LineProfile};

@@ -1,7 +1,6 @@
 //! From the camera and the motion in a scene to the speckle factor of a camera sample.
 
 mod allocation;
-mod axial_loss;
 mod bandwidth;
 mod between_frames;
 mod change;
@@ -9,13 +8,12 @@ mod crossing;
 mod model;
 mod multiple;
 mod notes;
-mod perspective;
 mod plan;
 mod prescan;
 mod printed;
-mod shifts;
 
 use glam::{DVec2, DVec3};
+use tem00_shading::SeenPoint;
 
 pub use between_frames::{ReferencePoint, SpeckleChange};
 pub(crate) use change::Change;
@@ -43,6 +41,16 @@ pub(crate) struct SpecklePoint {
     pub surface: usize,
     /// A number between 0 and 1 that draws the wave number from the line of a laser.
     pub wave: f64,
+}
+
+impl SpecklePoint {
+    fn seen(&self) -> SeenPoint {
+        SeenPoint {
+            pixel: self.pixel,
+            position: self.position,
+            normal: self.normal,
+        }
+    }
 }
 
 /// Turns an image vector with y down, in pixels, into one with y up, and back.

@@ -308,12 +308,12 @@ impl<'a> Survey<'a> {
     /// The radiance at a vertex of the light of a laser that has met its surface only.
     fn single(&self, laser: usize, vertex: &Vertex<'_>) -> f64 {
         let laser = self.change.laser(laser);
-        let Some(light) = laser.illuminate(vertex.position) else {
+        let Some(light) = laser.next_event(vertex.position) else {
             return 0.0;
         };
-        let reflected = vertex.reflected_from(light.direction, laser.wavelength());
-        let radiance = light.irradiance * reflected;
-        if radiance > 0.0 && self.is_free(vertex.segment_to(light.source)) {
+        let reflected = vertex.reflected_from(light.wi, laser.wavelength());
+        let radiance = light.e_perp * reflected;
+        if radiance > 0.0 && self.is_free(vertex.segment_to(light.point)) {
             radiance
         } else {
             0.0

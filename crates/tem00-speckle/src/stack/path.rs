@@ -51,6 +51,28 @@ impl SlicePath {
         }
     }
 
+    /// Returns the slices that a motion of the pupil by its diameter passes.
+    pub const fn slices_per_diameter(self) -> f64 {
+        match self {
+            Self::Still => 1.0,
+            Self::Circle { half_period } => half_period as f64,
+            Self::Straight {
+                half_period,
+                length,
+            } => 2.0 * half_period as f64 / length as f64,
+        }
+    }
+
+    /// Returns the largest motion of the pupil that the slices tell apart from every smaller one, in
+    /// its diameters: the length of their path less the diameter of the pupil itself.
+    pub const fn reach(self) -> f64 {
+        match self {
+            Self::Still => 0.0,
+            Self::Circle { .. } => 1.0,
+            Self::Straight { length, .. } => length as f64 - 1.0,
+        }
+    }
+
     /// Returns the bytes of a stack of W × H samples along this path: 8 per sample.
     ///
     /// # Examples

@@ -226,26 +226,14 @@ impl StackPlan {
         self.path.memory_bytes(self.size)
     }
 
-    /// Returns the slices that a motion of the pupil by its diameter passes.
-    pub fn slices_per_diameter(&self) -> f64 {
-        match self.path {
-            SlicePath::Still => 1.0,
-            SlicePath::Circle { half_period } => half_period as f64,
-            SlicePath::Straight {
-                half_period,
-                length,
-            } => 2.0 * half_period as f64 / length as f64,
-        }
+    /// Returns [`SlicePath::slices_per_diameter`] of the path.
+    pub const fn slices_per_diameter(&self) -> f64 {
+        self.path.slices_per_diameter()
     }
 
-    /// Returns the largest motion of the pupil that the slices tell apart from every smaller one, in
-    /// its diameters: the length of their path less the diameter of the pupil itself.
-    pub fn reach(&self) -> f64 {
-        match self.path {
-            SlicePath::Still => 0.0,
-            SlicePath::Circle { .. } => 1.0,
-            SlicePath::Straight { length, .. } => length as f64 - 1.0,
-        }
+    /// Returns [`SlicePath::reach`] of the path.
+    pub const fn reach(&self) -> f64 {
+        self.path.reach()
     }
 
     /// Returns whether the pattern repeats nothing within the region.

@@ -1,10 +1,10 @@
 use glam::{DVec2, DVec3};
 use tem00_camera::Ray;
+use tem00_shading::LaserEventBatch;
 
 use super::{PathRules, Vertex};
 use crate::{
     Formulas, Hit, Intersector, Segment,
-    laser::Illuminations,
     sampler::Stream,
     speckle::{SpeckleFrame, SpecklePoint},
 };
@@ -32,7 +32,7 @@ pub(crate) struct Batch<'a> {
     /// For each sample, what is left of radiance at the end of its path, by wavelength.
     pub(super) throughput: Vec<f64>,
     pub(super) connections: Connections,
-    pub(super) lit: Illuminations,
+    pub(super) lit: LaserEventBatch,
     pub(super) speckle: SpeckleLookUps,
     /// The rays followed since they were counted last.
     pub(super) rays_followed: u64,

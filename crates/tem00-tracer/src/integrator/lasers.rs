@@ -1,4 +1,5 @@
 use tem00_camera::Ray;
+use tem00_shading::LaserEvent;
 
 use super::{
     Integrator, Vertex,
@@ -6,7 +7,7 @@ use super::{
     lit_points::{LitPoints, density},
     weights::{power_heuristic, random_number},
 };
-use crate::{Formulas, Hit, laser::Illumination, sampler::Use};
+use crate::{Formulas, Hit, printed, sampler::Use};
 
 impl<'a> Integrator<'a> {
     /// Connects every rough surface point to every laser.
@@ -21,7 +22,7 @@ impl<'a> Integrator<'a> {
         }
         for laser in 0..self.lasers.len() {
             if mean_direction {
-                self.lasers[laser].illuminate_all(&mut batch.lit);
+                self.lasers[laser].next_events(&mut batch.lit);
             }
             for index in 0..batch.paths.len() {
                 let light = if batch.vertices[index].is_specular() {
@@ -47,11 +48,11 @@ impl<'a> Integrator<'a> {
         &self,
         laser: usize,
         index: usize,
-        (light, pdf): (Illumination, Option<f64>),
+        (light, pdf): (LaserEvent, Option<f64>),
         batch: &mut Batch<'a>,
     ) {
         let (path, vertex) = (batch.paths[index], &batch.vertices[index]);
-        let Some(wi) = vertex.towards(light.direction) else {
+        let Some(wi) = vertex.towards(light.wi) else {
             return;
         };
         // Weigh the connection against the chance to meet the beam by itself.
@@ -61,9 +62,9 @@ impl<'a> Integrator<'a> {
         );
         let reflected = vertex.reflected(wi, self.lasers[laser].wavelength());
         let throughput = self.laser_throughput(laser, &path, batch);
-        let radiance = weight * throughput * light.irradiance * reflected;
+        let radiance = weight * throughput * light.e_perp * reflected;
         let power = if path.depth == 1 && vertex.is_seen_side(wi) {
-            let on_surface = light.irradiance * vertex.normal.dot(light.direction).abs();
+            let on_surface = light.e_perp * vertex.normal.dot(light.wi).abs();
             let solid_angle = batch.solid_angles[path.sample];
             on_surface * solid_angle * vertex.distance.powi(2) / vertex.cosine.abs()
         } else {
@@ -76,7 +77,7 @@ impl<'a> Integrator<'a> {
                 power,
                 is_single: path.rough == 0,
             };
-            let segment = vertex.segment_to(light.source);
+            let segment = vertex.segment_to(light.point);
             batch.connect(segment, arrival, self.intersector);
         }
     }
@@ -132,7 +133,7 @@ impl<'a> Integrator<'a> {
         laser: usize,
         path: &Path,
         vertex: &Vertex<'a>,
-        light: &Illumination,
+        light: &LaserEvent,
     ) -> f64 {
         match path.scattering_pdf {
             Some(pdf) if !self.lit_points.is_empty() => {
@@ -149,21 +150,21 @@ impl<'a> Integrator<'a> {
         laser: usize,
         index: usize,
         batch: &Batch<'_>,
-    ) -> Option<(Illumination, Option<f64>)> {
+    ) -> Option<(LaserEvent, Option<f64>)> {
         let (source, vertex) = (&self.lasers[laser], &batch.vertices[index]);
         if self.rules.formulas == Formulas::AsPrinted {
-            let light = source.illuminate_as_printed(vertex.position, vertex.seen_normal())?;
+            let light = printed::next_event(source, vertex.position, vertex.seen_normal())?;
             return Some((light, None));
         }
         let path = &batch.paths[index];
         let purpose = Use::Laser(path.depth, random_number(laser));
         let stream = batch.samples[path.sample].stream;
         let u = self.sequence(stream).pair(stream, purpose);
-        let event = source.sampled_event(vertex.position, u)?;
-        let light = Illumination {
-            source: event.source,
-            direction: event.direction,
-            irradiance: event.value,
+        let event = source.next_event_sampled(vertex.position, u)?;
+        let light = LaserEvent {
+            point: event.point,
+            wi: event.wi,
+            e_perp: event.value,
         };
         Some((light, Some(event.pdf)))
     }
@@ -191,7 +192,7 @@ impl<'a> Integrator<'a> {
                 continue;
             }
             let weight = path.scattering_pdf.map_or(1.0, |pdf| {
-                power_heuristic(pdf, laser.event_pdf(ray.origin, ray.direction))
+                power_heuristic(pdf, laser.next_event_pdf(ray.origin, ray.direction))
             });
             let throughput = self.laser_throughput(index, path, batch);
             let slot = path.sample * self.lasers.len() + index;

@@ -8,11 +8,11 @@ use core::iter;
 use glam::{DVec3, UVec3};
 use tem00_camera::Ray;
 use tem00_numerics::cast::to_usize;
+use tem00_shading::LaserEvent;
 
 use super::{vertex::Vertex, weights::power_heuristic};
 use crate::{
     Hit, Intersector, Laser, Material, Scene,
-    laser::Illumination,
     light_tracer::{DrawKey, Draws},
 };
 
@@ -29,7 +29,7 @@ pub(super) struct LitPoints<'a> {
 pub(super) struct LitPoint<'a> {
     pub(super) hit: Hit,
     material: &'a Material,
-    light: Illumination,
+    light: LaserEvent,
     /// The density with which points are drawn there, per square metre.
     density: f64,
 }
@@ -49,7 +49,7 @@ impl<'a> LitPoints<'a> {
         let points = first_hits(laser, rays as usize, Draws::new(key), intersector);
         let points = points.filter_map(|hit| {
             let material = &scene.surfaces.get(hit.surface)?.material;
-            let light = laser.illuminate(hit.position)?;
+            let light = laser.next_event(hit.position)?;
             let density = density(laser, &light, hit.normal);
             (!material.is_specular() && density > 0.0).then_some(LitPoint {
                 hit,
@@ -104,8 +104,8 @@ fn order_along_curve(points: &mut [LitPoint<'_>]) {
 }
 
 /// Returns the density of points that are drawn by the power of a laser, on a surface of this normal, per square metre.
-pub(super) fn density(laser: &Laser, light: &Illumination, normal: DVec3) -> f64 {
-    light.irradiance * light.direction.dot(normal).abs() / laser.power()
+pub(super) fn density(laser: &Laser, light: &LaserEvent, normal: DVec3) -> f64 {
+    light.e_perp * light.wi.dot(normal).abs() / laser.power()
 }
 
 impl<'a> LitPoint<'a> {
@@ -129,8 +129,8 @@ impl<'a> LitPoint<'a> {
         if (wi.z * lit.cosine).abs() < 1e-12 {
             return None;
         }
-        let from_laser = lit.towards(self.light.direction)?;
-        let sent = self.light.irradiance * lit.reflected(from_laser, wavelength);
+        let from_laser = lit.towards(self.light.wi)?;
+        let sent = self.light.e_perp * lit.reflected(from_laser, wavelength);
         if sent <= 0.0 {
             return None;
         }

@@ -93,8 +93,8 @@ fn lit(scene: &Scene, pixel: DVec2, normal: DVec3) -> f64 {
     let middle = |i: u32| (f64::from(i) + 0.5) / f64::from(SIDE);
     let cells = (0..SIDE * SIDE).map(|k| DVec2::new(middle(k % SIDE), middle(k / SIDE)));
     let irradiance = |cell: DVec2| {
-        let light = scene.lasers[0].illuminate(on_plate(scene, pixel + cell));
-        light.map_or(0.0, |light| light.irradiance * light.direction.dot(normal))
+        let light = scene.lasers[0].next_event(on_plate(scene, pixel + cell));
+        light.map_or(0.0, |light| light.e_perp * light.wi.dot(normal))
     };
     let sum: f64 = cells.map(irradiance).sum();
     REFLECTANCE / PI * sum / f64::from(SIDE * SIDE)

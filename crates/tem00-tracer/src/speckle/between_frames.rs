@@ -1,7 +1,8 @@
 use glam::{DVec2, DVec3};
 use tem00_decorrelation::pupil_overlap_correlation;
+use tem00_shading::LightPath;
 
-use super::{SpecklePoint, change::Change, shifts::Light};
+use super::{SpecklePoint, change::Change};
 use crate::Scene;
 
 /// A point of a surface whose speckle is followed from frame to frame.
@@ -79,7 +80,7 @@ impl SpeckleChange {
             wave: 0.5,
         };
         let geometry = scene.camera.imaging_geometry(wavelength).ok()?;
-        let shift = change.known_shift(laser, &geometry, &seen, Light::Direct)?;
+        let shift = change.known_shift(laser, &geometry, &seen, LightPath::Direct)?;
         let perspective = change.perspective();
         let old = perspective.pixel(perspective.point(pixel) - shift.displacement)?;
         Some(Self {

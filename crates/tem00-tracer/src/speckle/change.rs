@@ -7,8 +7,9 @@ use tem00_decorrelation::{
     CameraFrame, Configuration, ConfigurationData, Illumination, ImageOrientation, ImagingGeometry,
     RigidChange, RigidMotion, RigidMotions, SpeckleMotion,
 };
+use tem00_shading::{LightPath, Perspective, SpeckleLaw, SpeckleShift};
 
-use super::{SpecklePoint, perspective::Perspective, upright};
+use super::{SpecklePoint, upright};
 use crate::{Laser, Scene};
 
 /// Motion of the scene between the reference frame and another.
@@ -216,18 +217,89 @@ impl Change {
         let pixel = camera.project(point.position)?;
         let size = DVec2::new(camera.width() as f64, camera.height() as f64);
         let is_inside = pixel.cmpge(DVec2::ZERO).all() && pixel.cmple(size).all();
-        let is_lit = self.laser(laser).illuminate(point.position).is_some();
+        let is_lit = self.laser(laser).next_event(point.position).is_some();
         (is_inside && is_lit).then_some(SpecklePoint { pixel, ..point })
     }
 
-    /// The way of the pupil over the speckle of a point: across it in pupil diameters, and along the
-    /// line of sight in axial decorrelation lengths.
+    /// The way of the pupil over the speckle of a point, if the theory has a value.
     fn way(&self, laser: usize, geometry: &ImagingGeometry, point: &SpecklePoint) -> Option<DVec3> {
-        let [before, now] = self.states(laser, point)?;
-        let across = before.pupil_point_after(&now, DVec2::ZERO)?;
-        let along = axial_shift(geometry, &before, &now);
-        let way = (across / geometry.pupil_diameter()).extend(along);
-        way.is_finite().then_some(way)
+        let shift = self.known_shift(laser, geometry, point, LightPath::Direct)?;
+        Some(shift.way()).filter(|way| way.is_finite())
+    }
+
+    /// Returns what has become of the speckle of a laser at a point.
+    ///
+    /// Where the theory has no value, every frame has speckle of its own.
+    pub(super) fn speckle_shift(
+        &self,
+        laser: usize,
+        geometry: &ImagingGeometry,
+        point: &SpecklePoint,
+    ) -> SpeckleShift {
+        let shift = self.known_shift(laser, geometry, point, LightPath::Direct);
+        shift.unwrap_or_else(|| self.new_speckle())
+    }
+
+    /// Returns what has become of the speckle of a laser at a point, if the theory has a value.
+    pub(super) fn known_shift(
+        &self,
+        laser: usize,
+        geometry: &ImagingGeometry,
+        point: &SpecklePoint,
+        path: LightPath,
+    ) -> Option<SpeckleShift> {
+        let mut shift = [None];
+        let point = core::slice::from_ref(point);
+        self.known_shifts((laser, path), geometry, point, &mut shift);
+        shift[0]
+    }
+
+    /// Speckle that has nothing of that in the reference frame.
+    pub(super) fn new_speckle(&self) -> SpeckleShift {
+        SpeckleShift {
+            pupil: self.frames().abs(),
+            ..SpeckleShift::default()
+        }
+    }
+
+    /// Writes what has become of the speckle of light of a laser at points of one surface, `None` where the theory has
+    /// no value.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless the slices have the same length.
+    pub(super) fn known_shifts(
+        &self,
+        (laser, path): (usize, LightPath),
+        geometry: &ImagingGeometry,
+        points: &[SpecklePoint],
+        shifts: &mut [Option<SpeckleShift>],
+    ) {
+        assert_eq!(points.len(), shifts.len(), "a shift for each point");
+        let Some(surface) = points.first().map(|point| point.surface) else {
+            return;
+        };
+        if path == LightPath::Direct && self.is_still(laser, surface) {
+            shifts.fill(Some(SpeckleShift::default()));
+            return;
+        }
+        shifts.fill(None);
+        let Some(change) = self.laws.get(surface) else {
+            return;
+        };
+        let law = SpeckleLaw {
+            change,
+            lasers: [&self.lasers[laser].before, self.laser(laser)],
+            perspective: &self.perspective,
+            geometry,
+        };
+        law.shifts(path, points.iter().map(SpecklePoint::seen), shifts);
+        let new = self.new_speckle().pupil;
+        for shift in shifts.iter_mut().flatten() {
+            if shift.pupil.is_infinite() {
+                shift.pupil = new;
+            }
+        }
     }
 
     /// Returns whether nothing has moved that matters to the speckle of a laser on a surface.
@@ -236,19 +308,9 @@ impl Change {
         !moved && self.surfaces.get(surface).is_none_or(|body| !body.moved)
     }
 
-    /// Returns the law for the points of a surface.
-    pub(super) fn law(&self, surface: usize) -> Option<&RigidChange> {
-        self.laws.get(surface)
-    }
-
     /// Returns the number of frames since the reference frame, negative before it.
     pub(super) const fn frames(&self) -> f64 {
         self.frames
-    }
-
-    /// Returns laser `index` in the reference frame.
-    pub(super) fn laser_before(&self, index: usize) -> &Laser {
-        &self.lasers[index].before
     }
 
     /// Returns where a point of a surface stood in the reference frame, in metres.
@@ -326,29 +388,6 @@ impl Change {
         .ok()
     }
 
-    /// The point with its light and its camera, in the reference frame and now.
-    fn states(&self, laser: usize, point: &SpecklePoint) -> Option<[Configuration; 2]> {
-        let body = self.surfaces.get(point.surface)?;
-        let laser = &self.lasers[laser];
-        let then = body.back.point(point.position);
-        let before = Configuration::new(ConfigurationData {
-            wavelength: laser.now.wavelength(),
-            point: then,
-            normal: body.back.direction(point.normal),
-            illumination: light_at(&laser.before, then)?,
-            camera: self.axes?,
-            pupil: self.cameras[0].position(),
-        })
-        .ok()?;
-        let motions = RigidMotions {
-            surface: body.forth,
-            camera: self.camera.forth,
-            source: RigidMotion::IDENTITY,
-        };
-        let now = before.moved_into(&motions, light_at(&laser.now, point.position)?);
-        Some([before, now.ok()?])
-    }
-
     /// Returns how far the surface has moved at a point, and the camera.
     pub(super) fn translations(&self, point: &SpecklePoint) -> Translations {
         let then = self
@@ -381,9 +420,5 @@ fn light_at(laser: &Laser, point: DVec3) -> Option<Illumination> {
     Illumination::collimated(laser.wave_direction_at(point)).ok()
 }
 
-/// Change of the surface's defocus, in axial decorrelation lengths.
-fn axial_shift(geometry: &ImagingGeometry, before: &Configuration, now: &Configuration) -> f64 {
-    let defocus = |state: &Configuration| geometry.defocus_at(state.sight().depth());
-    let diameter = geometry.pupil_diameter();
-    (defocus(now) - defocus(before)) * diameter * diameter / (8.0 * now.wavelength())
-}
+#[cfg(test)]
+mod tests;

@@ -5,12 +5,12 @@ use std::collections::BTreeSet;
 
 use glam::DVec2;
 use tem00_decorrelation::{ImagingGeometry, pupil_overlap_correlation};
+use tem00_shading::LightPath;
 
 use super::{
     bandwidth::Bandwidth,
     change::{Change, ReferencePoint},
     prescan::{FrameNeeds, MotionPrescan},
-    shifts::Light,
 };
 use crate::{Scene, SpectralLine};
 
@@ -172,12 +172,12 @@ impl Tracks {
             let seen = change.seen(laser, point)?;
             let shift = change.speckle_shift(laser, geometry, &seen);
             let side = change.side(laser, geometry, prescan.reference_point.as_ref());
-            let step = since.known_shift(laser, geometry, &seen, Light::Direct);
+            let step = since.known_shift(laser, geometry, &seen, LightPath::Direct);
             Some(Way {
                 frame,
-                vector: shift.way(),
+                vector: shift.pupil_vector(),
                 length: side * shift.pupil,
-                step: step.map(|shift| shift.way()),
+                step: step.map(|shift| shift.pupil_vector()),
             })
         };
         let ways = |point| (0..changes.len()).filter_map(|f| way(point, f)).collect();

@@ -3,8 +3,9 @@ mod mixes;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec2;
-use tem00_decorrelation::{ImagingGeometry, pupil_overlap_correlation};
+use tem00_decorrelation::ImagingGeometry;
 use tem00_paper::BilinearStack;
+use tem00_shading::{BLOCK, LightPath, SpeckleShift};
 use tem00_speckle::{PupilField, SlicePath, SpeckleStack};
 
 use super::{
@@ -15,7 +16,6 @@ use super::{
     multiple::{MultipleLight, MultipleMap},
     plan::SurfacePatterns,
     printed::displacement_and_slice,
-    shifts::{BLOCK, Light, SpeckleShift},
     upright,
 };
 use crate::{Scene, TracerError};
@@ -241,14 +241,10 @@ impl Pattern {
         // Beyond the reach the speckle is new to the reference frame, wherever the pupil stands.
         let reach = self.reaches[usize::from(sign > 0.0)];
         for (u, shift) in coordinates.iter_mut().zip(shifts) {
-            *u = pupil_overlap_correlation(shift.pupil.min(reach));
+            *u = shift.pupil;
         }
-        // Where the blend of two slices has kept as much of the reference frame as that shift, and
-        // on along the path once nothing is left.
-        stack.coordinates_of(coordinates);
-        for (u, shift) in coordinates.iter_mut().zip(shifts) {
-            *u = sign * u.max(shift.pupil.min(reach) * self.slices_per_diameter);
-        }
+        stack.coordinates_within(reach, coordinates);
+        coordinates.iter_mut().for_each(|u| *u *= sign);
     }
 }
 
@@ -380,14 +376,14 @@ impl SpeckleFrame<'_> {
         let new = change.new_speckle();
         let mut known = [None; BLOCK];
         let known = &mut known[..points.len()];
-        change.known_shifts((laser, Light::Direct), geometry, points, known);
+        change.known_shifts((laser, LightPath::Direct), geometry, points, known);
         for (shift, known) in shifts.iter_mut().zip(&*known) {
             *shift = known.unwrap_or(new);
         }
         if change.is_reference() || mixes.iter().all(Option::is_none) {
             return;
         }
-        change.known_shifts((laser, Light::Carried), geometry, points, known);
+        change.known_shifts((laser, LightPath::Carried), geometry, points, known);
         for ((shift, known), mix) in shifts.iter_mut().zip(&*known).zip(mixes) {
             if let (Some(mix), Some(carried)) = (mix, known) {
                 *shift = mix.multiple.shift([*shift, *carried], mix.fraction);

@@ -5,14 +5,13 @@ use rayon::prelude::*;
 use tem00_camera::Camera;
 use tem00_decorrelation::ImagingGeometry;
 use tem00_numerics::cast::to_i64;
+use tem00_shading::{LightPath, Perspective, SpeckleShift};
 
 use super::{
     SpecklePoint,
     allocation::offset,
     change::{Change, ReferencePoint},
     multiple::MultipleMap,
-    perspective::Perspective,
-    shifts::{Light, SpeckleShift},
 };
 use crate::{Intersector, Scene, TracerError};
 
@@ -365,7 +364,7 @@ fn frame_samples(
             wave: 0.5,
         };
         for (laser, geometry) in laser_groups.geometries.iter().enumerate() {
-            if change.laser(laser).illuminate(hit.position).is_some() {
+            if change.laser(laser).next_event(hit.position).is_some() {
                 let sample = &mut samples[laser][group];
                 sample.add_point(change, (laser, geometry), &point);
                 let kept = is_kept.then(|| change.reference_point_along(&point, DVec3::ZERO));
@@ -388,7 +387,7 @@ fn add_multiple_light(
             let point = &light.point;
             let fraction = light.fraction_beside(light.single);
             let single = change.speckle_shift(laser, geometry, point);
-            let carried = change.known_shift(laser, geometry, point, Light::Carried);
+            let carried = change.known_shift(laser, geometry, point, LightPath::Carried);
             let shift = match carried {
                 Some(carried) if !change.is_reference() => light.shift([single, carried], fraction),
                 _ => single,
@@ -414,7 +413,7 @@ impl FrameSample {
     fn add(&mut self, change: &Change, point: &SpecklePoint, shift: &SpeckleShift) {
         let origin = change.perspective().point(point.pixel) - shift.displacement;
         self.region = self.region.joined(Region::of(origin));
-        self.ways = self.ways.joined(Region::of(shift.way()));
+        self.ways = self.ways.joined(Region::of(shift.pupil_vector()));
         let [smallest, largest] = &mut self.shifts;
         *smallest = smallest.min(shift.pupil);
         if self.farthest.is_none() || shift.pupil > *largest {

@@ -90,11 +90,11 @@ fn wall_light(scene: &Scene, floor: DVec3) -> Vec<(DVec3, f64, f64)> {
         (0..STEPS).flat_map(|j| (0..STEPS).map(move |i| (centre(i) - 0.5 * SIDE, centre(j))));
     let light = points.filter_map(|(y, z)| {
         let point = DVec3::new(0.0, y, z);
-        let lit = laser.illuminate(point)?;
+        let lit = laser.next_event(point)?;
         let way = floor - point;
         let distance = way.length();
         let cosines = way.x * -way.z / distance.powi(2);
-        let irradiance = lit.irradiance * lit.direction.x;
+        let irradiance = lit.e_perp * lit.wi.x;
         let area = (SIDE / f64::from(STEPS)).powi(2);
         // Two reflectances of 0.8.
         let radiance = irradiance * (0.8 / PI).powi(2) * cosines / distance.powi(2) * area;
@@ -109,8 +109,8 @@ fn law(scene: &Scene, floor: DVec3) -> MixedLight {
     let light = wall_light(scene, floor);
     let direct = laser.path_to(floor).unwrap();
     let single = laser
-        .illuminate(floor)
-        .map_or(0.0, |lit| lit.irradiance * lit.direction.z * 0.8 / PI);
+        .next_event(floor)
+        .map_or(0.0, |lit| lit.e_perp * lit.wi.z * 0.8 / PI);
     let paths: Vec<_> = light
         .iter()
         .map(|&(_, weight, length)| DelayedLight {
@@ -190,10 +190,10 @@ fn a_small_spot_on_the_wall_makes_speckle_of_speckle() {
         let spot: Vec<_> = axis()
             .flat_map(|y| axis().map(move |z| DVec3::new(0.0, y, 15e-3 + z)))
             .filter_map(|wall| {
-                let lit = scene.lasers[0].illuminate(wall)?;
+                let lit = scene.lasers[0].next_event(wall)?;
                 let direction = (wall - floor).normalize();
                 let across = direction - direction.dot(l) / l.z * DVec3::Z;
-                Some((across / (2.0 * sin_aperture), lit.irradiance))
+                Some((across / (2.0 * sin_aperture), lit.e_perp))
             })
             .collect();
         let (mut sum, mut whole) = (0.0, 0.0);

@@ -4,15 +4,11 @@ use core::f64::consts::TAU;
 
 use glam::DVec2;
 use tem00_coherence::Recombination;
+use tem00_shading::{BLOCK, SpeckleShift};
 use tem00_speckle::{Complex, SpeckleStack};
 
 use super::{
-    super::{
-        SpecklePoint, allocation,
-        crossing::Following,
-        plan::SurfacePatterns,
-        shifts::{BLOCK, SpeckleShift},
-    },
+    super::{SpecklePoint, allocation, crossing::Following, plan::SurfacePatterns},
     Block, Mix, SpeckleFrame, Stack, Window, in_samples,
 };
 
@@ -88,7 +84,7 @@ impl SpeckleFrame<'_> {
         let mut pixel = self.change.perspective().point(point.pixel) - motion.displacement;
         let along = match surface.following {
             Following::Length => sign * motion.pupil,
-            Following::Axis(axis) => motion.way().dot(axis),
+            Following::Axis(axis) => motion.pupil_vector().dot(axis),
         };
         let Some(bandwidth) = &surface.bandwidth else {
             let mut u = [pattern.slices_per_diameter * along];

@@ -1,7 +1,9 @@
 use tem00_decorrelation::pupil_overlap_correlation;
 use tem00_numerics::disc_overlap_inverse;
 
-use super::super::{SpecklePoint, shifts::SpeckleShift};
+use tem00_shading::SpeckleShift;
+
+use super::super::SpecklePoint;
 
 /// Light at a place of the image that has met several rough surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,6 +50,7 @@ impl MultipleLight {
         SpeckleShift {
             displacement: f1 * single.displacement + f2 * multiple.displacement,
             across: f1 * single.across + f2 * multiple.across,
+            axial: f1 * single.axial + f2 * multiple.axial,
             pupil: if pupil < 1.0 {
                 pupil
             } else {

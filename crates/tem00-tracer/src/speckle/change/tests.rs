@@ -1,7 +1,4 @@
-use tem00_decorrelation::{
-    CameraFrame, Configuration, ConfigurationData, Illumination, ImageOrientation, RigidMotions,
-    SpeckleMotion, equivalent_pupil_shift,
-};
+use tem00_decorrelation::equivalent_pupil_shift;
 
 use super::*;
 use crate::{BeamShape, Keyframe, Rotation, Scene, Trajectory, testing};
@@ -100,8 +97,8 @@ fn speckle_shifts_are_those_of_the_theory_between_two_states() {
         let pose = |at: u32| scene.surfaces[0].trajectory.pose_at(at);
         let carried = pose(reference).inverse().then(&pose(frame));
         let light = |at: u32, point: &SpecklePoint| {
-            let wave = scene.laser_at(0, at).illuminate(point.position).unwrap();
-            Illumination::collimated(wave.direction).unwrap()
+            let wave = scene.laser_at(0, at).next_event(point.position).unwrap();
+            Illumination::collimated(wave.wi).unwrap()
         };
         let axes = |at: u32| CameraFrame::from_axes(scene.camera_at(at).axes()).unwrap();
         let state = |at: u32, point: &SpecklePoint| ConfigurationData {
@@ -124,9 +121,9 @@ fn speckle_shifts_are_those_of_the_theory_between_two_states() {
             home.direction(
                 scene
                     .laser_at(0, frame)
-                    .illuminate(now.position)
+                    .next_event(now.position)
                     .unwrap()
-                    .direction,
+                    .wi,
             ),
         );
         let new = old.moved(&relative).unwrap();
@@ -193,34 +190,6 @@ fn points_that_the_theory_does_not_know_have_speckle_of_their_own() {
     assert_eq!(speckle_shift(&scene, 3, [0.0, 0.0]), expected);
 }
 
-#[test]
-fn shifts_along_the_axis_add_what_they_take_of_the_correlation() {
-    use tem00_decorrelation::CorrelationLaw::AtPeak;
-    let shift = |lateral, axial| {
-        let mut changes = Changes {
-            displacement: [[0.0; BLOCK]; 2],
-            across: [[0.0; BLOCK]; 2],
-            pupil: [lateral; BLOCK],
-            axial: [axial; BLOCK],
-        };
-        changes.add_axial(1);
-        changes.pupil[0]
-    };
-    for lateral in [0.0, 1e-3, 0.25, 0.7, 0.98, 1.0, 3.0] {
-        for axial in [0.0, 0.99e-7, 1.01e-7, 1e-5, 1e-3, 0.3, 0.9] {
-            let shift = shift(lateral, axial);
-            let correlation = AtPeak.correlation(lateral, axial);
-            let error = pupil_overlap_correlation(shift) - correlation;
-            assert!(
-                error.abs() < 1e-5 && shift >= lateral,
-                "{lateral} across, {axial:e} along: {error:e}"
-            );
-        }
-        let beyond = shift(lateral, 1.5) - lateral.max(1.5);
-        assert!(beyond.abs() < 1e-15, "{lateral} across: {beyond:e}");
-    }
-}
-
 /// A block of many points has what each of them has alone.
 #[test]
 fn a_point_does_not_depend_on_the_points_beside_it() {
@@ -229,11 +198,11 @@ fn a_point_does_not_depend_on_the_points_beside_it() {
     let change = Change::new(&scene, 5);
     let places = (0..13).map(|i| [0.01 * f64::from(i), 0.02 - 0.015 * f64::from(i)]);
     let points: Vec<_> = places.map(|place| point(&scene, 5, place)).collect();
-    for light in [Light::Direct, Light::Carried] {
+    for path in [LightPath::Direct, LightPath::Carried] {
         let mut together = vec![None; points.len()];
-        change.known_shifts((0, light), &geometry, &points, &mut together);
+        change.known_shifts((0, path), &geometry, &points, &mut together);
         for (point, shift) in points.iter().zip(together) {
-            let alone = change.known_shift(0, &geometry, point, light);
+            let alone = change.known_shift(0, &geometry, point, path);
             assert!(
                 alone.is_some() && shift == alone,
                 "{shift:?}, not {alone:?}"

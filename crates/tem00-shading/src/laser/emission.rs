@@ -18,11 +18,11 @@ pub struct EmittedRay {
 
 /// Illumination of a point by a laser, along a direction drawn at random.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SampledIllumination {
+pub struct SampledEvent {
     /// The point of the plane of the aperture from which the light comes, in metres.
-    pub source: DVec3,
+    pub point: DVec3,
     /// The unit direction towards the light.
-    pub direction: DVec3,
+    pub wi: DVec3,
     /// The radiance along the direction divided by `pdf`, in W/m².
     pub value: f64,
     /// The density with which the direction was drawn, per steradian.
@@ -39,21 +39,10 @@ impl Laser {
     /// # Examples
     ///
     /// ```
-    /// use glam::DVec3;
-    /// use tem00_tracer::{BeamShape, Laser, LaserDescription, SpectralLine};
+    /// use tem00_shading::{DVec3, Laser};
     ///
-    /// let laser = Laser::new(LaserDescription {
-    ///     line: SpectralLine::monochromatic(650e-9)?,
-    ///     power: 5e-3,
-    ///     position: DVec3::new(0.0, 0.0, 0.3),
-    ///     look_at: DVec3::ZERO,
-    ///     line_direction: DVec3::X,
-    ///     shape: BeamShape::Spot {
-    ///         waist_radius: [0.1e-3; 2],
-    ///         waist_distance: [0.3; 2],
-    ///         m_squared: [1.0; 2],
-    ///     },
-    /// })?;
+    /// let laser = Laser::spot(650e-9, 0.1e-3).power(5e-3);
+    /// let laser = laser.placed(DVec3::new(0.0, 0.0, 0.3), DVec3::ZERO, DVec3::X)?;
     /// let emitted = laser.sample_ray([0.5; 4]);
     /// assert_eq!(emitted.ray.direction, -DVec3::Z);
     /// assert_eq!(emitted.flux, 5e-3);
@@ -61,7 +50,7 @@ impl Laser {
     /// // On the axis of the waist the radiance is 4P / λ².
     /// let radiance = laser.radiance(DVec3::ZERO, DVec3::Z);
     /// assert!((radiance / (4.0 * 5e-3 / 650e-9_f64.powi(2)) - 1.0).abs() < 1e-12);
-    /// # Ok::<(), tem00_tracer::TracerError>(())
+    /// # Ok::<(), tem00_shading::ShadingError>(())
     /// ```
     pub fn sample_ray(&self, u: [f64; 4]) -> EmittedRay {
         let sample = self.with_emitter(|light| light.sample_ray(u));
@@ -80,11 +69,11 @@ impl Laser {
     /// The estimate of the reflected radiance is `f · |n·direction| · value`, where the source is
     /// visible. No light is counted beyond four radii of the beam; [`event_pdf`](Self::event_pdf) is
     /// 0 there.
-    pub fn sampled_event(&self, point: DVec3, u: [f64; 2]) -> Option<SampledIllumination> {
+    pub fn next_event_sampled(&self, point: DVec3, u: [f64; 2]) -> Option<SampledEvent> {
         let event = self.with_emitter(|light| light.next_event_sampled(point.to_array(), u))?;
-        Some(SampledIllumination {
-            source: DVec3::from_array(event.point),
-            direction: DVec3::from_array(event.wi),
+        Some(SampledEvent {
+            point: DVec3::from_array(event.point),
+            wi: DVec3::from_array(event.wi),
             value: event.value,
             pdf: event.pdf,
         })
@@ -92,7 +81,7 @@ impl Laser {
 
     /// Returns the density, per steradian, with which [`sampled_event`](Self::sampled_event) draws
     /// the unit `direction` at `point`.
-    pub fn event_pdf(&self, point: DVec3, direction: DVec3) -> f64 {
+    pub fn next_event_pdf(&self, point: DVec3, direction: DVec3) -> f64 {
         self.with_emitter(|light| light.next_event_pdf(point.to_array(), direction.to_array()))
     }
 
@@ -124,7 +113,7 @@ impl Laser {
     }
 
     /// Calls `query` with the light, whatever its kind.
-    fn with_emitter<R>(&self, query: impl FnOnce(&dyn Emitter<f64>) -> R) -> R {
+    pub fn with_emitter<R>(&self, query: impl FnOnce(&dyn Emitter<f64>) -> R) -> R {
         match &self.source {
             Source::Spot { light, .. } => query(light),
             Source::Line { line, light } => match line.profile() {

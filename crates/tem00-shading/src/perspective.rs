@@ -8,7 +8,7 @@ use tem00_decorrelation::ImagingGeometry;
 /// Speckle has one size there, that of the imaging geometry on the axis, since it is as wide as
 /// directions that the pupil tells apart. On a tilted sensor it is stretched as the perspective is.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Perspective {
+pub struct Perspective {
     camera: Camera,
     tilted: bool,
     /// True if image points are those of the sensor itself.
@@ -19,7 +19,8 @@ pub(super) struct Perspective {
 const EDGE_POINTS: u32 = 32;
 
 impl Perspective {
-    pub(super) fn new(camera: Camera) -> Self {
+    /// Takes the image of a camera.
+    pub fn new(camera: Camera) -> Self {
         let description = camera.description();
         let tilted = description.tilt != SensorTilt::default();
         Self {
@@ -30,7 +31,7 @@ impl Perspective {
     }
 
     /// Returns where an image point lies in perspective, in pixels.
-    pub(super) fn point(&self, pixel: DVec2) -> DVec2 {
+    pub fn point(&self, pixel: DVec2) -> DVec2 {
         if self.plain {
             return pixel;
         }
@@ -43,7 +44,7 @@ impl Perspective {
 
     /// Returns the image point of a point in perspective, both in pixels, or `None` where the sensor is
     /// not met.
-    pub(super) fn pixel(&self, point: DVec2) -> Option<DVec2> {
+    pub fn pixel(&self, point: DVec2) -> Option<DVec2> {
         if self.plain {
             return Some(point);
         }
@@ -55,7 +56,7 @@ impl Perspective {
     }
 
     /// Returns the lowest and the highest corner of the image in perspective, in pixels.
-    pub(super) fn image(&self) -> [DVec2; 2] {
+    pub fn image(&self) -> [DVec2; 2] {
         let size = self.size();
         if self.plain {
             return [DVec2::ZERO, size];
@@ -74,7 +75,7 @@ impl Perspective {
 
     /// Returns the imaging geometry for an image point, from that on the axis: in focus may be
     /// another distance.
-    pub(super) fn geometry(&self, on_axis: &ImagingGeometry, pixel: DVec2) -> ImagingGeometry {
+    pub fn geometry(&self, on_axis: &ImagingGeometry, pixel: DVec2) -> ImagingGeometry {
         let tilted = self.tilted.then(|| {
             self.camera
                 .imaging_geometry_at(pixel, on_axis.wavelength())
@@ -84,7 +85,7 @@ impl Perspective {
     }
 
     /// Returns the vergence 1/L of what is in focus at an image point, in 1/m.
-    pub(super) fn focus_vergence(&self, on_axis: &ImagingGeometry, pixel: DVec2) -> f64 {
+    pub fn focus_vergence(&self, on_axis: &ImagingGeometry, pixel: DVec2) -> f64 {
         if self.tilted {
             self.camera.focus_vergence_at(pixel)
         } else {
@@ -106,16 +107,7 @@ mod tests {
         CameraDescription {
             position: DVec3::new(0.02, -0.01, 0.3),
             look_at: DVec3::new(0.0, 0.01, 0.0),
-            up: DVec3::Y,
-            focal_length: 25e-3,
-            f_number: 8.0,
-            focus_distance: 0.3,
-            pixel_pitch: 3.45e-6,
-            resolution: [640, 480],
-            principal_point: None,
-            tilt: SensorTilt::default(),
-            distortion: RadialDistortion::default(),
-            depth_of_field: true,
+            ..CameraDescription::default()
         }
     }
 

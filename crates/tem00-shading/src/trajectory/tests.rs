@@ -208,10 +208,10 @@ proptest! {
 
 #[test]
 fn impossible_motions_are_refused() {
-    type Result = core::result::Result<Trajectory, TracerError>;
+    type Result = core::result::Result<Trajectory, ShadingError>;
     let parameter = |result: &Result| match result {
         Err(
-            TracerError::Direction { parameter, .. } | TracerError::OutOfRange { parameter, .. },
+            ShadingError::Direction { parameter, .. } | ShadingError::OutOfRange { parameter, .. },
         ) => *parameter,
         _ => "",
     };
@@ -253,5 +253,5 @@ fn impossible_motions_are_refused() {
         assert_eq!(parameter(&result), expected, "{result:?}");
     }
     let none = Trajectory::keyframed(DVec3::ZERO, []);
-    assert!(matches!(none, Err(TracerError::Missing(_))), "{none:?}");
+    assert!(matches!(none, Err(ShadingError::Missing(_))), "{none:?}");
 }

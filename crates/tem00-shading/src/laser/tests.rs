@@ -59,8 +59,8 @@ fn a_tabulated_line_lights_what_its_table_says() {
     let laser = line(LineProfile::Tabulated(table), FocusCurve::EqualPlane);
     let at = |theta: f64| {
         let point = DVec3::new(0.302 * theta.tan(), 0.0, 0.3);
-        let light = laser.illuminate(point);
-        light.map_or(0.0, |light| light.irradiance)
+        let light = laser.next_event(point);
+        light.map_or(0.0, |light| light.e_perp)
     };
     // E = P f(θ) / r · √(2/π) / w₀ on the plane of focus, and ∫ f = 0.3 + 0.4.
     for (theta, f) in [(0.0, 2.0), (-0.1, 1.5), (0.2, 1.0)] {
@@ -104,11 +104,11 @@ fn elliptic_spot() -> (Laser, AstigmaticBeam, [DVec3; 3]) {
 fn the_first_values_of_a_spot_hold_along_the_line_direction() {
     let (laser, beam, [along, across, axis]) = elliptic_spot();
     let centre = laser.description().position + 0.2 * axis;
-    let peak = laser.illuminate(centre).unwrap().irradiance;
+    let peak = laser.next_event(centre).unwrap().e_perp;
     for (direction, radius) in [along, across].into_iter().zip(beam.radii_at(0.2)) {
-        let light = laser.illuminate(centre + radius * direction).unwrap();
+        let light = laser.next_event(centre + radius * direction).unwrap();
         // On a plane across the axis, the irradiance is down to e⁻² of the peak at the beam radius.
-        let across_axis = light.irradiance * -light.direction.dot(axis);
+        let across_axis = light.e_perp * -light.wi.dot(axis);
         let error = across_axis / peak * 2_f64.exp() - 1.0;
         // The radius is a difference of points 0.2 m from the origin: 4 ε 0.2 m / 0.2 mm = 1e-12.
         assert!(error.abs() < 1e-12, "{direction}: {error:e}");
@@ -129,8 +129,8 @@ fn a_tilted_plane_receives_the_power_of_an_elliptic_spot() {
         let place = |i: i32| f64::from(i) * step;
         let power: f64 = (-125..=125)
             .flat_map(|i| (-125..=125).map(move |j| (i, j)))
-            .filter_map(|(i, j)| laser.illuminate(centre + place(i) * u + place(j) * v))
-            .map(|light| light.irradiance * light.direction.dot(normal) * step * step)
+            .filter_map(|(i, j)| laser.next_event(centre + place(i) * u + place(j) * v))
+            .map(|light| light.e_perp * light.wi.dot(normal) * step * step)
             .sum();
         let error = power / 5e-3 - 1.0;
         assert!(error.abs() < 1e-12, "{normal}: {error:e}");
@@ -184,19 +184,19 @@ fn drawn_events_have_the_density_and_the_radiance_that_the_laser_states() {
         let point = lit_point(&laser);
         for i in 0..100_u32 {
             let u = [0.5, 0.3].map(|step| (step + f64::from(i) * 0.618 * step).fract());
-            let event = laser.sampled_event(point, u).unwrap();
-            let pdf = laser.event_pdf(point, event.direction);
+            let event = laser.next_event_sampled(point, u).unwrap();
+            let pdf = laser.next_event_pdf(point, event.wi);
             // Rounding of world coordinates, 1e−17 m, beside a source of some 1e−7 m.
             assert!(
                 (pdf / event.pdf - 1.0).abs() < 1e-8,
                 "{event:?} | pdf {pdf}"
             );
-            let radiance = laser.radiance(point, event.direction);
+            let radiance = laser.radiance(point, event.wi);
             let error = event.value * event.pdf / radiance - 1.0;
             assert!(error.abs() < 1e-8, "{event:?} | radiance {radiance}");
-            let distance = laser.aperture_distance(point, event.direction).unwrap();
-            let crossing = point + distance * event.direction;
-            assert!(crossing.distance(event.source) < 1e-15, "{event:?}");
+            let distance = laser.aperture_distance(point, event.wi).unwrap();
+            let crossing = point + distance * event.wi;
+            assert!(crossing.distance(event.point) < 1e-15, "{event:?}");
         }
     }
 }
@@ -224,20 +224,20 @@ fn a_moved_laser_lights_moved_points_as_before() {
         let moved = laser.moved(&motion);
         let point = lit_point(&laser);
         let (before, after) = (
-            laser.illuminate(point).unwrap(),
-            moved.illuminate(motion.point(point)).unwrap(),
+            laser.next_event(point).unwrap(),
+            moved.next_event(motion.point(point)).unwrap(),
         );
         // Points round by 1e−16 m, beside beam radii of at least 0.1 mm and slopes below 1.
-        let ratio = after.irradiance / before.irradiance;
+        let ratio = after.e_perp / before.e_perp;
         assert!((ratio - 1.0).abs() < 1e-10, "{laser:?}: {ratio}");
-        let turned = after.direction.distance(motion.direction(before.direction));
+        let turned = after.wi.distance(motion.direction(before.wi));
         assert!(turned < 1e-12, "{laser:?}: {turned:e}");
-        let carried = after.source.distance(motion.point(before.source));
+        let carried = after.point.distance(motion.point(before.point));
         assert!(carried < 1e-12, "{laser:?}: {carried:e}");
         // The description says the same: a laser created from it is the moved one.
         let created = Laser::new(moved.description().clone()).unwrap();
-        let created = created.illuminate(motion.point(point)).unwrap();
-        let ratio = created.irradiance / after.irradiance;
+        let created = created.next_event(motion.point(point)).unwrap();
+        let ratio = created.e_perp / after.e_perp;
         assert!((ratio - 1.0).abs() < 1e-10, "{laser:?}: {ratio}");
     }
 }
@@ -291,23 +291,23 @@ fn points_together_are_lit_as_each_alone() {
             let (along, aside) = (f64::from(index % 10) - 1.0, f64::from(index / 10) - 5.0);
             description.position + 0.2 * along * axis + 0.2e-4 * aside * across
         };
-        let mut lit = Illuminations::default();
+        let mut lit = LaserEventBatch::default();
         lit.place((0..100).map(point));
-        laser.illuminate_all(&mut lit);
+        laser.next_events(&mut lit);
         let mut bright = 0;
         for index in 0..100 {
-            let alone = laser.illuminate(point(index));
+            let alone = laser.next_event(point(index));
             let together = lit.at(index as usize);
             assert_eq!(alone.is_some(), together.is_some(), "{index}");
             let Some((alone, together)) = alone.zip(together) else {
                 continue;
             };
             bright += 1;
-            assert_eq!(alone.direction, together.direction, "{index}");
-            let [one, other] = [alone, together].map(|light| light.irradiance.to_bits());
+            assert_eq!(alone.wi, together.wi, "{index}");
+            let [one, other] = [alone, together].map(|light| light.e_perp.to_bits());
             assert_eq!(one, other, "{index}");
             // Roundings of coordinates up to 2.
-            assert!(alone.source.distance(together.source) < 2e-15, "{index}");
+            assert!(alone.point.distance(together.point) < 2e-15, "{index}");
         }
         assert!(bright > 20 && bright < 100, "{bright} are lit");
     }

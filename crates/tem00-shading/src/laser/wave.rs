@@ -126,7 +126,7 @@ impl Laser {
     /// Where the laser lights the point it is the direction of the light. Beyond its cut-off, where
     /// no light is followed any more, the wave goes on; at the apex of a line and behind it, there is none, and the
     /// direction is that to the middle of the aperture.
-    pub(crate) fn wave_direction_at(&self, point: DVec3) -> DVec3 {
+    pub fn wave_direction_at(&self, point: DVec3) -> DVec3 {
         let frame = self.wave_frame();
         match self.wave_shape() {
             WaveShape::Spot(wave) => frame.direction_to_source(point, |local| wave.slopes(local)),
@@ -142,7 +142,7 @@ impl Laser {
     /// ```
     ///
     /// The Gouy phase, half a wavelength over a focus, is left out. Returns `None` at the apex of a line and behind it.
-    pub(crate) fn path_to(&self, point: DVec3) -> Option<f64> {
+    pub fn path_to(&self, point: DVec3) -> Option<f64> {
         let [x, y, z] = self.local(point);
         match &self.source {
             Source::Spot { beam, .. } => {
@@ -241,9 +241,9 @@ mod tests {
                 let point = DVec3::new(3e-3 * x, 0.2e-3 * y, 1e-3 * x);
                 let wave = laser.wave_direction_at(point);
                 assert!((wave.length() - 1.0).abs() < 1e-15, "{wave}");
-                if let Some(light) = laser.illuminate(point) {
+                if let Some(light) = laser.next_event(point) {
                     lit += 1;
-                    let error = (wave - light.direction).length();
+                    let error = (wave - light.wi).length();
                     // Both are made of the same few products, in another order.
                     assert!(error < 1e-14, "{point}: {error:e}");
                 }

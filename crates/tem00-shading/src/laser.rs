@@ -1,3 +1,4 @@
+mod builder;
 mod emission;
 mod wave;
 
@@ -9,9 +10,10 @@ use tem00_beam::{
 use tem00_coherence::{SourceExtent, SpectralLine};
 use tem00_decorrelation::RigidMotion;
 
-pub use self::emission::{EmittedRay, SampledIllumination};
+pub use self::builder::LaserBuilder;
+pub use self::emission::{EmittedRay, SampledEvent};
 pub(crate) use self::wave::{WaveFrame, WaveShape};
-use crate::{TracerError, Trajectory};
+use crate::{ShadingError, Trajectory};
 
 /// Parameters of a [`Laser`].
 #[derive(Clone, Debug, PartialEq)]
@@ -80,13 +82,40 @@ enum Source {
 }
 
 impl Laser {
+    /// Begins the description of a round spot: a Gaussian beam of a vacuum wavelength and a waist radius, both in metres.
+    ///
+    /// # Examples
+    ///
+    /// A spot that is 0.4 mm wide half a metre in front of the laser:
+    ///
+    /// ```
+    /// use tem00_shading::{DVec3, Laser};
+    ///
+    /// let laser = Laser::spot(650e-9, 0.2e-3)
+    ///     .focused_at(0.5)
+    ///     .power(5e-3)
+    ///     .placed(DVec3::new(0.0, 0.0, 0.5), DVec3::ZERO, DVec3::X)?;
+    /// let event = laser.next_event(DVec3::ZERO).expect("the spot is lit");
+    /// assert!((event.wi - DVec3::Z).length() < 1e-12);
+    /// # Ok::<(), tem00_shading::ShadingError>(())
+    /// ```
+    pub fn spot(wavelength: f64, waist_radius: f64) -> LaserBuilder {
+        LaserBuilder::spot(wavelength, waist_radius)
+    }
+
+    /// Begins the description of a laser line of a vacuum wavelength and a thickness in focus (1/e², full width), in
+    /// metres, that opens by an angle, in radians.
+    pub fn line(wavelength: f64, thickness: f64, fan_angle: f64) -> LaserBuilder {
+        LaserBuilder::line(wavelength, thickness, fan_angle)
+    }
+
     /// Creates a laser.
     ///
     /// # Errors
     ///
     /// Returns an error if the beam is not possible (see [`BeamError`](tem00_beam::BeamError)), if
     /// `look_at` is the position, or if the line direction is parallel to the axis.
-    pub fn new(description: LaserDescription) -> Result<Self, TracerError> {
+    pub fn new(description: LaserDescription) -> Result<Self, ShadingError> {
         let placement = Placement {
             origin: description.position,
             direction: description.look_at - description.position,
@@ -197,52 +226,52 @@ impl Laser {
         self.description.power
     }
 
-    /// Returns how the laser lights `point`, or `None` where it sends no light.
-    pub(crate) fn illuminate(&self, point: DVec3) -> Option<Illumination> {
+    /// Returns how the laser lights `point` as a delta light, or `None` where it sends no light: the light of one
+    /// direction, along the mean flow of energy there.
+    pub fn next_event(&self, point: DVec3) -> Option<LaserEvent> {
         let event = match &self.source {
             Source::Spot { light, .. } => light.next_event(point.to_array()),
             Source::Line { line, light } => line_event(line, light, point.to_array()),
         }?;
-        Some(Illumination {
-            source: DVec3::from_array(event.point),
-            direction: DVec3::from_array(event.wi),
-            irradiance: event.e_perp,
+        Some(LaserEvent {
+            point: event.point.into(),
+            wi: event.wi.into(),
+            e_perp: event.e_perp,
         })
     }
 
-    /// Finds for each of the points what [`illuminate`](Self::illuminate) finds, but for the rounding of
-    /// the source, in less time.
-    pub(crate) fn illuminate_all(&self, lit: &mut Illuminations) {
+    /// Finds for each of the points what [`next_event`](Self::next_event) finds, but for the rounding of
+    /// the point of the aperture, in less time.
+    pub fn next_events(&self, events: &mut LaserEventBatch) {
         match &self.source {
-            Source::Spot { light, .. } => lit.by(light),
+            Source::Spot { light, .. } => events.by(light),
             Source::Line { line, light } => match line.profile() {
-                LineProfile::Tabulated(profile) => lit.by(&TabulatedLineLight {
+                LineProfile::Tabulated(profile) => events.by(&TabulatedLineLight {
                     line: *light,
                     knots: profile.knots(),
                 }),
-                _ => lit.by(light),
+                _ => events.by(light),
             },
         }
     }
 
-    /// Returns how the laser lights `point` of a surface with the unit normal `normal`, by eq. (3)
-    /// of Bergmann et al. 2016 as printed.
-    pub(crate) fn illuminate_as_printed(
-        &self,
-        point: DVec3,
-        normal: DVec3,
-    ) -> Option<Illumination> {
-        let (point, normal) = (point.to_array(), normal.to_array());
-        let event = match &self.source {
-            Source::Spot { light, .. } => tem00_paper::spot_next_event(light, point, normal),
-            Source::Line { light, .. } => tem00_paper::line_next_event(light, point, normal),
-        }?;
-        Some(Illumination {
-            source: DVec3::from_array(event.point),
-            direction: DVec3::from_array(event.wi),
-            irradiance: event.radiance,
-        })
+    /// Returns the placed light as plain data, for a kernel of one's own; the table of a tabulated profile is in
+    /// [`description`](Self::description).
+    pub const fn placed(&self) -> PlacedLight {
+        match &self.source {
+            Source::Spot { light, .. } => PlacedLight::Spot(*light),
+            Source::Line { light, .. } => PlacedLight::Line(*light),
+        }
     }
+}
+
+/// A placed light as plain data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PlacedLight {
+    /// A spot.
+    Spot(SpotLight<f64>),
+    /// A line, without the table of its profile.
+    Line(LineLight<f64>),
 }
 
 impl Source {
@@ -304,7 +333,7 @@ fn line_event(line: &LaserLine, light: &LineLight<f64>, point: [f64; 3]) -> Opti
 
 /// Points, and how a laser lights them.
 #[derive(Debug, Default)]
-pub(crate) struct Illuminations {
+pub struct LaserEventBatch {
     /// Their coordinates x, y, z, in metres.
     points: [Vec<f64>; 3],
     /// The coordinates of the directions towards the light, the distances to the aperture and the
@@ -312,9 +341,9 @@ pub(crate) struct Illuminations {
     events: [Vec<f64>; 5],
 }
 
-impl Illuminations {
+impl LaserEventBatch {
     /// Sets the points.
-    pub(crate) fn place(&mut self, points: impl Iterator<Item = DVec3>) {
+    pub fn place(&mut self, points: impl Iterator<Item = DVec3>) {
         self.points.iter_mut().for_each(Vec::clear);
         for point in points {
             for (axis, value) in self.points.iter_mut().zip(point.to_array()) {
@@ -340,30 +369,30 @@ impl Illuminations {
 
     /// Returns how a point is lit, or `None` where it is not.
     #[inline(always)]
-    pub(crate) fn at(&self, index: usize) -> Option<Illumination> {
+    pub fn at(&self, index: usize) -> Option<LaserEvent> {
         let vector = |of: &[Vec<f64>]| DVec3::new(of[0][index], of[1][index], of[2][index]);
         let [.., distances, irradiances] = &self.events;
         let irradiance = irradiances[index];
         (irradiance > 0.0).then(|| {
             let direction = vector(&self.events);
-            Illumination {
-                source: vector(&self.points) + distances[index] * direction,
-                direction,
-                irradiance,
+            LaserEvent {
+                point: vector(&self.points) + distances[index] * direction,
+                wi: direction,
+                e_perp: irradiance,
             }
         })
     }
 }
 
-/// Illumination of a point by a laser.
+/// Laser light at a point, from one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Illumination {
-    /// The point of the aperture from which the light comes, in metres.
-    pub source: DVec3,
+pub struct LaserEvent {
+    /// The point of the aperture from which the light comes, in metres: where a shadow ray ends.
+    pub point: DVec3,
     /// The unit direction towards the light.
-    pub direction: DVec3,
+    pub wi: DVec3,
     /// The irradiance on a plane across that direction, in W/m².
-    pub irradiance: f64,
+    pub e_perp: f64,
 }
 
 #[cfg(test)]

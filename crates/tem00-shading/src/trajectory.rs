@@ -1,7 +1,7 @@
 use glam::{DMat3, DQuat, DVec3};
 use tem00_decorrelation::RigidMotion;
 
-use crate::TracerError;
+use crate::ShadingError;
 
 /// Motion of an object from frame to frame.
 ///
@@ -22,7 +22,7 @@ use crate::TracerError;
 ///
 /// ```
 /// use glam::DVec3;
-/// use tem00_tracer::{Keyframe, Rotation, Trajectory};
+/// use tem00_shading::{Keyframe, Rotation, Trajectory};
 ///
 /// let degree = Rotation { axis: DVec3::Z, angle: 1_f64.to_radians() };
 /// let steady = Trajectory::turning(DVec3::ZERO, degree, DVec3::ZERO)?;
@@ -34,7 +34,7 @@ use crate::TracerError;
 /// let turning = Trajectory::keyframed(DVec3::ZERO, keyframes)?;
 /// let half = turning.pose_at(5).point(DVec3::X);
 /// assert!((half + DVec3::X).length() < 1e-15);
-/// # Ok::<(), tem00_tracer::TracerError>(())
+/// # Ok::<(), tem00_shading::ShadingError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trajectory {
@@ -106,7 +106,7 @@ impl Trajectory {
     /// # Errors
     ///
     /// Returns an error if the displacement, or what it adds up to in 2³² frames, is not finite.
-    pub fn steady(displacement: DVec3) -> Result<Self, TracerError> {
+    pub fn steady(displacement: DVec3) -> Result<Self, ShadingError> {
         check_steps(displacement)?;
         Ok(Self {
             pivot: DVec3::ZERO,
@@ -128,7 +128,7 @@ impl Trajectory {
         pivot: DVec3,
         rotation: Rotation,
         displacement: DVec3,
-    ) -> Result<Self, TracerError> {
+    ) -> Result<Self, ShadingError> {
         check_finite("pivot", pivot * ROOM, "a finite point")?;
         let rotation = checked(rotation, ROOM * f64::from(u32::MAX))?;
         if rotation.angle == 0.0 {
@@ -162,7 +162,7 @@ impl Trajectory {
     pub fn keyframed(
         pivot: DVec3,
         keyframes: impl IntoIterator<Item = Keyframe>,
-    ) -> Result<Self, TracerError> {
+    ) -> Result<Self, ShadingError> {
         check_finite("pivot", pivot * ROOM, "a finite point")?;
         let keyframes: Vec<_> = keyframes
             .into_iter()
@@ -178,9 +178,9 @@ impl Trajectory {
                     ..keyframe
                 })
             })
-            .collect::<Result<_, TracerError>>()?;
+            .collect::<Result<_, ShadingError>>()?;
         if keyframes.is_empty() {
-            return Err(TracerError::Missing("a keyframe in a motion by keyframes"));
+            return Err(ShadingError::Missing("a keyframe in a motion by keyframes"));
         }
         check_order(&keyframes)?;
         Ok(Self {
@@ -311,9 +311,9 @@ fn quaternion(axis: DVec3, angle: f64) -> DQuat {
 }
 
 /// The rotation with a unit axis, whose angle is finite even `count` times over.
-fn checked(rotation: Rotation, count: f64) -> Result<Rotation, TracerError> {
+fn checked(rotation: Rotation, count: f64) -> Result<Rotation, ShadingError> {
     if !(rotation.angle * count).is_finite() {
-        return Err(TracerError::OutOfRange {
+        return Err(ShadingError::OutOfRange {
             parameter: "angle",
             value: rotation.angle,
             allowed: "finite (in radians), and so must what it adds up to",
@@ -322,7 +322,7 @@ fn checked(rotation: Rotation, count: f64) -> Result<Rotation, TracerError> {
     let axis = rotation
         .axis
         .try_normalize()
-        .ok_or(TracerError::Direction {
+        .ok_or(ShadingError::Direction {
             parameter: "axis",
             allowed: "a direction",
         })?;
@@ -330,7 +330,7 @@ fn checked(rotation: Rotation, count: f64) -> Result<Rotation, TracerError> {
 }
 
 /// Checks a displacement per frame.
-fn check_steps(displacement: DVec3) -> Result<(), TracerError> {
+fn check_steps(displacement: DVec3) -> Result<(), ShadingError> {
     check_finite(
         "displacement_per_frame",
         displacement * (ROOM * f64::from(u32::MAX)),
@@ -342,19 +342,19 @@ fn check_finite(
     parameter: &'static str,
     vector: DVec3,
     allowed: &'static str,
-) -> Result<(), TracerError> {
+) -> Result<(), ShadingError> {
     if !vector.is_finite() {
-        return Err(TracerError::Direction { parameter, allowed });
+        return Err(ShadingError::Direction { parameter, allowed });
     }
     Ok(())
 }
 
 /// Checks that keyframes have finite times that increase.
-fn check_order(keyframes: &[Keyframe]) -> Result<(), TracerError> {
+fn check_order(keyframes: &[Keyframe]) -> Result<(), ShadingError> {
     let mut last = f64::NEG_INFINITY;
     for keyframe in keyframes {
         if !(keyframe.frame.is_finite() && keyframe.frame > last) {
-            return Err(TracerError::OutOfRange {
+            return Err(ShadingError::OutOfRange {
                 parameter: "frame",
                 value: keyframe.frame,
                 allowed: "finite and later than that of the keyframe before",

@@ -1,0 +1,104 @@
+use core::{error, fmt};
+
+use tem00_beam::BeamError;
+use tem00_camera::CameraError;
+use tem00_coherence::CoherenceError;
+use tem00_decorrelation::DecorrelationError;
+use tem00_speckle::SpeckleError;
+
+/// A reason why a laser, a motion or speckle is not possible.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ShadingError {
+    /// A quantity is outside its range.
+    OutOfRange {
+        /// The name of the parameter.
+        parameter: &'static str,
+        /// The rejected value.
+        value: f64,
+        /// The allowed values, with the unit.
+        allowed: &'static str,
+    },
+    /// A vector that must point somewhere is zero, not finite or parallel to its partner.
+    Direction {
+        /// The name of the parameter.
+        parameter: &'static str,
+        /// The allowed values.
+        allowed: &'static str,
+    },
+    /// Something is needed and there is none.
+    Missing(&'static str),
+    /// A frame has moved farther than the poses for which the speckle was prepared.
+    BeyondPoses {
+        /// The shift of the pupil over the speckle in the frame, in its diameters.
+        shift: f64,
+        /// The largest one that the speckle holds on that side of the reference.
+        held: f64,
+    },
+    /// The camera is not possible.
+    Camera(CameraError),
+    /// The spectrum of a laser is not possible.
+    Spectrum(CoherenceError),
+    /// The laser's beam is not possible.
+    Beam(BeamError),
+    /// The imaging geometry or a motion is not possible.
+    Imaging(DecorrelationError),
+    /// The speckle pattern is not possible.
+    Speckle(SpeckleError),
+}
+
+impl fmt::Display for ShadingError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::OutOfRange {
+                parameter,
+                value,
+                allowed,
+            } => write!(f, "{parameter} must be {allowed}, got {value}"),
+            Self::Direction { parameter, allowed } => write!(f, "{parameter} must be {allowed}"),
+            Self::Missing(what) => write!(f, "there must be {what}"),
+            Self::BeyondPoses { shift, held } => write!(
+                f,
+                "this frame moves the pupil over the speckle by {shift:.3} of its diameters, and the speckle holds \
+                 {held:.3}: pass its motion to `for_poses`"
+            ),
+            Self::Camera(source) => source.fmt(f),
+            Self::Spectrum(source) => source.fmt(f),
+            Self::Beam(source) => source.fmt(f),
+            Self::Imaging(source) => source.fmt(f),
+            Self::Speckle(source) => source.fmt(f),
+        }
+    }
+}
+
+impl error::Error for ShadingError {}
+
+impl From<BeamError> for ShadingError {
+    fn from(source: BeamError) -> Self {
+        Self::Beam(source)
+    }
+}
+
+impl From<CameraError> for ShadingError {
+    fn from(source: CameraError) -> Self {
+        Self::Camera(source)
+    }
+}
+
+impl From<CoherenceError> for ShadingError {
+    fn from(source: CoherenceError) -> Self {
+        Self::Spectrum(source)
+    }
+}
+
+impl From<DecorrelationError> for ShadingError {
+    fn from(source: DecorrelationError) -> Self {
+        Self::Imaging(source)
+    }
+}
+
+impl From<SpeckleError> for ShadingError {
+    fn from(source: SpeckleError) -> Self {
+        Self::Speckle(source)
+    }
+}

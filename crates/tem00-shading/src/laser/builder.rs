@@ -1,0 +1,140 @@
+use glam::DVec3;
+use tem00_beam::{FanGeometry, FocusCurve, GaussianBeam, LineProfile};
+use tem00_coherence::{SourceExtent, SpectralLine};
+
+use crate::{BeamShape, Laser, LaserDescription, ShadingError};
+
+/// A laser on the way to its place: what is not said is 1 mW, in focus at the target, M² = 1.
+#[derive(Clone, Debug, PartialEq)]
+#[must_use]
+pub struct LaserBuilder {
+    wavelength: f64,
+    spectrum: Option<SpectralLine>,
+    source_extent: SourceExtent,
+    power: f64,
+    waist_radius: [f64; 2],
+    m_squared: f64,
+    focus: Option<f64>,
+    /// The opening angle and the profile of a line.
+    line: Option<(f64, LineProfile)>,
+}
+
+impl LaserBuilder {
+    pub(super) fn spot(wavelength: f64, waist_radius: f64) -> Self {
+        Self {
+            wavelength,
+            spectrum: None,
+            source_extent: SourceExtent::default(),
+            power: 1e-3,
+            waist_radius: [waist_radius; 2],
+            m_squared: 1.0,
+            focus: None,
+            line: None,
+        }
+    }
+
+    pub(super) fn line(wavelength: f64, thickness: f64, fan_angle: f64) -> Self {
+        Self {
+            line: Some((fan_angle, LineProfile::GaussianTan)),
+            ..Self::spot(wavelength, 0.5 * thickness)
+        }
+    }
+
+    /// Sets the power of the beam, in watts.
+    pub const fn power(mut self, power: f64) -> Self {
+        self.power = power;
+        self
+    }
+
+    /// Sets the distance of the waist from the aperture, in metres; of a spot also negative, behind it.
+    pub const fn focused_at(mut self, distance: f64) -> Self {
+        self.focus = Some(distance);
+        self
+    }
+
+    /// Sets the beam quality factor M²: of a line that across it.
+    pub const fn m_squared(mut self, m_squared: f64) -> Self {
+        self.m_squared = m_squared;
+        self
+    }
+
+    /// Makes a spot elliptic, with a waist radius along the line direction and one across it, in metres.
+    ///
+    /// A line has only the second.
+    pub const fn waist_radii(mut self, radii: [f64; 2]) -> Self {
+        self.waist_radius = radii;
+        self
+    }
+
+    /// Sets the distribution of the power along a line: Powell, tabulated or another. Spots have none.
+    pub fn profile(mut self, profile: LineProfile) -> Self {
+        if let Some((_, of_line)) = &mut self.line {
+            *of_line = profile;
+        }
+        self
+    }
+
+    /// Sets the spectrum of the light, whose middle replaces the wavelength.
+    pub fn spectrum(mut self, spectrum: SpectralLine) -> Self {
+        self.spectrum = Some(spectrum);
+        self
+    }
+
+    /// Sets the directions from which the light reaches a surface, where the source is no point: it acts on speckle only.
+    pub fn source_extent(mut self, extent: SourceExtent) -> Self {
+        self.source_extent = extent;
+        self
+    }
+
+    /// Places the laser at `origin`, aimed at `target`, with `line_direction` across the axis: the direction in which
+    /// a line opens, and the first axis of an elliptic spot. Its part along the axis is ignored.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the beam is not possible, if the target is the origin, or if the line direction is parallel
+    /// to the axis.
+    pub fn placed(
+        self,
+        origin: DVec3,
+        target: DVec3,
+        line_direction: DVec3,
+    ) -> Result<Laser, ShadingError> {
+        let spectrum = match self.spectrum {
+            Some(spectrum) => spectrum,
+            None => SpectralLine::monochromatic(self.wavelength)?,
+        };
+        let focus = self.focus.unwrap_or_else(|| origin.distance(target));
+        let shape = match self.line {
+            None => BeamShape::Spot {
+                waist_radius: self.waist_radius,
+                waist_distance: [focus; 2],
+                m_squared: [self.m_squared; 2],
+            },
+            Some((fan_angle, profile)) => {
+                let beam = GaussianBeam::from_waist(spectrum.wavelength(), self.waist_radius[1])?;
+                let on_lens = beam.with_m_squared(self.m_squared)?.radius_at(focus);
+                BeamShape::Line {
+                    waist_radius: self.waist_radius[1],
+                    m_squared: self.m_squared,
+                    fan: FanGeometry {
+                        fan_angle,
+                        // A round beam on the lens.
+                        apex_offset: on_lens / (0.5 * fan_angle).tan(),
+                        focus_distance: focus,
+                        focus_curve: FocusCurve::EqualPlane,
+                    },
+                    profile,
+                }
+            }
+        };
+        let laser = Laser::new(LaserDescription {
+            line: spectrum,
+            power: self.power,
+            position: origin,
+            look_at: target,
+            line_direction,
+            shape,
+        })?;
+        Ok(laser.with_source_extent(self.source_extent))
+    }
+}

@@ -1,0 +1,301 @@
+use core::fmt;
+
+use glam::{DVec2, DVec3};
+use tem00_camera::Camera;
+use tem00_decorrelation::ImagingGeometry;
+use tem00_speckle::{Complex, SpeckleStack, StackNeeds, StackPlan};
+
+use crate::{
+    BLOCK, Laser, Motion, SeenPoint, ShadingError, SpeckleShift,
+    state::{ReferencePoint, State},
+};
+
+/// The speckle of a laser in the image of a camera, ready for the frames that it was prepared for.
+#[derive(Clone, Debug)]
+pub struct PreparedSpeckle {
+    pub(crate) camera: Camera,
+    pub(crate) laser: Laser,
+    pub(crate) geometry: ImagingGeometry,
+    pub(crate) parts: Vec<Part>,
+    pub(crate) needs: StackNeeds,
+    pub(crate) plan: StackPlan,
+    /// The largest shifts of the poses to either side of the reference, in pupil diameters.
+    pub(crate) shifts: [f64; 2],
+    pub(crate) farthest: Option<ReferencePoint>,
+    pub(crate) points: Vec<(DVec3, DVec3)>,
+}
+
+/// A pattern, and its fraction of the light.
+#[derive(Clone, Debug)]
+pub(crate) struct Part {
+    pub fraction: f64,
+    pub stack: SpeckleStack,
+}
+
+/// The speckle of one body in one frame.
+#[derive(Clone, Debug)]
+pub struct SpeckleFrame<'a> {
+    speckle: &'a PreparedSpeckle,
+    state: State,
+    side: f64,
+    reach: f64,
+    /// The place of the body in the patterns, in samples.
+    offset: DVec2,
+}
+
+/// Positions in a stack: x and y in samples, u in slices.
+struct Positions {
+    x: [f64; BLOCK],
+    y: [f64; BLOCK],
+    u: [f64; BLOCK],
+}
+
+impl PreparedSpeckle {
+    /// Returns the speckle of a body in a frame: once per body and frame.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the motion shifts the speckle farther than the poses that it was prepared for.
+    pub fn frame(&self, motion: &Motion) -> Result<SpeckleFrame<'_>, ShadingError> {
+        let state = State::new((&self.camera, &self.laser), motion)?;
+        let side = state.side(&self.geometry, self.farthest.as_ref());
+        let held = self.reaches()[usize::from(side > 0.0)];
+        let shifts = state.scouted(&self.geometry, &self.points).into_iter();
+        let shifts = shifts
+            .map(|(_, shift)| shift.pupil)
+            .filter(|shift| shift.is_finite());
+        let shift = shifts.fold(0.0, f64::max);
+        // Of two frames the second has new speckle beyond the reach, whatever it is.
+        if shift > held && (self.needs.frames > 2 || held == 0.0) {
+            return Err(ShadingError::BeyondPoses { shift, held });
+        }
+        let size = self.plan.size().map(|samples| samples as f64);
+        Ok(SpeckleFrame {
+            speckle: self,
+            state,
+            side,
+            reach: held,
+            offset: place(motion.body) * DVec2::from_array(size),
+        })
+    }
+
+    /// Returns the imaging geometry on the axis of the camera, with the size of the speckle.
+    pub const fn geometry(&self) -> &ImagingGeometry {
+        &self.geometry
+    }
+
+    /// Returns the sizes of the patterns.
+    pub const fn plan(&self) -> &StackPlan {
+        &self.plan
+    }
+
+    /// Returns the bytes that all patterns take.
+    pub fn memory_bytes(&self) -> u64 {
+        self.plan
+            .memory_bytes()
+            .saturating_mul(self.parts.len() as u64)
+    }
+
+    /// The largest shifts to either side of the reference that the slices tell apart, in pupil diameters. Where the path
+    /// has more than both need, each gets its part of it.
+    fn reaches(&self) -> [f64; 2] {
+        let reach = self.plan.reach();
+        let [before, after] = self.shifts;
+        if before == 0.0 || after == 0.0 {
+            return [reach; 2];
+        }
+        [before, after].map(|part| reach * part / (before + after))
+    }
+}
+
+impl fmt::Display for PreparedSpeckle {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [width, height] = self.plan.size();
+        let slices = self.plan.path().slice_count();
+        let [before, after] = self.shifts;
+        write!(
+            f,
+            "{} of {width} × {height} samples, {slices} {} ({:.0} MiB): speckle of {:.2} px, the region of {:.0} × {:.0} \
+             px repeats nothing, the pupil moves by {:.2} of its diameters in {} frames",
+            counted(self.parts.len(), "pattern", "patterns"),
+            if slices == 1 { "slice" } else { "slices each" },
+            self.memory_bytes() as f64 / f64::from(1 << 20),
+            self.needs.speckle_size,
+            self.needs.region[0],
+            self.needs.region[1],
+            before + after,
+            self.needs.frames,
+        )
+    }
+}
+
+fn counted(count: usize, one: &str, more: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { more })
+}
+
+impl SpeckleFrame<'_> {
+    /// Returns the factor by which speckle multiplies the radiance at a point, now, of a surface with a unit normal.
+    ///
+    /// It is 1 where the camera does not see the point: there is no pattern there. Where it sees it, but the law has no
+    /// value, as where the surface is seen edge-on, the speckle is new.
+    pub fn factor(&self, point: DVec3, normal: DVec3) -> f64 {
+        let mut factor = [1.0];
+        self.factors(&[point], &[normal], &mut factor);
+        factor[0]
+    }
+
+    /// Returns the factor at a point that a camera sample sees at an image point, in pixels with y down: out of focus it
+    /// lies beside the one where the centre of the lens sees it.
+    pub fn factor_at(&self, pixel: DVec2, point: DVec3, normal: DVec3) -> f64 {
+        let seen = SeenPoint {
+            pixel,
+            position: point,
+            normal,
+        };
+        let mut factor = [1.0];
+        self.look_up(&[Some(seen)], &mut factor);
+        factor[0]
+    }
+
+    /// Writes the factors at many points, with their unit normals: the same bits as [`factor`](Self::factor) one by one.
+    ///
+    /// Neighbours in the image, one after the other, are looked up fastest.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless the slices have the same length.
+    pub fn factors(&self, points: &[DVec3], normals: &[DVec3], factors: &mut [f64]) {
+        assert!(
+            points.len() == factors.len() && normals.len() == factors.len(),
+            "{} points and {} normals for {} factors",
+            points.len(),
+            normals.len(),
+            factors.len()
+        );
+        let mut seen = [None; BLOCK];
+        let blocks = points.chunks(BLOCK).zip(normals.chunks(BLOCK));
+        for ((points, normals), factors) in blocks.zip(factors.chunks_mut(BLOCK)) {
+            for (seen, (&point, &normal)) in seen.iter_mut().zip(points.iter().zip(normals)) {
+                *seen = self.state.seen(point, normal);
+            }
+            self.look_up(&seen[..points.len()], factors);
+        }
+    }
+
+    /// Returns the mean factor over the pixel about the image of a point: for a host with one sample per pixel, whose
+    /// speckle would have too much contrast at a point.
+    pub fn average(&self, point: DVec3, normal: DVec3) -> f64 {
+        let Some(seen) = self.seen(point, normal) else {
+            return 1.0;
+        };
+        let parts = self.speckle.parts.iter();
+        let means = parts.map(|Part { fraction, stack }| {
+            let mut positions = Positions::NONE;
+            self.place(stack, &[Some(seen)], &mut positions);
+            let pixel = stack.speckle_size() / self.speckle.needs.speckle_size;
+            let centre = [positions.x[0], positions.y[0]];
+            fraction * stack.average_over(centre, [pixel; 2], positions.u[0])
+        });
+        means.sum()
+    }
+
+    /// Returns the complex amplitude of the first pattern, of mean square 1, for a host that adds fields.
+    ///
+    /// Returns `None` where the camera does not see the point.
+    pub fn amplitude(&self, point: DVec3, normal: DVec3) -> Option<Complex<f64>> {
+        let seen = self.seen(point, normal)?;
+        let Part { stack, .. } = self.speckle.parts.first()?;
+        let mut positions = Positions::NONE;
+        self.place(stack, &[Some(seen)], &mut positions);
+        Some(stack.amplitude_at(positions.x[0], positions.y[0], positions.u[0]))
+    }
+
+    /// Returns what has become of the speckle at a point since the reference state, or `None` where the law has no value.
+    pub fn shift(&self, point: DVec3, normal: DVec3) -> Option<SpeckleShift> {
+        let mut shift = [None];
+        let seen = self.seen(point, normal)?;
+        self.state
+            .shifts(&self.speckle.geometry, [seen], &mut shift);
+        shift[0]
+    }
+
+    fn seen(&self, point: DVec3, normal: DVec3) -> Option<SeenPoint> {
+        self.state.seen(point, normal).filter(is_finite)
+    }
+
+    /// Looks up a block of points.
+    fn look_up(&self, points: &[Option<SeenPoint>], factors: &mut [f64]) {
+        let count = points.len();
+        factors.fill(0.0);
+        for Part { fraction, stack } in &self.speckle.parts {
+            let mut positions = Positions::NONE;
+            self.place(stack, points, &mut positions);
+            let Positions { x, y, u } = &positions;
+            let mut intensities = [0.0; BLOCK];
+            stack.intensity_batch(
+                &x[..count],
+                &y[..count],
+                &u[..count],
+                &mut intensities[..count],
+            );
+            let pairs = factors.iter_mut().zip(&intensities);
+            pairs.for_each(|(factor, intensity)| *factor += fraction * intensity);
+        }
+        for (factor, point) in factors.iter_mut().zip(points) {
+            if !point.as_ref().is_some_and(is_finite) {
+                *factor = 1.0;
+            }
+        }
+    }
+
+    /// Finds where in a stack points are looked up; those out of sight anywhere.
+    fn place(&self, stack: &SpeckleStack, points: &[Option<SeenPoint>], positions: &mut Positions) {
+        let geometry = &self.speckle.geometry;
+        let anywhere = SeenPoint {
+            pixel: DVec2::ZERO,
+            position: DVec3::ZERO,
+            normal: DVec3::ZERO,
+        };
+        let seen = points
+            .iter()
+            .map(|point| point.filter(is_finite).unwrap_or(anywhere));
+        let mut shifts = [None; BLOCK];
+        let shifts = &mut shifts[..points.len()];
+        self.state.shifts(geometry, seen.clone(), shifts);
+        let per_pixel = geometry.pattern_coordinate(DVec2::ONE, DVec2::ZERO, stack.speckle_size());
+        let new = SpeckleShift {
+            pupil: f64::INFINITY,
+            ..SpeckleShift::default()
+        };
+        for (i, (point, shift)) in seen.zip(&*shifts).enumerate() {
+            let shift = shift.unwrap_or(new);
+            let pixel = self.state.perspective().point(point.pixel) - shift.displacement;
+            [positions.x[i], positions.y[i]] = (pixel * per_pixel + self.offset).to_array();
+            positions.u[i] = shift.pupil;
+        }
+        let u = &mut positions.u[..points.len()];
+        stack.coordinates_within(self.reach, u);
+        u.iter_mut().for_each(|u| *u *= self.side);
+    }
+}
+
+impl Positions {
+    const NONE: Self = Self {
+        x: [0.0; BLOCK],
+        y: [0.0; BLOCK],
+        u: [0.0; BLOCK],
+    };
+}
+
+fn is_finite(point: &SeenPoint) -> bool {
+    point.pixel.is_finite() && point.position.is_finite()
+}
+
+/// Returns the place of the pattern of body `number` in a stack, in periods: the points of the sequence of Roberts
+/// (2018), far apart from each other.
+fn place(number: usize) -> DVec2 {
+    /// The plastic ratio: the root of x³ = x + 1.
+    const PLASTIC: f64 = 1.324_717_957_244_746;
+    let number = number as f64;
+    DVec2::new(number / PLASTIC, number / (PLASTIC * PLASTIC)).fract()
+}

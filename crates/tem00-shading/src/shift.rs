@@ -1,0 +1,260 @@
+//! What has become of the speckle of many points of a body, in loops that fill the vector units.
+
+use glam::{DVec2, DVec3};
+use tem00_decorrelation::{
+    ChangedPoint, ImagingGeometry, PointChange, RigidChange, add_axial_shifts,
+};
+use tem00_numerics::vectorised;
+
+use crate::{
+    Laser, Perspective,
+    laser::{WaveFrame, WaveShape},
+};
+
+/// The number of points that are worked out together.
+pub const BLOCK: usize = 64;
+
+/// Points that share vector instructions: a block with fewer ends on a multiple of it.
+const LANES: usize = 8;
+
+/// A point of a surface, and where in the image it is seen.
+///
+/// The point need not lie on the chief ray of its pixel: out of focus it is seen beside it, and in a
+/// mirror somewhere else. Its speckle counts as moving by as much as the point would move seen directly,
+/// which in a plane mirror is right but for the reflection.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeenPoint {
+    /// The image point of the sample, in pixels with y down.
+    pub pixel: DVec2,
+    /// The point of the surface, in metres.
+    pub position: DVec3,
+    /// The unit normal, to either side.
+    pub normal: DVec3,
+}
+
+/// The light whose speckle is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightPath {
+    /// Light straight from the laser.
+    Direct,
+    /// Light that keeps its phases where it meets the surface, however the laser moves.
+    Carried,
+}
+
+/// Motion of the speckle of a point since the reference frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpeckleShift {
+    /// The displacement of the speckle in the image in perspective, in pixels with y down.
+    pub displacement: DVec2,
+    /// The displacement of the pupil over the speckle, in pupil diameters, never negative: the one across it that leaves
+    /// alone what it and a displacement along the axis leave together. Infinite where the speckle is new.
+    pub pupil: f64,
+    /// The part of it across the line of sight, to the right and up, in pupil diameters.
+    pub across: DVec2,
+    /// The displacement along the axis, in axial decorrelation lengths: positive where the point has come nearer.
+    pub axial: f64,
+}
+
+impl SpeckleShift {
+    /// Returns the displacement of the pupil as a vector, to the right and up, in its diameters: one without direction
+    /// is to the right.
+    pub fn pupil_vector(&self) -> DVec2 {
+        self.pupil * self.across.try_normalize().unwrap_or(DVec2::X)
+    }
+
+    /// Returns the way of the pupil over the speckle: across it, in its diameters, and along the axis, in axial
+    /// decorrelation lengths. Ways on two sides of the reference have a negative product.
+    pub const fn way(&self) -> DVec3 {
+        DVec3::new(self.across.x, self.across.y, self.axial)
+    }
+}
+
+/// The law by which the speckle of the points of one body moves and changes in the light of one laser.
+#[derive(Clone, Copy, Debug)]
+pub struct SpeckleLaw<'a> {
+    /// The motion of body and camera since the reference frame.
+    pub change: &'a RigidChange,
+    /// The laser in the reference frame and now.
+    pub lasers: [&'a Laser; 2],
+    /// The image now.
+    pub perspective: &'a Perspective,
+    /// The camera's imaging geometry on the axis, in the light of the laser.
+    pub geometry: &'a ImagingGeometry,
+}
+
+impl SpeckleLaw<'_> {
+    /// Writes what has become of the speckle at points, `None` where a frame does not see them: the same bits as one by
+    /// one.
+    ///
+    /// # Panics
+    ///
+    /// Panics if there are fewer points than shifts.
+    pub fn shifts(
+        &self,
+        path: LightPath,
+        points: impl IntoIterator<Item = SeenPoint>,
+        shifts: &mut [Option<SpeckleShift>],
+    ) {
+        let diameter = self.geometry.pupil_diameter();
+        let [_, now] = self.lasers;
+        let shared = Shared {
+            law: self.change,
+            lasers: self.lasers.map(Laser::wave_frame),
+            is_carried: path == LightPath::Carried,
+            pixels_per_tangent: self.geometry.principal_distance() / self.geometry.pixel_pitch(),
+            per_diameter: diameter.recip(),
+            axial_length: 0.125 * diameter * diameter / now.wavelength(),
+        };
+        let shape = now.wave_shape();
+        let mut points = points.into_iter();
+        for shifts in shifts.chunks_mut(BLOCK) {
+            let count = shifts.len();
+            let block = Block::new(points.by_ref().take(count), |pixel| {
+                self.perspective.focus_vergence(self.geometry, pixel)
+            });
+            assert_eq!(block.count, count, "a point for each shift");
+            let mut changes = shared.changes(&block, &shape);
+            add_axial_shifts(count, &mut changes.pupil, &changes.axial);
+            for (index, shift) in shifts.iter_mut().enumerate() {
+                *shift = changes.shift(index);
+            }
+        }
+    }
+}
+
+/// What is the same for all points of a surface.
+struct Shared<'a> {
+    law: &'a RigidChange,
+    /// The laser in the reference frame and now.
+    lasers: [WaveFrame; 2],
+    is_carried: bool,
+    pixels_per_tangent: f64,
+    per_diameter: f64,
+    /// The axial displacement per change of 1/Z, in axial decorrelation lengths.
+    axial_length: f64,
+}
+
+/// A block of points, component by component.
+struct Block {
+    count: usize,
+    position: [[f64; BLOCK]; 3],
+    normal: [[f64; BLOCK]; 3],
+    focus_vergence: [f64; BLOCK],
+}
+
+/// What has become of their speckle.
+struct Changes {
+    displacement: [[f64; BLOCK]; 2],
+    across: [[f64; BLOCK]; 2],
+    /// Across the pupil, in its diameters; infinite where the theory has no value.
+    pupil: [f64; BLOCK],
+    /// Along the axis, in axial decorrelation lengths.
+    axial: [f64; BLOCK],
+}
+
+impl Block {
+    #[inline(always)] // It is filled in where it lies.
+    fn new(points: impl Iterator<Item = SeenPoint>, focus_vergence: impl Fn(DVec2) -> f64) -> Self {
+        let mut block = Self {
+            count: 0,
+            position: [[0.0; BLOCK]; 3],
+            normal: [[0.0; BLOCK]; 3],
+            focus_vergence: [0.0; BLOCK],
+        };
+        for (i, point) in points.enumerate() {
+            block.count = i + 1;
+            for axis in 0..3 {
+                block.position[axis][i] = point.position[axis];
+                block.normal[axis][i] = point.normal[axis];
+            }
+            block.focus_vergence[i] = focus_vergence(point.pixel);
+        }
+        block
+    }
+}
+
+impl Shared<'_> {
+    /// Works out the points of a block.
+    #[inline(always)] // They are written where they lie.
+    fn changes(&self, block: &Block, shape: &WaveShape) -> Changes {
+        let end = block.count.next_multiple_of(LANES).min(BLOCK);
+        let mut changes = Changes {
+            displacement: [[0.0; BLOCK]; 2],
+            across: [[0.0; BLOCK]; 2],
+            pupil: [0.0; BLOCK],
+            axial: [0.0; BLOCK],
+        };
+        vectorised(
+            #[inline(always)]
+            || match shape {
+                WaveShape::Spot(wave) => {
+                    self.run(block, end, |local| wave.slopes(local), &mut changes);
+                }
+                WaveShape::Line(wave) => {
+                    self.run(block, end, |local| wave.slopes(local), &mut changes);
+                }
+            },
+        );
+        changes
+    }
+
+    #[inline(always)]
+    fn run(
+        &self,
+        block: &Block,
+        end: usize,
+        slopes: impl Fn([f64; 3]) -> [f64; 2],
+        changes: &mut Changes,
+    ) {
+        let ([px, py, pz], [nx, ny, nz]) = (&block.position, &block.normal);
+        for i in 0..end {
+            let position = DVec3::new(px[i], py[i], pz[i]);
+            let [before, now] = &self.lasers;
+            let source = before.direction_to_source(self.law.origin(position), &slopes);
+            let direct = now.direction_to_source(position, &slopes);
+            let carried = self.law.turned(source);
+            let point = self.law.at(&ChangedPoint {
+                position,
+                normal: DVec3::new(nx[i], ny[i], nz[i]),
+                to_source: [source, if self.is_carried { carried } else { direct }],
+            });
+            self.put(&point, block.focus_vergence[i], i, changes);
+        }
+    }
+
+    /// Adds what defocus moves the pattern by to the image of the point: `∓ C A (W + W') / 2`.
+    #[inline(always)]
+    fn put(&self, point: &PointChange, focus_vergence: f64, i: usize, changes: &mut Changes) {
+        let [before, now] = point.per_depth;
+        let defocus = 0.5 * (before + now) - focus_vergence;
+        let pupil = point.pupil_displacement;
+        let is_known = pupil.x <= f64::MAX;
+        let beside = |of_pupil: f64| if is_known { of_pupil * defocus } else { 0.0 };
+        let tangents = point.tangent_displacement;
+        changes.displacement[0][i] = (tangents.x - beside(pupil.x)) * self.pixels_per_tangent;
+        changes.displacement[1][i] = (tangents.y - beside(pupil.y)) * self.pixels_per_tangent;
+        changes.across[0][i] = pupil.x * self.per_diameter;
+        changes.across[1][i] = pupil.y * self.per_diameter;
+        changes.pupil[i] = pupil.length_squared().sqrt() * self.per_diameter;
+        changes.axial[i] = (now - before) * self.axial_length;
+    }
+}
+
+impl Changes {
+    /// The shift of a point, or `None` where it has no value.
+    fn shift(&self, index: usize) -> Option<SpeckleShift> {
+        let [x, y] = self.displacement.map(|along| along[index]);
+        let displacement = DVec2::new(x, -y);
+        let pupil = self.pupil[index];
+        displacement.is_finite().then_some(SpeckleShift {
+            displacement,
+            pupil: if pupil.is_finite() {
+                pupil
+            } else {
+                f64::INFINITY
+            },
+            across: DVec2::from_array(self.across.map(|along| along[index])),
+            axial: self.axial[index],
+        })
+    }
+}

@@ -1,0 +1,184 @@
+use glam::{DVec2, DVec3};
+use tem00_camera::Camera;
+use tem00_decorrelation::{CameraFrame, ImagingGeometry, RigidChange, RigidMotions};
+
+use crate::{
+    Laser, LightPath, Motion, Perspective, Pose, SeenPoint, ShadingError, SpeckleLaw, SpeckleShift,
+};
+
+/// Body, camera and laser now, beside the reference state.
+#[derive(Clone, Debug)]
+pub(crate) struct State {
+    motion: Motion,
+    change: RigidChange,
+    camera: Camera,
+    /// The laser in the reference state and now.
+    lasers: [Laser; 2],
+    perspective: Perspective,
+}
+
+/// A point in the reference state, and the way of the pupil over its speckle in some frame.
+///
+/// It tells a motion to one side of the reference from one to the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ReferencePoint {
+    position: DVec3,
+    normal: DVec3,
+    way: DVec3,
+}
+
+/// Rays of the laser along each dimension of its light by which the places that it lights are found.
+const RAYS: u32 = 6;
+
+impl State {
+    /// Moves a camera and a laser from their reference state.
+    pub(crate) fn new(
+        (camera, laser): (&Camera, &Laser),
+        motion: &Motion,
+    ) -> Result<Self, ShadingError> {
+        let motions = RigidMotions {
+            surface: motion.surface,
+            camera: motion.camera,
+            source: Pose::IDENTITY,
+        };
+        let axes = CameraFrame::from_axes(camera.axes())?;
+        let moved = camera.moved(&motion.camera);
+        Ok(Self {
+            motion: *motion,
+            change: RigidChange::new(axes, camera.position(), &motions)?,
+            lasers: [laser.clone(), laser.moved(&motion.laser)],
+            perspective: Perspective::new(moved),
+            camera: moved,
+        })
+    }
+
+    pub(crate) const fn perspective(&self) -> &Perspective {
+        &self.perspective
+    }
+
+    /// Tells whether nothing has moved against anything else.
+    fn is_still(&self) -> bool {
+        [self.motion.surface, self.motion.camera, self.motion.laser] == [Pose::IDENTITY; 3]
+    }
+
+    /// Returns a point where the camera sees it, if it lies before the lens.
+    pub(crate) fn seen(&self, position: DVec3, normal: DVec3) -> Option<SeenPoint> {
+        let pixel = self.camera.project(position)?;
+        Some(SeenPoint {
+            pixel,
+            position,
+            normal,
+        })
+    }
+
+    /// Writes what has become of the speckle at points, `None` where the law has no value.
+    pub(crate) fn shifts(
+        &self,
+        geometry: &ImagingGeometry,
+        points: impl IntoIterator<Item = SeenPoint>,
+        shifts: &mut [Option<SpeckleShift>],
+    ) {
+        if self.is_still() {
+            shifts.fill(Some(SpeckleShift::default()));
+            return;
+        }
+        let [before, now] = &self.lasers;
+        let law = SpeckleLaw {
+            change: &self.change,
+            lasers: [before, now],
+            perspective: &self.perspective,
+            geometry,
+        };
+        law.shifts(LightPath::Direct, points, shifts);
+    }
+
+    fn shift(&self, geometry: &ImagingGeometry, point: SeenPoint) -> Option<SpeckleShift> {
+        let mut shift = [None];
+        self.shifts(geometry, [point], &mut shift);
+        shift[0]
+    }
+
+    /// Returns where a point was in the reference state, with the way of the pupil over its speckle.
+    pub(crate) fn reference_point(&self, point: &SeenPoint, way: DVec3) -> ReferencePoint {
+        let back = self.motion.surface.inverse();
+        ReferencePoint {
+            position: back.point(point.position),
+            normal: back.direction(point.normal),
+            way,
+        }
+    }
+
+    /// Returns on which side of the reference the speckle is: 1 where the pupil has moved over that of a point as it
+    /// has where it moved farthest, and −1 where it has moved the other way.
+    pub(crate) fn side(
+        &self,
+        geometry: &ImagingGeometry,
+        farthest: Option<&ReferencePoint>,
+    ) -> f64 {
+        let along = farthest.and_then(|farthest| {
+            let surface = &self.motion.surface;
+            let (position, normal) = (farthest.position, farthest.normal);
+            let point = self.seen(surface.point(position), surface.direction(normal))?;
+            Some(self.shift(geometry, point)?.way().dot(farthest.way))
+        });
+        if along.is_some_and(|along| along < 0.0) {
+            -1.0
+        } else {
+            1.0
+        }
+    }
+
+    /// Returns points that the camera sees now, with what has become of their speckle: those given in the reference
+    /// state, or where the light of the laser crosses the plane in focus.
+    pub(crate) fn scouted(
+        &self,
+        geometry: &ImagingGeometry,
+        given: &[(DVec3, DVec3)],
+    ) -> Vec<(SeenPoint, SpeckleShift)> {
+        let surface = &self.motion.surface;
+        let given: Vec<_> = given
+            .iter()
+            .filter_map(|&(point, normal)| {
+                self.seen(surface.point(point), surface.direction(normal))
+            })
+            .collect();
+        let points = if given.is_empty() {
+            self.lit_in_focus()
+        } else {
+            given
+        };
+        let size = DVec2::new(self.camera.width() as f64, self.camera.height() as f64);
+        let in_image = |point: &SeenPoint| {
+            point.pixel.cmpge(DVec2::ZERO).all() && point.pixel.cmple(size).all()
+        };
+        let points = points.into_iter().filter(in_image);
+        points
+            .filter_map(|point| Some((point, self.shift(geometry, point)?)))
+            .collect()
+    }
+
+    /// Where rays of the laser cross the plane in focus, on surfaces that face the camera, the laser or between both.
+    fn lit_in_focus(&self) -> Vec<SeenPoint> {
+        let (origin, normal) = self.camera.plane_in_focus();
+        let [_, laser] = &self.lasers;
+        let at = |digit: u32| (f64::from(digit) + 0.5) / f64::from(RAYS);
+        let uniforms =
+            (0..RAYS.pow(4)).map(|index| [0, 1, 2, 3].map(|i| at(index / RAYS.pow(i) % RAYS)));
+        let crossings = uniforms.filter_map(|uniforms| {
+            let ray = laser.sample_ray(uniforms).ray;
+            let distance = (origin - ray.origin).dot(normal) / ray.direction.dot(normal);
+            let point = ray.origin + distance * ray.direction;
+            (distance > 0.0 && point.is_finite()).then_some((point, -ray.direction))
+        });
+        let points = crossings.flat_map(|(point, to_laser)| {
+            let to_camera = (self.camera.position() - point).normalize_or_zero();
+            let facing = [
+                to_camera,
+                to_laser,
+                (to_camera + to_laser).normalize_or_zero(),
+            ];
+            facing.map(|normal| self.seen(point, normal))
+        });
+        points.flatten().collect()
+    }
+}

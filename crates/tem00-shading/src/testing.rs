@@ -1,0 +1,22 @@
+//! Cameras and lasers that several tests share.
+
+use glam::DVec3;
+use tem00_coherence::SpectralLine;
+
+use crate::{BeamShape, LaserDescription};
+
+/// A round spot of 650 nm and 1 mW whose waist lies at the origin, where it is aimed at.
+pub(crate) fn spot(position: DVec3, waist_radius: f64) -> LaserDescription {
+    LaserDescription {
+        line: SpectralLine::monochromatic(650e-9).unwrap(),
+        power: 1e-3,
+        position,
+        look_at: DVec3::ZERO,
+        line_direction: DVec3::X,
+        shape: BeamShape::Spot {
+            waist_radius: [waist_radius; 2],
+            waist_distance: [position.length(); 2],
+            m_squared: [1.0; 2],
+        },
+    }
+}

@@ -1,0 +1,318 @@
+//! What a host may rely on, whatever it asks for.
+
+use proptest::prelude::*;
+use tem00_decorrelation::pupil_overlap_correlation;
+use tem00_statistics::{exponential_cumulative, kolmogorov_smirnov, pixel_contrast};
+
+use crate::{
+    Camera, CameraDescription, DVec2, DVec3, Laser, Motion, Pose, PreparedSpeckle, ShadingError,
+    Speckle, SpeckleFrame,
+};
+
+fn camera(position: DVec3) -> Camera {
+    Camera::new(CameraDescription {
+        position,
+        focus_distance: position.length(),
+        resolution: [96, 64],
+        ..CameraDescription::default()
+    })
+    .unwrap()
+}
+
+fn laser() -> Laser {
+    let origin = DVec3::new(0.05, 0.02, 0.4);
+    Laser::spot(650e-9, 5e-3)
+        .placed(origin, DVec3::ZERO, DVec3::X)
+        .unwrap()
+}
+
+/// A body that slides and turns about an axis through the origin.
+fn pose(slide: DVec3, axis: DVec3, angle: f64) -> Pose {
+    let turn = Pose::about(DVec3::ZERO, axis, angle).unwrap();
+    turn.then(&Pose::along(slide).unwrap())
+}
+
+fn prepared(seed: u64, poses: &[Pose]) -> PreparedSpeckle {
+    let camera = camera(DVec3::new(-0.05, 0.01, 0.3));
+    Speckle::new(&camera, &laser(), seed)
+        .for_poses(poses)
+        .prepare()
+        .unwrap()
+}
+
+/// Points of the plane z = 0 in the image that are independent: nearly two speckles of 65 µm apart.
+fn places(count: u32) -> Vec<DVec3> {
+    let place =
+        |i: u32| DVec3::new(f64::from(i % 30) - 14.5, f64::from(i / 30) - 9.5, 0.0) * 120e-6;
+    (0..count).map(place).collect()
+}
+
+/// The factors at the points that the body carries along.
+fn factors(frame: &SpeckleFrame<'_>, pose: &Pose, points: &[DVec3]) -> Vec<f64> {
+    let normal = pose.direction(DVec3::Z);
+    points
+        .iter()
+        .map(|&point| frame.factor(pose.point(point), normal))
+        .collect()
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (count, sum) = values.fold((0.0, 0.0), |(count, sum), value| (count + 1.0, sum + value));
+    sum / count
+}
+
+fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let [m, n] = [a, b].map(|values| mean(values.iter().copied()));
+    let product = |x: &[f64], y: &[f64], m: f64, n: f64| {
+        mean(x.iter().zip(y).map(|(x, y)| (x - m) * (y - n)))
+    };
+    product(a, b, m, n) / (product(a, a, m, m) * product(b, b, n, n)).sqrt()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Factors are finite and not negative whatever is asked, have mean 1, and are exponential.
+    #[test]
+    fn factors_are_speckle_for_any_pose(
+        seed: u64,
+        slide in [-3e-4..3e-4, -3e-4..3e-4, -2e-3..2e-3].prop_map(DVec3::from_array),
+        axis in [-1.0..1.0, -1.0..1.0, 0.1..1.0].prop_map(DVec3::from_array),
+        angle in -4e-3..4e-3,
+    ) {
+        let pose = pose(slide, axis.normalize(), angle);
+        let speckle = prepared(seed, &[pose]);
+        let frame = speckle.frame(&pose.into()).unwrap();
+        let found = factors(&frame, &pose, &places(600));
+        prop_assert!(found.iter().all(|factor| factor.is_finite() && *factor >= 0.0));
+        // Five standard errors of the mean of 600.
+        prop_assert!((mean(found.iter().copied()) - 1.0).abs() < 5.0 / 600_f64.sqrt());
+        let outcome = kolmogorov_smirnov(&found, exponential_cumulative).unwrap();
+        prop_assert!(outcome.p_value > 1e-5, "{outcome:?}");
+    }
+
+    #[test]
+    fn nothing_that_is_asked_gives_nan(
+        point in [-10.0..10.0, -10.0..10.0, -10.0..10.0].prop_map(DVec3::from_array),
+        normal in [-1.0..1.0, -1.0..1.0, -1.0..1.0].prop_map(DVec3::from_array),
+    ) {
+        let pose = Pose::along(DVec3::new(2e-4, 0.0, 1e-4)).unwrap();
+        let speckle = prepared(1, &[pose]);
+        let frame = speckle.frame(&pose.into()).unwrap();
+        for point in [point, 1e-3 * point, DVec3::splat(f64::NAN), DVec3::X * f64::INFINITY] {
+            for normal in [normal, DVec3::ZERO, DVec3::splat(f64::NAN)] {
+                let factor = frame.factor(point, normal);
+                prop_assert!(factor.is_finite() && factor >= 0.0, "{factor} at {point}");
+                prop_assert!(frame.average(point, normal).is_finite());
+                prop_assert!(frame.amplitude(point, normal).is_none_or(|u| u.norm_sqr().is_finite()));
+            }
+        }
+    }
+}
+
+/// The speckle of points that the body carries along keeps as much as the law says, for motions across, along the
+/// line of sight, about axes, and of camera and laser.
+#[test]
+fn factors_of_two_frames_correlate_by_the_law() {
+    let motions = [
+        Pose::along(DVec3::new(6e-4, -2e-4, 0.0)).unwrap().into(),
+        Pose::along(DVec3::new(4e-4, 0.0, 3e-3)).unwrap().into(),
+        pose(DVec3::X * 1e-4, DVec3::Y, 1.5e-3).into(),
+        Motion {
+            camera: Pose::along(DVec3::Y * 7e-4).unwrap(),
+            ..Motion::default()
+        },
+        Motion {
+            laser: Pose::about(DVec3::new(0.05, 0.02, 0.4), DVec3::Y, 2e-3).unwrap(),
+            ..Motion::default()
+        },
+    ];
+    let camera = camera(DVec3::new(-0.05, 0.01, 0.3));
+    for motion in motions {
+        let speckle = Speckle::new(&camera, &laser(), 7)
+            .for_motions([motion])
+            .prepare()
+            .unwrap();
+        let [reference, frame] = [Motion::default(), motion].map(|m| speckle.frame(&m).unwrap());
+        let points = places(600);
+        let carried = |point: DVec3| motion.surface.point(point);
+        // Where the peak has gone, beside the image of the point: the factor follows the body, its speckle the peak.
+        let normal = motion.surface.direction(DVec3::Z);
+        let shift = frame.shift(carried(DVec3::ZERO), normal).unwrap();
+        let seen = camera.moved(&motion.camera);
+        let beside =
+            seen.project(carried(DVec3::ZERO)).unwrap() - camera.project(DVec3::ZERO).unwrap();
+        let beside = shift.displacement - beside;
+        let before: Vec<_> = points
+            .iter()
+            .map(|&point| {
+                reference.factor_at(camera.project(point).unwrap() - beside, point, DVec3::Z)
+            })
+            .collect();
+        let after = factors(&frame, &motion.surface, &points);
+        let law = pupil_overlap_correlation(shift.pupil);
+        let found = correlation(&before, &after);
+        assert!((0.05..0.95).contains(&law), "{law} tells nothing");
+        // Three standard errors of a correlation of exponentials from 600 points, and what the blend adds.
+        let tolerance = 3.0 * (1.0 + law) / 600_f64.sqrt() + 0.02;
+        assert!((found - law).abs() < tolerance, "{found}, by the law {law}");
+    }
+}
+
+#[test]
+fn a_body_that_returns_finds_its_old_speckle() {
+    let away = pose(DVec3::new(5e-4, 0.0, 1e-3), DVec3::X, 1e-3);
+    let speckle = prepared(3, &[away]);
+    let points = places(50);
+    let at_first = factors(
+        &speckle.frame(&Motion::default()).unwrap(),
+        &Pose::IDENTITY,
+        &points,
+    );
+    let gone = factors(&speckle.frame(&away.into()).unwrap(), &away, &points);
+    let back = factors(
+        &speckle.frame(&Pose::IDENTITY.into()).unwrap(),
+        &Pose::IDENTITY,
+        &points,
+    );
+    assert_eq!(at_first, back);
+    assert_ne!(at_first, gone);
+}
+
+#[test]
+fn batches_have_the_bits_of_single_calls() {
+    let pose = pose(DVec3::new(3e-4, 1e-4, 2e-3), DVec3::Y, 1e-3);
+    let speckle = prepared(5, &[pose]);
+    let frame = speckle.frame(&pose.into()).unwrap();
+    let mut points: Vec<_> = places(200)
+        .into_iter()
+        .map(|point| pose.point(point))
+        .collect();
+    points[70] = DVec3::splat(f64::NAN);
+    points[140] = DVec3::Z;
+    let normals = vec![pose.direction(DVec3::Z); points.len()];
+    let mut together = vec![0.0; points.len()];
+    frame.factors(&points, &normals, &mut together);
+    let alone: Vec<_> = points
+        .iter()
+        .zip(&normals)
+        .map(|(&p, &n)| frame.factor(p, n))
+        .collect();
+    assert_eq!(together, alone);
+    assert_eq!([together[70], together[140]], [1.0; 2], "out of sight");
+}
+
+#[test]
+fn looks_polarisation_and_pixels_lower_the_contrast_by_their_laws() {
+    let camera = camera(DVec3::new(-0.05, 0.01, 0.3));
+    let speckle = Speckle::new(&camera, &laser(), 11);
+    let contrast = |values: &[f64]| {
+        let middle = mean(values.iter().copied());
+        mean(values.iter().map(|value| (value - middle).powi(2))).sqrt() / middle
+    };
+    let points = places(600);
+    // An error of a contrast from 600 points, three times.
+    let tolerance = |contrast: f64| 3.0 * contrast / 600_f64.sqrt() * 1.2;
+    for (speckle, law) in [
+        (speckle.clone(), 1.0),
+        (speckle.clone().looks(4), 0.5),
+        (speckle.clone().polarisation(0.0), 0.5_f64.sqrt()),
+        (
+            speckle.clone().looks(2).polarisation(0.6),
+            (0.5 * 0.5 * (1.0 + 0.36_f64)).sqrt(),
+        ),
+    ] {
+        let speckle = speckle.prepare().unwrap();
+        let frame = speckle.frame(&Motion::default()).unwrap();
+        let found = contrast(&factors(&frame, &Pose::IDENTITY, &points));
+        assert!(
+            (found - law).abs() < tolerance(law),
+            "{found}, by the law {law}"
+        );
+    }
+    let speckle = speckle.prepare().unwrap();
+    let frame = speckle.frame(&Motion::default()).unwrap();
+    let averages: Vec<_> = points
+        .iter()
+        .map(|&point| frame.average(point, DVec3::Z))
+        .collect();
+    let law = pixel_contrast(1.0 / speckle.geometry().speckle_size_in_pixels());
+    let found = contrast(&averages);
+    assert!(
+        (found - law).abs() < tolerance(law),
+        "{found}, by the law {law}"
+    );
+}
+
+#[test]
+fn bodies_have_speckle_of_their_own() {
+    let speckle = prepared(13, &[]);
+    let of_body = |body| {
+        let frame = speckle
+            .frame(&Motion {
+                body,
+                ..Motion::default()
+            })
+            .unwrap();
+        factors(&frame, &Pose::IDENTITY, &places(600))
+    };
+    let [first, second] = [0, 1].map(of_body);
+    assert!(correlation(&first, &second).abs() < 4.0 / 600_f64.sqrt());
+}
+
+#[test]
+fn what_does_not_fit_is_refused_by_name() {
+    let pose = Pose::along(DVec3::X * 5e-3).unwrap();
+    let camera = camera(DVec3::new(-0.05, 0.01, 0.3));
+    let speckle = Speckle::new(&camera, &laser(), 1);
+    let short = speckle
+        .clone()
+        .for_poses(&[Pose::along(DVec3::X * 1e-4).unwrap(); 3]);
+    let short = short.prepare().unwrap();
+    assert!(matches!(
+        short.frame(&pose.into()),
+        Err(ShadingError::BeyondPoses { .. })
+    ));
+    assert!(speckle.clone().within(1000).prepare().is_err(), "memory");
+    assert!(speckle.clone().looks(0).prepare().is_err(), "no looks");
+    assert!(speckle.polarisation(1.5).prepare().is_err(), "polarisation");
+    let broad =
+        tem00_coherence::SpectralLine::new(650e-9, 1e-9, tem00_coherence::LineShape::Gaussian);
+    let broad = Laser::spot(650e-9, 1e-3).spectrum(broad.unwrap());
+    let broad = broad.placed(0.3 * DVec3::Z, DVec3::ZERO, DVec3::X).unwrap();
+    let refused = Speckle::new(&camera, &broad, 1).prepare();
+    assert!(matches!(
+        refused,
+        Err(ShadingError::OutOfRange {
+            parameter: "coherence_length",
+            ..
+        })
+    ));
+}
+
+#[test]
+fn the_plan_says_what_it_chose() {
+    let pose = Pose::along(DVec3::X * 1e-3).unwrap();
+    let text = prepared(1, &[pose, pose]).to_string();
+    assert!(text.starts_with("1 pattern of "), "{text}");
+    for part in ["slices each", "MiB", "px repeats nothing", "in 3 frames"] {
+        assert!(text.contains(part), "{text}: {part}");
+    }
+}
+
+#[test]
+fn a_sample_out_of_focus_is_looked_up_where_it_is_seen() {
+    let speckle = prepared(1, &[]);
+    let frame = speckle.frame(&Motion::default()).unwrap();
+    let (point, normal) = (DVec3::new(1e-4, 0.0, 0.0), DVec3::Z);
+    let camera = camera(DVec3::new(-0.05, 0.01, 0.3));
+    let pixel = camera.project(point).unwrap();
+    assert_eq!(
+        frame.factor_at(pixel, point, normal),
+        frame.factor(point, normal)
+    );
+    assert_ne!(
+        frame.factor_at(pixel + DVec2::X, point, normal),
+        frame.factor(point, normal)
+    );
+}

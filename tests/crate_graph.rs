@@ -48,6 +48,18 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
         &["glam", "libm", "serde"],
     ),
     (
+        "tem00-shading",
+        &[
+            "tem00-beam",
+            "tem00-camera",
+            "tem00-coherence",
+            "tem00-decorrelation",
+            "tem00-numerics",
+            "tem00-speckle",
+        ],
+        &["glam", "libm"],
+    ),
+    (
         "tem00-config",
         &["tem00-coherence", "tem00-numerics"],
         &["glam", "libm", "strsim", "toml", "toml_edit"],
@@ -76,6 +88,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "tem00-decorrelation",
             "tem00-numerics",
             "tem00-paper",
+            "tem00-shading",
             "tem00-speckle",
         ],
         &[
@@ -248,6 +261,7 @@ const PHYSICS: &[&str] = &[
     "tem00-speckle",
     "tem00-decorrelation",
     "tem00-coherence",
+    "tem00-shading",
     "tem00-wave",
     "tem00-topography",
     "tem00-uncertainty",

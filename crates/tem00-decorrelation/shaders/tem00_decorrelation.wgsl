@@ -4,8 +4,8 @@
 // begins with `tem00_` or `Tem00`; those that end in `_` are not for the caller.
 //
 // The law is that between two states of a scene, of any size: `SpeckleMotion::between` of the crate,
-// with the correlation of `MotionField`, to which it comes down for small motions. The camera stands
-// still: motions are relative to it, so for a camera that moves by c give the motion a − c.
+// with the correlation that belongs to the displacement that it returns. The camera stands still:
+// motions are relative to it, so for a camera that moves by c give the motion a − c.
 //
 // A part turns about a pivot and slides, under a point source. A kernel that sees its point `seen`, of
 // the normal `n`, takes both back to where they were, and asks for the motion from there:
@@ -31,7 +31,7 @@
 // Validity: lengths from 1e-9 m to 1e9 m. No difference of near-equal numbers is formed: with the
 // distance L to the pupil, the angle φ by which the light turns and the motion a, displacements in the
 // pupil are off by about 4 ε (|a| + L φ), ε = 1.2e-7, which is 7e-8 of the pupil diameter in rms and 5e-7
-// at worst while the speckle stays in the pupil, however far away that is; γ is off by 3e-6 at worst. Positions enter at second order only.
+// at worst while the speckle stays in the pupil, however far away that is; γ is off by 1e-5 at worst. Positions enter at second order only.
 // Pattern coordinates are off by 4 ε of the principal distance in samples. A cosine below 2⁻¹² counts as
 // grazing.
 
@@ -177,10 +177,14 @@ fn tem00_speckle_motion(
 }
 
 /// Returns the correlation of the intensity left by a shift in the pupil, in its diameters, and one
-/// along the axis, in axial decorrelation lengths: within 1e-6.
+/// along the axis, in axial decorrelation lengths, at the displacement of the peak: within 1e-5 of
+/// `CorrelationLaw::AtPeak`. From one length on the speckle is new, and its revivals are left out.
 fn tem00_correlation(pupil_shift: f32, axial_shift: f32) -> f32 {
-    let amplitude = tem00_disc_overlap_(pupil_shift) * tem00_sinc_pi_(axial_shift);
-    return amplitude * amplitude;
+    let overlap = tem00_disc_overlap_(pupil_shift);
+    if abs(axial_shift) >= 1.0 {
+        return 0.0;
+    }
+    return overlap * overlap * tem00_axial_loss_(pupil_shift, axial_shift);
 }
 
 /// Returns the coordinate u of a stack where γ with its first slice has fallen to `correlation`, from
@@ -264,15 +268,33 @@ fn tem00_disc_overlap_(shift: f32) -> f32 {
     return min(e * sqrt(e) * series, 1.0);
 }
 
-/// sin(π x) / (π x): a polynomial in r² on −½ ≤ r ≤ ½, six Chebyshev nodes, off by 2.7e-11; beyond, by
-/// r = x less the nearest integer, and r / x.
-fn tem00_sinc_pi_(x: f32) -> f32 {
-    let r = x - round(x);
-    let q = r * r;
-    let high = -0.1907478953 + q * (0.02611743761 - q * 0.002237178554);
-    let near = 1.0 + q * (-1.644934062 + q * (0.8117421955 + q * high));
-    if abs(x) < 0.5 {
-        return near;
-    }
-    return near * (r / x);
+/// The factor by which a shift along the axis, of at most one length, reduces the correlation at the
+/// peak beside a shift of the pupil. It is analytic in s and x²: a polynomial at 12 × 12 points of
+/// Chebyshev in 2 s − 1 and y = 2 x² − 1, off by 5e-6, without the terms below 4e-7.
+fn tem00_axial_loss_(pupil_shift: f32, axial_shift: f32) -> f32 {
+    let s = 2.0 * min(pupil_shift, 1.0) - 1.0;
+    let y = 2.0 * axial_shift * axial_shift - 1.0;
+    let h0 = 0.0012024302 + y * (-8.8752116e-05 + y * 9.3782137e-07);
+    let r0 = 0.62068749 + y * (-0.2919744 + y * (0.074432172 + y * (-0.011613575 + y * h0)));
+    let h1 = -0.0056056506 + y * (0.00049462001 + y * -9.0709625e-05);
+    let r1 = 0.45676002 + y * (0.25300381 + y * (-0.15784718 + y * (0.039717246 + y * h1)));
+    let h2 = 0.0089158677 + y * (-0.0011505843 + y * 0.00021562462);
+    let r2 = -0.0042983028 + y * (0.092223518 + y * (0.049554646 + y * (-0.036695935 + y * h2)));
+    let h3 = -0.0044317078 + y * (0.0015897731 + y * 0.00024874261);
+    let r3 = 0.081860915 + y * (0.069602184 + y * (-0.0068180789 + y * (-0.00030982899 + y * h3)));
+    let h4 = -0.0012839859 + y * (-0.00044097457 + y * -0.00044544908);
+    let r4 = -0.047809243 + y * (0.076287746 + y * (0.11326177 + y * (-0.012049094 + y * h4)));
+    let h5 = -0.0020582564 + y * (-0.0020773748 + y * -0.00052538409);
+    let r5 = -0.11246607 + y * (-0.18040673 + y * (-0.022781922 + y * (0.044537619 + y * h5)));
+    let h6 = 0.0084281135 + y * (0.00061834819 + y * 0.00060291798);
+    let r6 = -0.006757109 + y * (-0.048433729 + y * (-0.069533713 + y * (-0.019626798 + y * h6)));
+    let h7 = -0.0069309566 + y * 0.003222883;
+    let r7 = 0.0024638339 + y * (0.015453163 + y * (0.016230771 + y * (-0.006715273 + y * h7)));
+    let h8 = 0.0017545421 + y * -0.0021717304;
+    let r8 = 0.0013149447 + y * (-0.0062658317 + y * (-0.0089969635 + y * (0.0026958757 + y * h8)));
+    let r9 = 0.0085233906 + y * (0.018415019 + y * (0.0069222022 + y * -0.0030895129));
+    let r10 = 0.0010120218 + y * (0.0055337124 + y * (0.0077429349 + y * 0.0031543532));
+    let r11 = -0.001291819 + y * (-0.0034385144 + y * -0.0021619061);
+    let high = r6 + s * (r7 + s * (r8 + s * (r9 + s * (r10 + s * r11))));
+    return clamp(r0 + s * (r1 + s * (r2 + s * (r3 + s * (r4 + s * (r5 + s * high))))), 0.0, 1.0);
 }

@@ -47,6 +47,30 @@ pub enum ShadingError {
     Speckle(SpeckleError),
 }
 
+impl ShadingError {
+    /// Returns the name of the parameter whose value was rejected, where there is one.
+    pub fn parameter(&self) -> Option<&'static str> {
+        match self {
+            Self::OutOfRange { parameter, .. } | Self::Direction { parameter, .. } => {
+                Some(parameter)
+            }
+            Self::Camera(source) => source.parameter(),
+            Self::Beam(source) => Some(name_of_beam(source)),
+            _ => None,
+        }
+    }
+}
+
+/// A laser has the names of the beam's parameters, but for those of a placement.
+fn name_of_beam(error: &BeamError) -> &'static str {
+    match error.parameter() {
+        "origin" => "position",
+        "direction" => "look_at",
+        "fan_axis" => "line_direction",
+        name => name,
+    }
+}
+
 impl fmt::Display for ShadingError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -1,6 +1,5 @@
 use core::{error, fmt};
 
-use tem00_beam::BeamError;
 use tem00_camera::CameraError;
 use tem00_coherence::CoherenceError;
 use tem00_decorrelation::DecorrelationError;
@@ -29,10 +28,8 @@ pub enum TracerError {
     },
     /// The camera is not possible.
     Camera(CameraError),
-    /// The spectrum of a laser is not possible.
-    Spectrum(CoherenceError),
-    /// The laser's beam is not possible.
-    Beam(BeamError),
+    /// The coherence of the light is not possible.
+    Coherence(CoherenceError),
     /// The camera's imaging geometry is not possible.
     Imaging(DecorrelationError),
     /// The speckle pattern is not possible.
@@ -65,19 +62,9 @@ impl TracerError {
                 Some(parameter)
             }
             Self::Camera(source) => source.parameter(),
-            Self::Beam(source) => Some(key_of_beam(source)),
+            Self::Shading(source) => source.parameter(),
             _ => None,
         }
-    }
-}
-
-/// The keys of a scene file are the library's names, but for those of a placement.
-fn key_of_beam(error: &BeamError) -> &'static str {
-    match error.parameter() {
-        "origin" => "position",
-        "direction" => "look_at",
-        "fan_axis" => "line_direction",
-        name => name,
     }
 }
 
@@ -91,8 +78,7 @@ impl fmt::Display for TracerError {
             } => write!(f, "{parameter} must be {allowed}, got {value}"),
             Self::Direction { parameter, allowed } => write!(f, "{parameter} must be {allowed}"),
             Self::Camera(source) => source.fmt(f),
-            Self::Spectrum(source) => source.fmt(f),
-            Self::Beam(source) => source.fmt(f),
+            Self::Coherence(source) => source.fmt(f),
             Self::Imaging(source) => source.fmt(f),
             Self::Speckle(source) => source.fmt(f),
             Self::Shading(source) => source.fmt(f),
@@ -111,12 +97,6 @@ impl fmt::Display for TracerError {
 
 impl error::Error for TracerError {}
 
-impl From<BeamError> for TracerError {
-    fn from(source: BeamError) -> Self {
-        Self::Beam(source)
-    }
-}
-
 impl From<CameraError> for TracerError {
     fn from(source: CameraError) -> Self {
         Self::Camera(source)
@@ -125,7 +105,7 @@ impl From<CameraError> for TracerError {
 
 impl From<CoherenceError> for TracerError {
     fn from(source: CoherenceError) -> Self {
-        Self::Spectrum(source)
+        Self::Coherence(source)
     }
 }
 
@@ -137,27 +117,7 @@ impl From<DecorrelationError> for TracerError {
 
 impl From<ShadingError> for TracerError {
     fn from(source: ShadingError) -> Self {
-        match source {
-            ShadingError::OutOfRange {
-                parameter,
-                value,
-                allowed,
-            } => Self::OutOfRange {
-                parameter,
-                value,
-                allowed,
-            },
-            ShadingError::Direction { parameter, allowed } => {
-                Self::Direction { parameter, allowed }
-            }
-            ShadingError::Missing(what) => Self::Missing(what),
-            ShadingError::Camera(source) => Self::Camera(source),
-            ShadingError::Spectrum(source) => Self::Spectrum(source),
-            ShadingError::Beam(source) => Self::Beam(source),
-            ShadingError::Imaging(source) => Self::Imaging(source),
-            ShadingError::Speckle(source) => Self::Speckle(source),
-            other => Self::Shading(other),
-        }
+        Self::Shading(source)
     }
 }
 

@@ -205,7 +205,11 @@ fn between(field: &MotionField, input: &Input) -> Option<(SpeckleMotion, f64)> {
     motion.pupil_displacement?;
     let [z0, z1] = [before, after].map(|state| state.sight().depth());
     let axial = (z0 - z1) / (z0 * z1) / geometry.axial_decorrelation_length_at(1.0);
-    let left = if axial.abs() < 1.0 { motion.correlation } else { 0.0 };
+    let left = if axial.abs() < 1.0 {
+        motion.correlation
+    } else {
+        0.0
+    };
     Some((motion, left))
 }
 

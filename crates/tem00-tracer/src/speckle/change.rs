@@ -19,8 +19,6 @@ pub(crate) struct Change {
     frames: f64,
     /// The camera in the reference frame and now.
     cameras: [Camera; 2],
-    /// The axes of the camera in the reference frame.
-    axes: Option<CameraFrame>,
     perspective: Perspective,
     camera: BodyChange,
     lasers: Vec<LaserChange>,
@@ -119,7 +117,6 @@ impl Change {
         };
         Self {
             laws: surfaces.iter().map_while(law).collect(),
-            axes,
             frames: f64::from(frame) - f64::from(reference),
             cameras: [scene.camera_at(reference), scene.camera_at(frame)],
             perspective: Perspective::new(scene.camera_at(frame)),

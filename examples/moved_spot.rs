@@ -30,8 +30,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let ray = camera.ray(pixel);
         ray.origin - ray.origin.z / ray.direction.z * ray.direction
     };
-    let factor = |frame: &SpeckleFrame<'_>, pixel| frame.factor(point(pixel), DVec3::Z);
-    let irradiance = |frame: &SpeckleFrame<'_>, pixel| match laser.next_event(point(pixel)) {
+    let factor = |frame: &SpeckleFrame, pixel| frame.factor(point(pixel), DVec3::Z);
+    let irradiance = |frame: &SpeckleFrame, pixel| match laser.next_event(point(pixel)) {
         Some(light) => light.e_perp * light.wi.z * factor(frame, pixel),
         None => 0.0,
     };

@@ -20,7 +20,7 @@ const NEAR: f64 = 1e-6;
 const MESH: usize = 0;
 const SPHERE: usize = 1;
 
-struct Scene<'a> {
+struct Scene {
     camera: Camera,
     laser: Laser,
     triangles: Vec<Triangle>,
@@ -28,10 +28,10 @@ struct Scene<'a> {
     /// Centre and radius.
     sphere: (DVec3, f64),
     /// Of the mesh and of the sphere.
-    speckle: [SpeckleFrame<'a>; 2],
+    speckle: [SpeckleFrame; 2],
 }
 
-impl Scene<'_> {
+impl Scene {
     /// The point that a ray meets, the normal towards the ray, and the body.
     fn hit(&self, origin: DVec3, direction: DVec3) -> Option<(DVec3, DVec3, usize)> {
         let [start, along] = [origin, direction].map(|vector| vector.as_vec3a());

@@ -1,4 +1,5 @@
 use core::fmt;
+use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use tem00_camera::Camera;
@@ -10,9 +11,14 @@ use crate::{
     state::{ReferencePoint, State},
 };
 
-/// The speckle of a laser in the image of a camera, ready for the frames that it was prepared for.
+/// The speckle of a laser in the image of a camera, ready for the frames that it was prepared for. Clones share the
+/// patterns.
 #[derive(Clone, Debug)]
-pub struct PreparedSpeckle {
+pub struct PreparedSpeckle(pub(crate) Arc<Patterns>);
+
+/// The patterns, and what they were chosen for.
+#[derive(Debug)]
+pub(crate) struct Patterns {
     pub(crate) camera: Camera,
     pub(crate) laser: Laser,
     pub(crate) geometry: ImagingGeometry,
@@ -32,10 +38,10 @@ pub(crate) struct Part {
     pub stack: SpeckleStack,
 }
 
-/// The speckle of one body in one frame.
+/// The speckle of one body in one frame, which holds on to the patterns.
 #[derive(Clone, Debug)]
-pub struct SpeckleFrame<'a> {
-    speckle: &'a PreparedSpeckle,
+pub struct SpeckleFrame {
+    speckle: Arc<Patterns>,
     state: State,
     side: f64,
     reach: f64,
@@ -56,22 +62,25 @@ impl PreparedSpeckle {
     /// # Errors
     ///
     /// Returns an error if the motion shifts the speckle farther than the poses that it was prepared for.
-    pub fn frame(&self, motion: &Motion) -> Result<SpeckleFrame<'_>, ShadingError> {
-        let state = State::new((&self.camera, &self.laser), motion)?;
-        let side = state.side(&self.geometry, self.farthest.as_ref());
-        let held = self.reaches()[usize::from(side > 0.0)];
-        let shifts = state.scouted(&self.geometry, &self.points).into_iter();
+    pub fn frame(&self, motion: &Motion) -> Result<SpeckleFrame, ShadingError> {
+        let Self(patterns) = self;
+        let state = State::new((&patterns.camera, &patterns.laser), motion)?;
+        let side = state.side(&patterns.geometry, patterns.farthest.as_ref());
+        let held = patterns.reaches()[usize::from(side > 0.0)];
+        let shifts = state
+            .scouted(&patterns.geometry, &patterns.points)
+            .into_iter();
         let shifts = shifts
             .map(|(_, shift)| shift.pupil)
             .filter(|shift| shift.is_finite());
         let shift = shifts.fold(0.0, f64::max);
         // Of two frames the second has new speckle beyond the reach, whatever it is.
-        if shift > held && (self.needs.frames > 2 || held == 0.0) {
+        if shift > held && (patterns.needs.frames > 2 || held == 0.0) {
             return Err(ShadingError::BeyondPoses { shift, held });
         }
-        let size = self.plan.size().map(|samples| samples as f64);
+        let size = patterns.plan.size().map(|samples| samples as f64);
         Ok(SpeckleFrame {
-            speckle: self,
+            speckle: Arc::clone(patterns),
             state,
             side,
             reach: held,
@@ -80,22 +89,25 @@ impl PreparedSpeckle {
     }
 
     /// Returns the imaging geometry on the axis of the camera, with the size of the speckle.
-    pub const fn geometry(&self) -> &ImagingGeometry {
-        &self.geometry
+    pub fn geometry(&self) -> &ImagingGeometry {
+        &self.0.geometry
     }
 
     /// Returns the sizes of the patterns.
-    pub const fn plan(&self) -> &StackPlan {
-        &self.plan
+    pub fn plan(&self) -> &StackPlan {
+        &self.0.plan
     }
 
     /// Returns the bytes that all patterns take.
     pub fn memory_bytes(&self) -> u64 {
-        self.plan
+        self.0
+            .plan
             .memory_bytes()
-            .saturating_mul(self.parts.len() as u64)
+            .saturating_mul(self.0.parts.len() as u64)
     }
+}
 
+impl Patterns {
     /// The largest shifts to either side of the reference that the slices tell apart, in pupil diameters. Where the path
     /// has more than both need, each gets its part of it.
     fn reaches(&self) -> [f64; 2] {
@@ -110,21 +122,22 @@ impl PreparedSpeckle {
 
 impl fmt::Display for PreparedSpeckle {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [width, height] = self.plan.size();
-        let slices = self.plan.path().slice_count();
-        let [before, after] = self.shifts;
+        let patterns = &self.0;
+        let [width, height] = patterns.plan.size();
+        let slices = patterns.plan.path().slice_count();
+        let [before, after] = patterns.shifts;
         write!(
             f,
             "{} of {width} × {height} samples, {slices} {} ({:.0} MiB): speckle of {:.2} px, the region of {:.0} × {:.0} \
              px repeats nothing, the pupil moves by {:.2} of its diameters in {} frames",
-            counted(self.parts.len(), "pattern", "patterns"),
+            counted(patterns.parts.len(), "pattern", "patterns"),
             if slices == 1 { "slice" } else { "slices each" },
             self.memory_bytes() as f64 / f64::from(1 << 20),
-            self.needs.speckle_size,
-            self.needs.region[0],
-            self.needs.region[1],
+            patterns.needs.speckle_size,
+            patterns.needs.region[0],
+            patterns.needs.region[1],
             before + after,
-            self.needs.frames,
+            patterns.needs.frames,
         )
     }
 }
@@ -133,7 +146,7 @@ fn counted(count: usize, one: &str, more: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { more })
 }
 
-impl SpeckleFrame<'_> {
+impl SpeckleFrame {
     /// Returns the factor by which speckle multiplies the radiance at a point, now, of a surface with a unit normal.
     ///
     /// It is 1 where the camera does not see the point: there is no pattern there. Where it sees it, but the law has no

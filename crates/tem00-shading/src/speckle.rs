@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 use tem00_camera::Camera;
 use tem00_decorrelation::ImagingGeometry;
@@ -5,7 +7,7 @@ use tem00_speckle::{SpeckleStack, StackNeeds, StackPlan, incoherent_fractions};
 
 use crate::{
     Laser, Perspective, Pose, PreparedSpeckle, ShadingError,
-    prepared::Part,
+    prepared::{Part, Patterns},
     state::{ReferencePoint, State},
 };
 
@@ -170,7 +172,7 @@ impl Speckle {
             let stack = SpeckleStack::generate(field, plan.path())?;
             Ok(Part { fraction, stack })
         });
-        Ok(PreparedSpeckle {
+        Ok(PreparedSpeckle(Arc::new(Patterns {
             camera: self.camera,
             laser: self.laser,
             geometry,
@@ -180,7 +182,7 @@ impl Speckle {
             shifts: demand.shifts,
             farthest: demand.farthest,
             points: self.points,
-        })
+        })))
     }
 
     fn check_coherence(&self) -> Result<(), ShadingError> {

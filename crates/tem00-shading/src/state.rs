@@ -151,9 +151,12 @@ impl State {
         let in_image = |point: &SeenPoint| {
             point.pixel.cmpge(DVec2::ZERO).all() && point.pixel.cmple(size).all()
         };
-        let points = points.into_iter().filter(in_image);
-        points
-            .filter_map(|point| Some((point, self.shift(geometry, point)?)))
+        let points: Vec<_> = points.into_iter().filter(in_image).collect();
+        let mut shifts = vec![None; points.len()];
+        self.shifts(geometry, points.iter().copied(), &mut shifts);
+        let found = points.into_iter().zip(shifts);
+        found
+            .filter_map(|(point, shift)| Some((point, shift?)))
             .collect()
     }
 

@@ -48,7 +48,7 @@ fn places(count: u32) -> Vec<DVec3> {
 }
 
 /// The factors at the points that the body carries along.
-fn factors(frame: &SpeckleFrame<'_>, pose: &Pose, points: &[DVec3]) -> Vec<f64> {
+fn factors(frame: &SpeckleFrame, pose: &Pose, points: &[DVec3]) -> Vec<f64> {
     let normal = pose.direction(DVec3::Z);
     points
         .iter()

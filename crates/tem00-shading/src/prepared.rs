@@ -7,7 +7,7 @@ use tem00_decorrelation::ImagingGeometry;
 use tem00_speckle::{Complex, SpeckleStack, StackNeeds, StackPlan};
 
 use crate::{
-    BLOCK, Laser, Motion, SeenPoint, ShadingError, SpeckleShift,
+    BLOCK, Laser, Motion, Pose, SeenPoint, ShadingError, SpeckleShift,
     state::{ReferencePoint, State},
 };
 
@@ -64,26 +64,64 @@ impl PreparedSpeckle {
     /// Returns an error if the motion shifts the speckle farther than the poses that it was prepared for.
     pub fn frame(&self, motion: &Motion) -> Result<SpeckleFrame, ShadingError> {
         let Self(patterns) = self;
-        let state = State::new((&patterns.camera, &patterns.laser), motion)?;
-        let side = state.side(&patterns.geometry, patterns.farthest.as_ref());
-        let held = patterns.reaches()[usize::from(side > 0.0)];
-        let shifts = state
-            .scouted(&patterns.geometry, &patterns.points)
-            .into_iter();
-        let shifts = shifts
-            .map(|(_, shift)| shift.pupil)
-            .filter(|shift| shift.is_finite());
-        let shift = shifts.fold(0.0, f64::max);
+        let frame = self.unchecked(motion)?;
+        let seen = frame.state.scouted(&patterns.geometry, &patterns.points);
+        let shifts = seen.into_iter().map(|(_, shift)| shift.pupil);
+        let shift = shifts.filter(|shift| shift.is_finite()).fold(0.0, f64::max);
         // Of two frames the second has new speckle beyond the reach, whatever it is.
+        let held = frame.reach;
         if shift > held && (patterns.needs.frames > 2 || held == 0.0) {
             return Err(ShadingError::BeyondPoses { shift, held });
         }
+        Ok(frame)
+    }
+
+    /// Writes the factors at points that stood elsewhere in the reference state, for a host that knows no bodies but has
+    /// buffers of an image: where the points are, their unit normals, and where they were.
+    ///
+    /// A point counts as carried along without a turn. Points whose motion is the same, one after the other, are looked up
+    /// fastest; those that are not finite have the factor 1.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless the slices have the same length.
+    pub fn factors_since(
+        &self,
+        previous: &[DVec3],
+        points: &[DVec3],
+        normals: &[DVec3],
+        factors: &mut [f64],
+    ) {
+        assert_eq!(previous.len(), points.len(), "a previous point for each");
+        let moved = |index: usize| points[index] - previous[index];
+        let mut rest = 0;
+        while rest < points.len() {
+            let step = moved(rest);
+            let alike = (rest..points.len()).take_while(|&index| moved(index) == step);
+            let run = rest..rest + alike.count().max(1);
+            let frame = Pose::along(step).map(|pose| self.unchecked(&pose.into()));
+            match frame {
+                Ok(Ok(frame)) => {
+                    let (points, normals) = (&points[run.clone()], &normals[run.clone()]);
+                    frame.factors(points, normals, &mut factors[run.clone()]);
+                }
+                _ => factors[run.clone()].fill(1.0),
+            }
+            rest = run.end;
+        }
+    }
+
+    /// The frame of a motion, whether or not the slices hold it.
+    fn unchecked(&self, motion: &Motion) -> Result<SpeckleFrame, ShadingError> {
+        let Self(patterns) = self;
+        let state = State::new((&patterns.camera, &patterns.laser), motion)?;
+        let side = state.side(&patterns.geometry, patterns.farthest.as_ref());
         let size = patterns.plan.size().map(|samples| samples as f64);
         Ok(SpeckleFrame {
             speckle: Arc::clone(patterns),
             state,
             side,
-            reach: held,
+            reach: patterns.reaches()[usize::from(side > 0.0)],
             offset: place(motion.body) * DVec2::from_array(size),
         })
     }

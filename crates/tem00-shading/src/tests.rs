@@ -202,6 +202,37 @@ fn batches_have_the_bits_of_single_calls() {
     assert_eq!([together[70], together[140]], [1.0; 2], "out of sight");
 }
 
+/// Two bodies and the background in the buffers of an image; steps of powers of two are exact.
+#[test]
+fn buffers_have_the_bits_of_hits() {
+    let steps = [
+        DVec3::ZERO,
+        DVec3::new(2_f64.powi(-12), -(2_f64.powi(-13)), 2_f64.powi(-11)),
+    ];
+    let poses = steps.map(|step| Pose::along(step).unwrap());
+    let speckle = prepared(17, &poses);
+    let grid = |i: u32| {
+        DVec3::new(f64::from(i % 16) - 8.0, f64::from(i / 16) - 6.0, 0.0) * 2_f64.powi(-13)
+    };
+    let previous: Vec<_> = (0..192).map(grid).collect();
+    let body = |index: usize| index / 70 % 2;
+    let mut points: Vec<_> = previous
+        .iter()
+        .enumerate()
+        .map(|(i, &p)| p + steps[body(i)])
+        .collect();
+    points[100] = DVec3::splat(f64::NAN);
+    let normals = vec![DVec3::Z; points.len()];
+    let mut found = vec![0.0; points.len()];
+    speckle.factors_since(&previous, &points, &normals, &mut found);
+    let frames = poses.map(|pose| speckle.frame(&pose.into()).unwrap());
+    let hits = points
+        .iter()
+        .enumerate()
+        .map(|(i, &point)| frames[body(i)].factor(point, DVec3::Z));
+    assert_eq!(found, hits.collect::<Vec<_>>());
+}
+
 #[test]
 fn looks_polarisation_and_pixels_lower_the_contrast_by_their_laws() {
     let camera = camera(DVec3::new(-0.05, 0.01, 0.3));

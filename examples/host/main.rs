@@ -106,6 +106,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let camera = Camera::new(CameraDescription {
         position: DVec3::new(0.0, -0.2, 0.22),
         pixel_pitch: 6.9e-6,
+        resolution: [480, 200],
         ..CameraDescription::default()
     })?;
     let laser = Laser::line(650e-9, 0.4e-3, 12_f64.to_radians()).power(10e-3);
@@ -129,7 +130,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             // Once per body and frame: the mesh stands still.
             speckle: [speckle.frame(&Motion::default())?, speckle.frame(&moved)?],
         };
-        Ok(scene.render(64).map(|&irradiance| irradiance / 2.0))
+        Ok(scene.render(16).map(|&irradiance| irradiance / 2.0))
     };
     let frames = [frame(Pose::IDENTITY)?, frame(step)?];
     println!("{}", picture::write("host", &frames)?.display());

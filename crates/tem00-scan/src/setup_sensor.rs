@@ -211,13 +211,11 @@ impl<'a> SetupSensor<'a> {
     /// The motion from place to place, so that the laser plane meets the section y = 0.
     fn trajectory(&self, places: &[DVec3]) -> Result<Trajectory, TracerError> {
         let keyframes = places.iter().zip(0_u32..);
-        Trajectory::keyframed(
-            DVec3::ZERO,
-            keyframes.map(|(place, frame)| Keyframe {
-                displacement: *place + self.beside(place.with_y(0.0)) * DVec3::Y,
-                ..Keyframe::unmoved(f64::from(frame))
-            }),
-        )
+        let keyframes = keyframes.map(|(place, frame)| Keyframe {
+            displacement: *place + self.beside(place.with_y(0.0)) * DVec3::Y,
+            ..Keyframe::unmoved(f64::from(frame))
+        });
+        Ok(Trajectory::keyframed(DVec3::ZERO, keyframes)?)
     }
 
     /// Returns the points that are trusted, their columns averaged.

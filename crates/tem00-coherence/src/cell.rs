@@ -1,15 +1,10 @@
-use core::f64::consts::{PI, TAU};
-use std::sync::OnceLock;
+use core::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 use num_complex::Complex;
-use tem00_numerics::{
-    cast::to_usize,
-    disc_overlap, jinc,
-    quadrature::{for_each_node, integrate},
-};
+use tem00_numerics::disc_overlap;
 
-use crate::{CoherenceError, SourceExtent, lens};
+use crate::{CoherenceError, SourceExtent, excess::HeightExcess, kernel::LagKernel, lens};
 
 /// How a camera sees a rough surface that a source lights, for [`ResolutionCell::new`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -329,21 +324,27 @@ impl ResolutionCell {
     ///
     /// The correlation length is taken into account in focus, and left out beside it.
     pub fn squared_correlation(&self, kappa: f64) -> f64 {
-        self.squared_correlation_of(Difference {
+        let difference = Difference {
             kappa,
             shift: DVec2::new(kappa / self.tilt_wave_number(), 0.0),
             of_heights: kappa,
-        })
+        };
+        let excess = self.height_excess(LagKernel::CONTRAST, false);
+        self.squared_correlation_of(difference, &excess)
     }
 
-    /// Returns the mean of the squared correlation of two parts of the light.
-    pub(crate) fn squared_correlation_of(&self, difference: Difference) -> f64 {
+    /// Returns the mean of the squared correlation of two parts of the light, with the excess of a contrast.
+    pub(crate) fn squared_correlation_of(
+        &self,
+        difference: Difference,
+        excess: &HeightExcess,
+    ) -> f64 {
         let shared = self.shared_pupil(difference.shift.length(), difference.kappa);
         let dense = (shared * self.height_correlation(difference.of_heights)).norm_sqr();
         if self.defocus != 0.0 {
             return dense;
         }
-        dense + self.height_excess(difference, image_autocorrelation)
+        dense + excess.at(difference.of_heights, difference.shift.length())
     }
 
     /// The correlation length of the relief in speckles.
@@ -351,36 +352,25 @@ impl ResolutionCell {
         self.relief.correlation_length / self.speckle_size()
     }
 
-    /// Returns what the correlation length of the relief adds to a mean of `exp(−κ² σ_L² (1 − ρ) + iκ v·η)` over lags η,
-    /// in speckles, with the weights of an isotropic kernel.
-    pub(crate) fn height_excess(&self, difference: Difference, kernel: impl Fn(f64) -> f64) -> f64 {
-        let length = self.correlation_length();
-        if length == 0.0 || self.relief.rms_height == 0.0 {
-            return 0.0;
-        }
-        let exponent = (difference.of_heights * self.path_spread()).powi(2);
-        let turns = TAU * difference.shift.length();
-        let excess = |lag: f64| {
-            let correlation = (-(lag / length).powi(2)).exp();
-            let excess = (-exponent * (1.0 - correlation)).exp() - (-exponent).exp();
-            TAU * lag * kernel(lag) * excess * libm::j0(turns * lag)
-        };
-        // The excess falls from lag 0 on over ℓ or, if heights are large, over less; the images over a speckle.
-        let width = length / (1.0 + exponent).sqrt();
-        // Kernels have no frequency above 1 per speckle, and the excess hardly any above 1 per width.
-        if (turns - TAU) * width > 12.0 {
-            return 0.0;
-        }
-        let reach = if exponent > 50.0 { 0.0 } else { 6.0 * length };
-        let near = 6.0 * width;
-        let step = |width: f64| width.min(1.0).min(1.0 / turns.max(1e-3));
-        let inner = integrate(excess, [0.0, near], step(width));
-        inner + integrate(excess, [near, reach], step(length))
+    /// Returns what the correlation length of the relief adds to a mean over lags with the weights of a kernel, of which
+    /// `is_often` asked.
+    pub(crate) fn height_excess(&self, kernel: LagKernel, is_often: bool) -> HeightExcess {
+        HeightExcess::new(
+            kernel,
+            [self.correlation_length(), self.path_spread()],
+            is_often,
+        )
     }
 
     /// Returns `exp(−κ² σ_L²/2)`.
     pub(crate) fn height_correlation(&self, kappa: f64) -> f64 {
-        (-0.5 * (kappa * self.path_spread()).powi(2)).exp()
+        let exponent = 0.5 * (kappa * self.path_spread()).powi(2);
+        // Underflow takes long.
+        if exponent > 750.0 {
+            0.0
+        } else {
+            (-exponent).exp()
+        }
     }
 
     /// Returns the part of the pupil that two parts of the light share whose fields are so many diameters apart, with the
@@ -410,47 +400,6 @@ pub(crate) struct Difference {
     pub shift: DVec2,
     /// The difference of wave numbers, in rad/m, that changes the phases of heights as much.
     pub of_heights: f64,
-}
-
-/// Lags per speckle of the table of the autocorrelation, and the last one, after which a series is as good.
-const LAGS: f64 = 64.0;
-const LAST_LAG: f64 = 30.0;
-
-/// Returns the intensity of a point's image, in units of a speckle, of unit area.
-pub(crate) fn image_of_point(lag: f64) -> f64 {
-    0.25 * PI * jinc(PI * lag).powi(2)
-}
-
-/// Returns the autocorrelation of the intensity of a point's image, in units of a speckle, of unit area.
-pub(crate) fn image_autocorrelation(lag: f64) -> f64 {
-    static TABLE: OnceLock<Vec<f64>> = OnceLock::new();
-    if lag >= LAST_LAG {
-        // Of the cusp of chat² at 0: −8ρ/π + 4ρ³/3π.
-        return 2.0 / (PI * lag).powi(3) + 0.75 / (PI * lag).powi(5);
-    }
-    let table = TABLE.get_or_init(|| {
-        let count = to_usize(LAST_LAG * LAGS) + 3;
-        (0..count)
-            .map(|i| image_autocorrelation_by_frequencies(i as f64 / LAGS))
-            .collect()
-    });
-    let at = lag * LAGS;
-    let (first, t) = (to_usize(at), at.fract());
-    // Four points; the function is even.
-    let [a, b, c, d] = [first.abs_diff(1), first, first + 1, first + 2].map(|i| table[i]);
-    let [a, d] = [a * (1.0 - t) * (2.0 - t), d * (1.0 + t) * (1.0 - t)];
-    let inner = b * (1.0 - t) * (2.0 - t) * (1.0 + t) + c * t * (1.0 + t) * (2.0 - t);
-    0.5 * inner - t * (a + d) / 6.0
-}
-
-/// The transform of chat².
-fn image_autocorrelation_by_frequencies(lag: f64) -> f64 {
-    let mut sum = 0.0;
-    for_each_node([0.0, 1.0], 1.0 / (1.0 + lag), |frequency, weight| {
-        let transfer = disc_overlap(frequency).powi(2);
-        sum += weight * TAU * frequency * transfer * libm::j0(TAU * frequency * lag);
-    });
-    sum
 }
 
 fn check_length(parameter: &'static str, value: f64, possible: bool) -> Result<(), CoherenceError> {

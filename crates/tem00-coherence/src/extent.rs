@@ -40,6 +40,12 @@ const MAX_ANGLE: f64 = 0.3;
 /// Beyond so many standard deviations of a difference a Gaussian ends, at 2e-11 of its light.
 const GAUSSIAN_REACH: f64 = 7.0;
 
+/// The largest number of single directions: all pairs of them count.
+const MAX_DIRECTIONS: usize = 100;
+
+/// The number of panels of the smallest difference that matters; beyond, they grow.
+const EVEN_PANELS: f64 = 12.0;
+
 /// Directions of differences on a turn.
 const AZIMUTHS: i32 = 32;
 
@@ -78,8 +84,16 @@ impl SourceExtent {
     ///
     /// # Errors
     ///
-    /// Returns an error if a direction has no length, a share is negative or not finite, or all are 0.
+    /// Returns an error if there are more than 100, a direction has no length, a share is negative or not finite, or all are 0.
     pub fn directions(list: &[(DVec3, f64)]) -> Result<Self, CoherenceError> {
+        if list.len() > MAX_DIRECTIONS {
+            let allowed = "from 1 to 100 in number";
+            return Err(CoherenceError::refused(
+                "directions",
+                list.len() as f64,
+                allowed,
+            ));
+        }
         let total: f64 = list.iter().map(|(_, share)| share).sum();
         let allowed = "not negative, finite, and not all 0";
         let refused = |share| CoherenceError::refused("share", share, allowed);
@@ -127,13 +141,25 @@ impl SourceExtent {
                 return;
             }
             let (first, second) = to_source.any_orthonormal_pair();
-            for_each_node([0.0, end], feature.min(0.25 * end), |radius, weight| {
+            let mut visit = |radius: f64, weight: f64| {
                 let share = weight * TAU * radius * density(radius) / f64::from(AZIMUTHS);
                 for azimuth in 0..AZIMUTHS {
                     let angle = TAU * (f64::from(azimuth) + 0.5) / f64::from(AZIMUTHS);
                     visit(radius * (angle.cos() * first + angle.sin() * second), share);
                 }
-            });
+            };
+            // Far from each other directions have nothing in common but what varies as the source does.
+            let mut from = end.min(EVEN_PANELS * feature.max(1e-12 * end));
+            for_each_node(
+                [0.0, from],
+                (from / EVEN_PANELS).max(feature).min(0.25 * end),
+                &mut visit,
+            );
+            while from < end {
+                let to = end.min(4.0 * from);
+                for_each_node([from, to], 0.25 * end, &mut visit);
+                from = to;
+            }
         };
         match &self.directions {
             Directions::Disc { half_angle } => rings(2.0 * half_angle, &|radius| {

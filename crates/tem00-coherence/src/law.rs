@@ -1,12 +1,16 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use tem00_numerics::{cast::to_usize, disc_overlap, quadrature::integrate, sinc_pi_squared};
 
 use crate::{
     ResolutionCell, SpectralLine,
-    cell::{Difference, image_autocorrelation, image_of_point},
+    cell::Difference,
+    chebyshev::Tabulated,
+    excess::HeightExcess,
+    kernel::LagKernel,
     lens,
+    line::{LADDER_END, breaks_about},
 };
 
 /// The speckle that light of a finite bandwidth makes of one rough surface.
@@ -192,13 +196,14 @@ impl PolychromaticSpeckle<'_> {
     /// for a relief without correlation length; without a displacement it is the squared contrast.
     pub fn covariance(&self, displacement: [f64; 2]) -> f64 {
         let displacement = DVec2::from_array(displacement);
+        let excess = self.height_excess(LagKernel::CONTRAST);
         self.mean(|difference| {
             let shift = displacement + difference.shift;
             let moved = Difference {
                 shift,
                 ..difference
             };
-            self.cell.squared_correlation_of(moved)
+            self.cell.squared_correlation_of(moved, &excess)
         })
     }
 
@@ -254,10 +259,7 @@ impl PolychromaticSpeckle<'_> {
 
     fn line_variance_by(&self, rows: Rows, shared: impl Fn(DVec2) -> f64) -> f64 {
         let contrast_like = rows.weight_of_contrast();
-        let kernel = |lag: f64| {
-            let tall = (1.0 - contrast_like) * image_of_point(lag);
-            tall + contrast_like * image_autocorrelation(lag)
-        };
+        let excess = self.height_excess(LagKernel { contrast_like });
         // Heights that are correlated over many speckles leave f alone.
         let long = self.cell.correlation_length().powi(2);
         let long = long / (long + 4.0);
@@ -270,41 +272,52 @@ impl PolychromaticSpeckle<'_> {
                 return dense;
             }
             let scale = shared / (chat * (1.0 - contrast_like * (1.0 - chat)));
-            dense + scale.powf(long) * self.cell.height_excess(difference, kernel)
+            dense + scale.powf(long) * excess.at(difference.of_heights, difference.shift.length())
         })
+    }
+
+    /// Returns what correlated heights add, from a table where the parts of the light are many.
+    fn height_excess(&self, kernel: LagKernel) -> HeightExcess {
+        let is_point = self.cell.source_extent().is_point();
+        self.cell
+            .height_excess(kernel, !is_point || self.line.has_many_pairs())
     }
 
     /// Returns the mean over two parts of the light.
     fn mean(&self, f: impl Fn(Difference) -> f64) -> f64 {
-        let (cell, wave_number) = (self.cell, self.line.wave_number());
-        let tilt = cell.tilt_wave_number().recip();
-        let of_change = |change: DVec3| {
-            let (moved, heights) = cell.change_with_source(change);
-            let (moved, heights) = (wave_number * moved, wave_number * heights);
-            // Where the fields lie on each other, and where heights have the same phases.
-            let features = match (moved.x == 0.0, heights == 0.0) {
-                (true, true) => &[0.0][..],
-                (false, true) => &[-moved.x / tilt],
-                (_, false) => &[-moved.x / tilt, -heights],
-            };
-            self.line.mean_about(features, cell.scale(), |kappa| {
-                f(Difference {
-                    kappa,
-                    shift: moved + DVec2::new(kappa * tilt, 0.0),
-                    of_heights: kappa + heights,
-                })
+        let (cell, line) = (self.cell, self.line);
+        let (extent, scale) = (cell.source_extent(), cell.scale());
+        let (wave_number, tilt) = (line.wave_number(), cell.tilt_wave_number().recip());
+        let between = |(moved, heights): (DVec2, f64), kappa: f64| {
+            f(Difference {
+                kappa,
+                shift: moved + DVec2::new(kappa * tilt, 0.0),
+                of_heights: kappa + heights,
             })
         };
-        let extent = cell.source_extent();
         if extent.is_point() {
-            return of_change(DVec3::ZERO);
+            return line.mean_over_pairs(scale, |kappa| between((DVec2::ZERO, 0.0), kappa));
         }
         let feature = 0.5 / (wave_number * cell.greatest_change_with_source());
-        let mut sum = 0.0;
+        let mut changes = Vec::new();
         extent.for_each_difference(cell.source(), feature, |change, share| {
-            sum += share * of_change(change);
+            let (moved, heights) = cell.change_with_source(change);
+            changes.push(((wave_number * moved, wave_number * heights), share));
         });
-        sum
+        let over_source = |kappa: f64| {
+            let terms = changes.iter();
+            terms.fold(0.0, |sum, &(change, share)| {
+                sum + share * between(change, kappa)
+            })
+        };
+        if !line.has_width() {
+            return line.mean_over_pairs(scale, over_source);
+        }
+        // Directions are many, and their mean is smooth over wave numbers.
+        let unit = scale.min(1e200);
+        let over_source =
+            Tabulated::new(breaks_about([(0.0, unit)], LADDER_END * unit), over_source);
+        line.mean_over_pairs(scale, |kappa| over_source.at(kappa))
     }
 }
 

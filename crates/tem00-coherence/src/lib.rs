@@ -26,10 +26,13 @@
 //! once. Paths over several surfaces are given, not found. Surfaces are rough: below `σ_L = λ/2` a mirror part is left that these laws do not know.
 
 mod cell;
+mod chebyshev;
 mod eigenvalues;
 mod error;
+mod excess;
 mod extent;
 mod heights;
+mod kernel;
 mod law;
 mod lens;
 mod line;

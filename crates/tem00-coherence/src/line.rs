@@ -6,7 +6,7 @@ use tem00_numerics::{
     sinc,
 };
 
-use crate::CoherenceError;
+use crate::{CoherenceError, chebyshev::Tabulated};
 
 /// The spectrum of a laser or of another narrow source.
 ///
@@ -76,6 +76,8 @@ const MAX_RELATIVE_WIDTH: f64 = 0.1;
 const LINEWIDTH: &str = "from 0 to a tenth of the wavelength, in metres; the two may be swapped";
 /// The largest number of peaks whose widths count for modes.
 const MAX_WIDE_PEAKS: usize = 24;
+/// The largest number of peaks whose pairs are taken one by one.
+const MAX_PEAKS_IN_PAIRS: usize = 8;
 const WAVELENGTH: &str = "positive and finite, in metres";
 
 /// Standard deviations of a Gaussian and half widths of a Lorentzian after which nothing is left: 1e−16 of the first,
@@ -265,15 +267,28 @@ impl SpectralLine {
     ///
     /// `scale` is the width of the finest feature of f; f may have a cusp at 0, and falls or stays as it is far away.
     pub fn mean_over_pairs(&self, scale: f64, f: impl Fn(f64) -> f64) -> f64 {
-        self.mean_about(&[0.0], scale, f)
+        let of_offset = |offset| match self.has_width() {
+            true => self.mean_over_peaks(offset, scale, &f),
+            false => f(offset),
+        };
+        if !self.has_many_pairs() {
+            return self.mean_over_differences(of_offset);
+        }
+        let offsets = self.peaks.iter().map(|peak| peak.offset.abs());
+        let farthest = 2.0 * offsets.fold(f64::MIN_POSITIVE, f64::max);
+        let breaks = breaks_about([(0.0, scale)], 1.01 * farthest);
+        let of_offset = Tabulated::new(breaks, of_offset);
+        self.mean_over_differences(|offset| of_offset.at(offset))
     }
 
-    /// The same, of a function with features about other differences.
-    pub(crate) fn mean_about(&self, features: &[f64], scale: f64, f: impl Fn(f64) -> f64) -> f64 {
-        self.mean_over_differences(|offset| match self.width > 0.0 {
-            true => self.mean_over_peaks(offset, (features, scale), &f),
-            false => f(offset),
-        })
+    /// Returns whether the peaks have a width.
+    pub(crate) fn has_width(&self) -> bool {
+        self.width > 0.0
+    }
+
+    /// Returns whether the peaks are so many that a function of their differences is tabulated.
+    pub(crate) const fn has_many_pairs(&self) -> bool {
+        self.peaks.len() > MAX_PEAKS_IN_PAIRS
     }
 
     /// The mean over pairs of peaks, of a function of what they are apart.
@@ -345,12 +360,7 @@ impl SpectralLine {
     }
 
     /// ∫ f(κ) times the density of the difference of two draws from two peaks that are `offset` apart.
-    fn mean_over_peaks(
-        &self,
-        offset: f64,
-        (features, scale): (&[f64], f64),
-        f: &impl Fn(f64) -> f64,
-    ) -> f64 {
+    fn mean_over_peaks(&self, offset: f64, scale: f64, f: &impl Fn(f64) -> f64) -> f64 {
         // In widths of a peak, of which there may be no reciprocal.
         let width = self.width;
         let reach = match self.shape {
@@ -359,21 +369,7 @@ impl SpectralLine {
             LineShape::Rectangular => 1.0,
         };
         let integrand = |x: f64| self.shape.pair_density(x) * f(offset + width * x);
-        let mut breaks = Vec::new();
-        let features = features
-            .iter()
-            .map(|centre| ((centre - offset) / width, scale / width));
-        for (centre, feature) in features.chain([(0.0, 1.0)]) {
-            let steps = ladder()
-                .map(|step| step * feature)
-                .take_while(|step| *step < 4.0 * reach);
-            breaks.extend(steps.flat_map(|step| [centre - step, centre + step]));
-            breaks.push(centre);
-        }
-        breaks.retain(|x: &f64| x.abs() < reach);
-        breaks.extend([-reach, reach]);
-        breaks.sort_unstable_by(f64::total_cmp);
-        breaks
+        breaks_about([(-offset / width, scale / width), (0.0, 1.0)], reach)
             .windows(2)
             .map(|ends| integrate(integrand, [ends[0], ends[1]], f64::INFINITY))
             .sum()
@@ -429,6 +425,25 @@ fn normal_quantile(u: f64) -> f64 {
     }
     if u < 0.5 { -x } else { x }
 }
+
+/// Returns breaks between −reach and reach, finer about features, each a centre and a width.
+pub(crate) fn breaks_about(features: impl IntoIterator<Item = (f64, f64)>, reach: f64) -> Vec<f64> {
+    let mut breaks = Vec::new();
+    for (centre, feature) in features {
+        let steps = ladder()
+            .map(|step| step * feature)
+            .take_while(|step| *step < 4.0 * reach);
+        breaks.extend(steps.flat_map(|step| [centre - step, centre + step]));
+        breaks.push(centre);
+    }
+    breaks.retain(|x: &f64| x.abs() < reach);
+    breaks.extend([-reach, reach]);
+    breaks.sort_unstable_by(f64::total_cmp);
+    breaks
+}
+
+/// The last step away from a feature, in its widths.
+pub(crate) const LADDER_END: f64 = (1_u64 << 59) as f64;
 
 /// Steps away from a feature of width 1: even ones beside it, doubling ones far away.
 fn ladder() -> impl Iterator<Item = f64> {

@@ -211,6 +211,25 @@ fn directions_share_chords_and_lenses_of_the_pupil() {
 }
 
 #[test]
+fn differences_are_bounded_in_number() {
+    for extent in [SourceExtent::disc(0.3), SourceExtent::gaussian(0.3)] {
+        let extent = extent.unwrap();
+        for feature in [1e-300, 1e-9, 1e-3, 0.1, 1e9] {
+            let (mut count, mut sum) = (0, 0.0);
+            extent.for_each_difference(DVec3::Z, feature, |_, share| {
+                count += 1;
+                sum += share;
+            });
+            assert!(count <= 17_000, "{feature:e}: {count}");
+            assert!((sum - 1.0).abs() < 1e-4, "{feature:e}: {sum}");
+        }
+    }
+    let many = vec![(DVec3::Z, 1.0); 101];
+    let refused = SourceExtent::directions(&many).unwrap_err();
+    assert_eq!(refused.parameter(), "directions", "{refused}");
+}
+
+#[test]
 fn what_cannot_be_is_refused_by_its_name() {
     for angle in [-0.1, 0.4, f64::NAN] {
         let refused = SourceExtent::disc(angle).unwrap_err();

@@ -1,3 +1,5 @@
+use core::cell::Cell;
+
 use approx::assert_relative_eq;
 use proptest::prelude::*;
 
@@ -235,5 +237,37 @@ proptest! {
         prop_assert!((0.0..=1.0 + 1e-12).contains(&squared), "{squared}");
         let mean = line.mean_over_pairs(f64::INFINITY, |_| 1.0);
         prop_assert!((mean - 1.0).abs() < 2e-9, "{mean}");
+    }
+}
+
+/// Pairs of many peaks, against their sum for a function whose mean over a pair of Gaussians is known.
+#[test]
+fn many_peaks_are_the_sum_of_their_pairs() {
+    let scale = 3e4;
+    let wave = |wavelength: f64| TAU / wavelength;
+    for (count, linewidth) in [(9, 0.0), (40, 2e-11), (256, 0.0), (256, 1e-10), (256, 5e-9)] {
+        let place = |i: u32| f64::from(i) / f64::from(count) + 0.002 * f64::from(i).sin();
+        let peaks: Vec<_> = (0..count)
+            .map(|i| [650e-9 + 4e-9 * place(i), 1.0 + f64::from(i % 3)])
+            .collect();
+        let line = SpectralLine::from_peaks(&peaks).unwrap();
+        let line = line.with_linewidth(linewidth, LineShape::Gaussian).unwrap();
+        let total: f64 = peaks.iter().map(|peak| peak[1]).sum();
+        // ∫ exp(−(κ/scale)²) over a Gaussian difference about κ₀.
+        let spread = 1.0 + 4.0 * (line.width / scale).powi(2);
+        let of_pair = |kappa: f64| (-(kappa / scale).powi(2) / spread).exp() / spread.sqrt();
+        let pairs = peaks.iter().flat_map(|a| peaks.iter().map(move |b| (a, b)));
+        let expected: f64 = pairs
+            .map(|(a, b)| a[1] * b[1] / total.powi(2) * of_pair(wave(a[0]) - wave(b[0])))
+            .sum();
+        let asked = Cell::new(0_u32);
+        let found = line.mean_over_pairs(scale, |kappa| {
+            asked.set(asked.get() + 1);
+            (-(kappa / scale).powi(2)).exp()
+        });
+        assert_relative_eq!(found, expected, max_relative = 1e-8);
+        // Of 65,536 pairs with a width each takes some 1,500 values.
+        let most = if linewidth == 0.0 { 1_200 } else { 2_000_000 };
+        assert!(asked.get() < most, "{count} {linewidth:e}: {}", asked.get());
     }
 }

@@ -1,0 +1,75 @@
+//! Functions that are asked for often, as polynomials between breaks.
+
+use core::{cell::OnceCell, f64::consts::PI};
+
+/// Returns a Chebyshev node of `N` on [−1, 1].
+pub(crate) fn node<const N: usize>(k: usize) -> f64 {
+    (PI * (k as f64 + 0.5) / N as f64).cos()
+}
+
+/// Returns the first `N` Chebyshev polynomials.
+pub(crate) fn polynomials<const N: usize>(x: f64) -> [f64; N] {
+    let [mut before, mut value] = [x, 1.0];
+    core::array::from_fn(|_| {
+        let this = value;
+        (before, value) = (value, 2.0 * x * value - before);
+        this
+    })
+}
+
+/// Returns the coefficients of the polynomials that have these values at the nodes.
+pub(crate) fn coefficients<const N: usize>(values: [f64; N]) -> [f64; N] {
+    let mut sums = [0.0; N];
+    for (k, value) in values.into_iter().enumerate() {
+        for (sum, polynomial) in sums.iter_mut().zip(polynomials::<N>(node::<N>(k))) {
+            *sum += value * polynomial * 2.0 / N as f64;
+        }
+    }
+    sums[0] *= 0.5;
+    sums
+}
+
+/// Returns the panel between breaks in which a value lies, and its place there from −1 to 1.
+pub(crate) fn place(breaks: &[f64], value: f64) -> Option<(usize, f64)> {
+    let panel = breaks.partition_point(|end| *end <= value).checked_sub(1)?;
+    let (start, end) = (breaks[panel], *breaks.get(panel + 1)?);
+    Some((panel, (2.0 * value - start - end) / (end - start)))
+}
+
+/// Returns the value at a place of a panel from `start` to `end`.
+pub(crate) fn at_place([start, end]: [f64; 2], place: f64) -> f64 {
+    0.5 * (start + end) + 0.5 * (end - start) * place
+}
+
+/// A function that is smooth between breaks. It is asked for at the nodes of a panel where a value in it is wanted.
+pub(crate) struct Tabulated<F> {
+    function: F,
+    breaks: Vec<f64>,
+    panels: Vec<OnceCell<[f64; 16]>>,
+}
+
+impl<F: Fn(f64) -> f64> Tabulated<F> {
+    pub(crate) fn new(breaks: Vec<f64>, function: F) -> Self {
+        let panels = vec![OnceCell::new(); breaks.len()];
+        Self {
+            function,
+            breaks,
+            panels,
+        }
+    }
+
+    /// Returns the value, from the function itself beyond the breaks.
+    pub(crate) fn at(&self, x: f64) -> f64 {
+        let Some((panel, place)) = place(&self.breaks, x) else {
+            return (self.function)(x);
+        };
+        let ends = [self.breaks[panel], self.breaks[panel + 1]];
+        let fitted = self.panels[panel].get_or_init(|| {
+            coefficients(core::array::from_fn(|k| {
+                (self.function)(at_place(ends, node::<16>(k)))
+            }))
+        });
+        let terms = fitted.iter().zip(polynomials::<16>(place));
+        terms.map(|(c, t)| c * t).sum()
+    }
+}

@@ -43,7 +43,11 @@ impl From<io::Error> for Refused {
 impl FolderLock {
     /// Takes a folder for this process alone.
     pub(crate) fn alone(folder: &Path) -> Result<Self, Refused> {
-        let path = folder.join(NAME);
+        Self::by_file(folder.join(NAME))
+    }
+
+    /// Takes for this process alone what a file stands for, which is made and removed.
+    pub(crate) fn by_file(path: PathBuf) -> Result<Self, Refused> {
         loop {
             let mut file = open(&path)?;
             match file.try_lock() {
@@ -108,22 +112,51 @@ impl Drop for FolderLock {
     }
 }
 
+/// Opens the file, which is made if it is missing, and changes nothing in it: it may be a link to another.
 fn open(path: &Path) -> io::Result<File> {
-    OpenOptions::new()
-        .read(true)
-        .write(true)
-        .create(true)
-        .truncate(false)
-        .open(path)
-        .map_err(|error| error.kind().into())
+    let plain = |error: io::Error| io::Error::from(error.kind());
+    let mut options = OpenOptions::new();
+    options.read(true).write(true);
+    loop {
+        match options.clone().create_new(true).open(path) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            opened => return opened.map_err(plain),
+        }
+        match fs::symlink_metadata(path) {
+            Ok(found) if !is_own(&found) => {
+                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                let message = format!("its {name} is a link or no regular file: remove it");
+                return Err(io::Error::other(message));
+            }
+            // Removed between both.
+            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(plain(error)),
+            _ => {}
+        }
+        match options.open(path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+            opened => return opened.map_err(plain),
+        }
+    }
 }
 
-/// Returns whether the open file is the one that stands at `path`.
+/// Returns whether a file has one name only and stands where it seems to.
+#[cfg(unix)]
+fn is_own(found: &fs::Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    found.is_file() && found.nlink() == 1
+}
+
+#[cfg(not(unix))]
+fn is_own(found: &fs::Metadata) -> bool {
+    found.is_file()
+}
+
+/// Returns whether the open file is the one that stands at `path`, and no other that a link leads to.
 #[cfg(unix)]
 fn is_at(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
     let identity = |found: fs::Metadata| (found.dev(), found.ino());
-    match (file.metadata(), fs::metadata(path)) {
+    match (file.metadata(), fs::symlink_metadata(path)) {
         (Ok(open), Ok(there)) => identity(open) == identity(there),
         _ => false,
     }
@@ -208,6 +241,35 @@ mod tests {
         drop(second);
         assert!(!lock_file(path), "nothing is left");
         FolderLock::shared(path, "b").expect("nobody has it any more");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn no_link_is_followed() {
+        use std::os::unix::fs::symlink;
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let (own, name) = (folder.path().join("own"), folder.path().join("precious"));
+        fs::create_dir(&own).expect("a folder");
+        fs::write(&name, "precious").expect("written");
+        let missing = folder.path().join("missing");
+        let link = own.join(NAME);
+        let links: [(&str, &dyn Fn() -> io::Result<()>); 4] = [
+            ("to a file", &|| symlink(&name, &link)),
+            ("to nothing", &|| symlink(&missing, &link)),
+            ("a second name", &|| fs::hard_link(&name, &link)),
+            ("a folder", &|| fs::create_dir(&link)),
+        ];
+        for (kind, make) in links {
+            make().expect("made");
+            for taken in [FolderLock::alone(&own), FolderLock::shared(&own, "a")] {
+                assert!(matches!(&taken, Err(Refused::Io(_))), "{kind}: {taken:?}");
+            }
+            assert_eq!(fs::read(&name).expect("read"), b"precious", "{kind}");
+            assert!(!missing.exists(), "{kind}");
+            fs::remove_file(&link)
+                .or_else(|_| fs::remove_dir(&link))
+                .expect("removed");
+        }
     }
 
     #[test]

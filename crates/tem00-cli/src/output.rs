@@ -4,8 +4,10 @@ use std::{
     fmt::Arguments,
     fs,
     io::{self, Write},
+    num::NonZero,
     path::{Path, PathBuf},
     sync::atomic::{AtomicBool, Ordering},
+    thread,
 };
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -59,13 +61,7 @@ fn take(
     folder: &Path,
     lock: impl FnOnce(&Path) -> Result<FolderLock, Refused>,
 ) -> Result<FolderLock, Failure> {
-    let name = folder.display();
-    let refused = |error: io::Error| {
-        Failure::input(
-            format!("cannot write into the folder {name}: {error}"),
-            "name a folder that may be written with -o",
-        )
-    };
+    let refused = |error| not_writable(folder, &error);
     create_writable_folder(folder).map_err(refused)?;
     let lock = lock(folder).map_err(|why| match why {
         Refused::InUse(process) => in_use(folder, process),
@@ -73,16 +69,46 @@ fn take(
     })?;
     if !lock.is_held() {
         note(&format!(
-            "the file system of {name} has no locks: let no other tem00 write there meanwhile"
+            "the file system of {} has no locks: let no other tem00 write there meanwhile",
+            folder.display()
         ));
     }
     remove_abandoned(folder);
     Ok(lock)
 }
 
+/// Returns the failure that nothing can be written into a folder.
+pub(crate) fn not_writable(folder: &Path, error: &io::Error) -> Failure {
+    Failure::unavailable(
+        format!("cannot write into the folder {}: {error}", folder.display()),
+        "name a folder that may be written with -o",
+    )
+}
+
+/// Makes a folder within a folder of results, without what killed processes left there, and returns its path.
+///
+/// # Errors
+///
+/// Returns a failure if it cannot be made, or is a link, which may lead anywhere.
+pub(crate) fn subfolder(folder: &Path, name: &str) -> Result<PathBuf, Failure> {
+    let path = folder.join(name);
+    if fs::symlink_metadata(&path).is_ok_and(|found| found.is_symlink()) {
+        return Err(Failure::unavailable(
+            format!(
+                "{} is a link, through which nothing is written",
+                path.display()
+            ),
+            "remove it, or name another folder with -o",
+        ));
+    }
+    create_writable_folder(&path).map_err(|error| not_writable(&path, &error))?;
+    remove_abandoned(&path);
+    Ok(path)
+}
+
 fn in_use(folder: &Path, process: Option<u32>) -> Failure {
     let process = process.map_or_else(String::new, |process| format!(", process {process},"));
-    Failure::input(
+    Failure::unavailable(
         format!(
             "another tem00{process} is writing into the folder {}",
             folder.display()
@@ -163,7 +189,22 @@ pub(crate) fn note(text: &str) {
 ///
 /// Returns a failure if the system says that there is not so much.
 pub(crate) fn check_room(what: &str, bytes: u64, help: &str) -> Result<(), Failure> {
-    check_memory(bytes).map_err(|error| Failure::input(format!("{what}: {error}"), help))
+    check_memory(bytes).map_err(|error| Failure::unavailable(format!("{what}: {error}"), help))
+}
+
+/// The maximum number of threads for each that the machine runs at a time: more only wait for each other.
+const THREADS_PER_CORE: usize = 4;
+
+/// Returns the threads that were asked for, or the most that are of use here, which is noted.
+pub(crate) fn bounded(threads: Option<u16>) -> Option<u16> {
+    let cores = thread::available_parallelism().map_or(1, NonZero::get);
+    let most = u16::try_from(THREADS_PER_CORE * cores).unwrap_or(u16::MAX);
+    if let Some(asked) = threads.filter(|&asked| asked > most) {
+        note(&format!(
+            "--threads {asked}: this machine runs {cores} at a time; {most} are started"
+        ));
+    }
+    threads.map(|asked| asked.min(most))
 }
 
 /// Starts the threads that were asked for, or one per core.
@@ -173,7 +214,7 @@ pub(crate) fn check_room(what: &str, bytes: u64, help: &str) -> Result<(), Failu
 /// Returns a failure if the operating system refuses.
 pub(crate) fn thread_pool(threads: Option<u16>) -> Result<ThreadPool, Failure> {
     ThreadPoolBuilder::new()
-        .num_threads(threads.map_or(0, usize::from))
+        .num_threads(bounded(threads).map_or(0, usize::from))
         .build()
         .map_err(|error| Failure::running(format!("cannot start the threads: {error}")))
 }

@@ -39,7 +39,7 @@ pub(crate) struct SceneArgs {
     #[arg(long, visible_alias = "frame", value_name = "N|FIRST..LAST")]
     pub(crate) frames: Option<IndexRange>,
 
-    /// Threads to work with, 1 to 1024; the result does not depend on it [default: all].
+    /// Threads to work with, 1 to 1024, four for each core at most; the result does not depend on it [default: all].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
 

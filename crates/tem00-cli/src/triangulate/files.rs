@@ -80,8 +80,7 @@ impl Files {
 
     /// Writes the photographs of a board, in ordinary light and under the laser.
     pub(super) fn write_board(&self, number: usize, pair: &[RawFrame; 2]) -> Result<(), Failure> {
-        let folder = self.path("boards");
-        fs::create_dir_all(&folder).map_err(|error| Failure::writing(&folder, error))?;
+        let folder = output::subfolder(&self.folder, "boards")?;
         for (kind, frame) in ["board", "line"].iter().zip(pair) {
             let path = folder.join(format!("{kind}_{number:02}.{}", self.extension()));
             write_raw(&path, frame, &[]).map_err(|error| Failure::writing(&path, error))?;

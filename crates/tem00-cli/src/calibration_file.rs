@@ -64,7 +64,7 @@ pub(crate) fn read_calibration(path: &Path) -> Result<Calibration, Failure> {
         )
     };
     let content = read_input(path, MAX_TEXT_BYTES).map_err(|error| {
-        Failure::input(
+        Failure::unavailable(
             format!("cannot read {}: {error}", path.display()),
             "a calibration is a JSON file of `tem00 calibrate`",
         )

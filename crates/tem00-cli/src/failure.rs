@@ -7,6 +7,10 @@ use std::{
 
 use annotate_snippets::{Group, Level, Renderer};
 use tem00_config::{ConfigError, printable_line};
+#[cfg(feature = "full")]
+use tem00_speckle::SpeckleError;
+#[cfg(feature = "full")]
+use tem00_triangulation::TriangulationError;
 
 use crate::excerpt::Excerpt;
 
@@ -15,6 +19,9 @@ use crate::excerpt::Excerpt;
 pub(crate) enum Failure {
     /// The user gave something that cannot be used. Exit code 2.
     Input(Box<Problem>),
+    /// What the work needs is not there now, whatever the input says: memory, a file that can be read, a folder
+    /// that may be written into and that no other process has. Exit code 2.
+    Unavailable(Box<Problem>),
     /// The work itself failed. Exit code 1.
     Running(Box<Problem>),
     /// The work was done and has no result: nothing was measured, or nothing found. Exit code 3.
@@ -29,6 +36,30 @@ impl Failure {
     /// Returns a complaint about the input: what is wrong with which value, and what is allowed.
     pub(crate) fn input(message: impl Into<String>, help: impl Into<String>) -> Self {
         Self::Input(Problem::new(message.into(), Some(help.into())).into())
+    }
+
+    /// Returns what the work needs and does not find now, and what to do about it.
+    pub(crate) fn unavailable(message: impl Into<String>, help: impl Into<String>) -> Self {
+        Self::Unavailable(Problem::new(message.into(), Some(help.into())).into())
+    }
+
+    /// Returns a complaint about the input or, where `no_memory`, about what there is of it.
+    pub(crate) fn refused(no_memory: bool, message: String, help: impl Into<String>) -> Self {
+        if no_memory {
+            Self::unavailable(message, help)
+        } else {
+            Self::input(message, help)
+        }
+    }
+
+    /// Returns why a set-up does not measure.
+    #[cfg(feature = "full")]
+    pub(crate) fn measuring(path: &Path, error: &TriangulationError, help: &str) -> Self {
+        let no_memory = matches!(
+            error,
+            TriangulationError::Speckle(SpeckleError::Memory { .. })
+        );
+        Self::refused(no_memory, format!("{}: {error}", path.display()), help)
     }
 
     /// Returns why work that was done has no result, and what to change.
@@ -64,12 +95,16 @@ impl Failure {
     pub(crate) fn file(path: &Path, error: &ConfigError, otherwise: &str) -> Self {
         let help = error.help().map(str::to_owned);
         let path = error.path().unwrap_or(path);
-        match error.span() {
+        let failure = match error.span() {
             Some(span) => Self::input_at(error.message(), help, (path, error.source_text()), span),
             None => Self::input(
                 format!("{}: {}", path.display(), error.message()),
                 help.unwrap_or_else(|| otherwise.into()),
             ),
+        };
+        match failure {
+            Self::Input(problem) if error.is_unreadable() => Self::Unavailable(problem),
+            other => other,
         }
     }
 
@@ -95,12 +130,25 @@ impl Failure {
     /// Returns what is wrong, in one line.
     pub(crate) fn message(&self) -> &str {
         match self {
-            Self::Input(problem) | Self::Running(problem) | Self::NoResult(problem) => {
-                &problem.message
-            }
+            Self::Input(problem)
+            | Self::Unavailable(problem)
+            | Self::Running(problem)
+            | Self::NoResult(problem) => &problem.message,
             Self::Interrupted => "interrupted",
             Self::NoReader => "nobody reads standard output",
         }
+    }
+
+    /// Returns the failure with a word in front of what it says that it is about.
+    pub(crate) fn about(mut self, what: impl core::fmt::Display) -> Self {
+        if let Self::Input(problem)
+        | Self::Unavailable(problem)
+        | Self::Running(problem)
+        | Self::NoResult(problem) = &mut self
+        {
+            problem.message = format!("{what}: {}", problem.message);
+        }
+        self
     }
 
     /// Returns the exit code of the program.
@@ -108,7 +156,7 @@ impl Failure {
         match self {
             Self::NoReader => 0,
             Self::Running(_) => 1,
-            Self::Input(_) => 2,
+            Self::Input(_) | Self::Unavailable(_) => 2,
             Self::NoResult(_) => 3,
             Self::Interrupted => 130,
         }
@@ -117,9 +165,10 @@ impl Failure {
     /// Returns what to print on standard error, if anything.
     pub(crate) fn report(&self) -> Option<String> {
         match self {
-            Self::Input(problem) | Self::Running(problem) | Self::NoResult(problem) => {
-                Some(problem.printed())
-            }
+            Self::Input(problem)
+            | Self::Unavailable(problem)
+            | Self::Running(problem)
+            | Self::NoResult(problem) => Some(problem.printed()),
             Self::Interrupted => Some("tem00: interrupted\n".into()),
             Self::NoReader => None,
         }

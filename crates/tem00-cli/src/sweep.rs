@@ -4,12 +4,12 @@ mod grid;
 mod row;
 mod task;
 
-use std::{fs, io::Write, ops::RangeInclusive};
+use std::{io::Write, ops::RangeInclusive, thread::sleep, time::Duration};
 
 use self::{
     grid::{Grid, HELP},
     row::{Outcome, Row, cell, quoted},
-    task::{RunCommand, Sweep},
+    task::{RunCommand, Sweep, Worked},
 };
 use crate::{
     args::SweepArgs,
@@ -20,6 +20,9 @@ use crate::{
     output,
     progress::Progress,
 };
+
+/// The time after which tasks that other processes do are looked at again.
+const PAUSE: Duration = Duration::from_millis(200);
 
 /// Lists the tasks, does some of them by `run_command`, or makes the table of their rows.
 ///
@@ -42,8 +45,7 @@ pub(crate) fn run(
     }
     let name = output::name(&args.grid, "sweep");
     let folder = output::folder(args.output.as_deref(), &name);
-    let sweep = Sweep::new((&grid, &folder), args.threads, run_command)?;
-    fs::create_dir_all(folder.join("rows")).map_err(|error| Failure::writing(&folder, error))?;
+    let sweep = Sweep::new((&grid, &folder), output::bounded(args.threads), run_command)?;
     if !args.gather {
         do_tasks(&sweep, tasks(args, &grid)?)?;
     }
@@ -71,20 +73,39 @@ fn tasks(args: &SweepArgs, grid: &Grid) -> Result<RangeInclusive<usize>, Failure
     }
 }
 
-/// Does the tasks that have no row yet.
+/// Does the tasks that have no row yet, and waits for those that another process does.
+///
+/// # Errors
+///
+/// Returns the first failure that is no outcome of a task. Where something was missing that a task needs, the others
+/// are done first.
 fn do_tasks(sweep: &Sweep<'_>, tasks: RangeInclusive<usize>) -> Result<(), Failure> {
     let progress = Progress::of(tasks.clone().count() as u64, "tasks");
     // What the commands say is in their files.
     output::be_quiet();
-    for task in tasks {
-        interrupt::check()?;
-        progress.name(format!("task {task}"));
-        if sweep.find(task).is_none() {
-            sweep.run(task)?;
+    let (mut left, mut without_row): (Vec<usize>, _) = (tasks.collect(), None);
+    while !left.is_empty() {
+        let mut busy = Vec::new();
+        for &task in &left {
+            interrupt::check()?;
+            progress.name(format!("task {task}"));
+            match sweep.run(task) {
+                Ok(Worked::Done) => progress.advance(1),
+                Ok(Worked::ByAnother) => busy.push(task),
+                Err(failure @ Failure::Unavailable(_)) => {
+                    progress.advance(1);
+                    without_row.get_or_insert(failure.about(format_args!("task {task}")));
+                }
+                Err(failure) => return Err(failure),
+            }
         }
-        progress.advance(1);
+        if busy.len() == left.len() {
+            progress.name(format!("task {}, which another tem00 does", busy[0]));
+            sleep(PAUSE);
+        }
+        left = busy;
     }
-    Ok(())
+    without_row.map_or(Ok(()), Err)
 }
 
 /// Prints the tasks and their values.

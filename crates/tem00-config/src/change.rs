@@ -54,6 +54,9 @@ impl From<FileAccess> for Reading<'_> {
     }
 }
 
+/// The maximum number of steps of a key. Files have five.
+const MAX_STEPS: usize = 32;
+
 /// A step towards a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Step {
@@ -72,6 +75,10 @@ impl FromStr for Change {
         let (path, value) = parsed.ok_or(
             "must be a key and its value, such as camera.f_number=8 or laser[0].power=2mW",
         )?;
+        if path.len() > MAX_STEPS {
+            let steps = path.len();
+            return Err(format!("a key has at most {MAX_STEPS} steps, got {steps}"));
+        }
         if matches!(path.as_slice(), [Step::Key(key), ..] if key == INCLUDE) {
             return Err("`include` cannot be changed: what it names has been read".into());
         }
@@ -128,6 +135,12 @@ pub(crate) fn apply(changes: &[Change], texts: &mut [String], main: usize) -> Re
 }
 
 impl Change {
+    /// Returns whether both change the same value, or one of them the whole of which the other changes a part.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        let steps = self.path.len().min(other.path.len());
+        self.path[..steps] == other.path[..steps]
+    }
+
     fn apply(&self, documents: &mut [DocumentMut], main: usize) -> Result<(), Problem> {
         let mut path = self.path.clone();
         let owner = owner(&mut path, documents).unwrap_or(main);
@@ -283,8 +296,33 @@ mod tests {
             "a b=1",
             "a.=1",
             "include=1",
+            &format!("a{}=1", ".a".repeat(32)),
+            &format!("a{}=1", "[0]".repeat(10_000)),
         ] {
             assert!(bad.parse::<Change>().is_err(), "{bad}");
+        }
+        assert!(format!("a{}=1", ".a".repeat(31)).parse::<Change>().is_ok());
+        // A value that is too deep for TOML is text.
+        let deep = format!("a={}", "[".repeat(10_000));
+        assert!(
+            deep.parse::<Change>()
+                .is_ok_and(|change| change.value.is_str())
+        );
+    }
+
+    #[test]
+    fn changes_of_one_value_overlap() {
+        let change = |text: &str| text.parse::<Change>().unwrap();
+        for (first, second, overlap) in [
+            ("a.b=1", " a.b = 2", true),
+            ("a={b = 1}", "a.b=2", true),
+            ("a[0].b=1", "a[00].b=2", true),
+            ("a[0].b=1", "a[1].b=2", false),
+            ("a.b=1", "a.bc=2", false),
+        ] {
+            let [first, second] = [first, second].map(change);
+            assert_eq!(first.overlaps(&second), overlap, "{first} {second}");
+            assert_eq!(second.overlaps(&first), overlap, "{first} {second}");
         }
     }
 

@@ -54,6 +54,11 @@ impl ConfigError {
         &self.source_text
     }
 
+    /// Returns whether a file could not be read, which tells nothing about what the files say.
+    pub const fn is_unreadable(&self) -> bool {
+        self.problem.is_unreadable
+    }
+
     /// Returns the location of the error as a range of bytes of the source text, or `None` if the
     /// error has no location, such as a section that is not there.
     pub fn span(&self) -> Option<Range<usize>> {
@@ -107,6 +112,7 @@ pub struct Problem {
     pub(crate) message: String,
     pub(crate) location: Option<Location>,
     pub(crate) help: Option<String>,
+    pub(crate) is_unreadable: bool,
 }
 
 impl Problem {
@@ -117,12 +123,20 @@ impl Problem {
             message: printable_line(&message.into(), MAX_CHARS),
             location: None,
             help: None,
+            is_unreadable: false,
         }
     }
 
     /// Places the problem.
     pub(crate) fn at(mut self, location: Location) -> Self {
         self.location = Some(location);
+        self
+    }
+
+    /// Marks the problem as one of a file that cannot be read: see [`ConfigError::is_unreadable`].
+    #[must_use]
+    pub const fn unreadable(mut self, is_unreadable: bool) -> Self {
+        self.is_unreadable = is_unreadable;
         self
     }
 

@@ -150,7 +150,10 @@ impl Sources {
 
     fn include(&mut self, include: Include) -> Result<(), Problem> {
         let Include { path, .. } = &include;
-        let unreadable = |error| include.problem(format_args!("cannot be read: {error}"));
+        let unreadable = |error| {
+            let problem = include.problem(format_args!("cannot be read: {error}"));
+            problem.unreadable(true)
+        };
         let canonical = fs::canonicalize(path).map_err(unreadable)?;
         let is_outside = !self.folder.holds(&canonical);
         if is_outside && self.folder.access == FileAccess::WithinFolder {
@@ -201,6 +204,7 @@ fn unquoted(source: &Source, problem: &Problem) -> Problem {
     Problem::new(format!(
         "there is a mistake{location}; the file lies outside of the document's folder and is not quoted"
     ))
+    .unreadable(problem.is_unreadable)
 }
 
 /// A file that another one includes, and where it says so.
@@ -238,7 +242,8 @@ fn includes_of(source: &Source, format: &Format) -> Result<Vec<Include>, Problem
 fn read_text(path: &Path, format: &Format) -> Result<String, ConfigError> {
     let unreadable = |why: &dyn core::fmt::Display| {
         let problem = Problem::new(format!("the {} file cannot be read: {why}", format.noun))
-            .with_help(format.help);
+            .with_help(format.help)
+            .unreadable(true);
         ConfigError::new(Some(path), "", problem)
     };
     let bytes = read_text_file(path).map_err(|why| unreadable(&why))?;

@@ -74,7 +74,7 @@ fn environment(section: &Section<'_>, assets: &mut Assets) -> Result<Environment
         |why: String| file.problem(format_args!("`file` must be a map of radiance: {why}"));
     let map = assets
         .radiance_map(&path, scale)
-        .map_err(|error| failed(error.to_string()))?;
+        .map_err(|error| failed(error.to_string()).unreadable(error.is_unreadable()))?;
     Environment::from_radiance(map, up, middle).map_err(|error| match &error {
         TracerError::Direction { .. } => rejected(&error, error.parameter(), &[section]),
         other => failed(other.to_string()),

@@ -4,6 +4,7 @@ use tem00_decorrelation::RigidMotion;
 use tem00_tracer::{Cylinder, MeshInstance, Rectangle, Rotation, Shape, Sphere};
 
 use crate::assets::{Assets, Shading};
+use crate::mesh_file::MeshFileError;
 use crate::motion::rotation;
 use crate::placement::across;
 
@@ -117,7 +118,10 @@ fn mesh(section: &Section<'_>, assets: &mut Assets) -> Result<(MeshInstance, DVe
         return Err(both("centre", "position", "the mesh", centre));
     }
     let shading = section.or("shading", Shading::Smooth, |value| value.one_of(SHADINGS))?;
-    let failed = |error| file.problem(format_args!("`file` must be a mesh: {error}"));
+    let failed = |error: MeshFileError| {
+        let problem = file.problem(format_args!("`file` must be a mesh: {error}"));
+        problem.unreadable(error.is_unreadable())
+    };
     let mesh = assets.mesh(&path, shading).map_err(failed)?;
     let place = |motion: &RigidMotion| {
         let placed = MeshInstance::new(mesh.clone()).placed(unit * scale, motion);

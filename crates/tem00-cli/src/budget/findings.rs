@@ -66,10 +66,7 @@ impl<'a> Findings<'a> {
                 advice,
                 trials: None,
             }),
-            Err(error) => {
-                let message = format!("{}: {error}", args.common.setup.display());
-                return Err(Failure::input(message, HELP));
-            }
+            Err(error) => return Err(Failure::measuring(&args.common.setup, &error, HELP)),
         };
         Ok(Self {
             file,
@@ -180,10 +177,10 @@ pub(super) fn tried(args: &BudgetArgs, setup: &Setup) -> Result<Simulation, Fail
     };
     simulate(setup, options, |_| bar.advance(1), interrupt::flag()).map_err(|error| match error {
         TriangulationError::Cancelled => Failure::Interrupted,
-        error => Failure::input(
-            format!("{}: {error}", args.common.setup.display()),
-            "smaller averages, or --trials 0",
-        ),
+        error => {
+            let help = "smaller averages, or --trials 0";
+            Failure::measuring(&args.common.setup, &error, help)
+        }
     })
 }
 

@@ -66,11 +66,11 @@ impl Measured {
         let measured = Measurement::new(setup, uncertainty).and_then(|found| Self::of(args, found));
         measured.map(Some).map_err(|error| match error {
             TriangulationError::Cancelled => Failure::Interrupted,
-            error => Failure::input(
-                format!("{}: {error}", args.common.setup.display()),
-                "smaller uncertainties, or limits by another `distribution`; --trials 0 leaves the virtual \
-                 experiment out",
-            ),
+            error => {
+                let help = "smaller uncertainties, or limits by another `distribution`; --trials 0 leaves the \
+                            virtual experiment out";
+                Failure::measuring(&args.common.setup, &error, help)
+            }
         })
     }
 

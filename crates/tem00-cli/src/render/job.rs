@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use tem00_speckle::SpeckleError;
 use tem00_tracer::{Formulas, Scene, SpeckleModel, SpecklePlan, TracerError};
 
 use super::{record::Fingerprint, report::note_roughness};
@@ -77,7 +78,7 @@ impl<'a> Render<'a> {
             .chain([self.summary_path()])
             .find(|path| path.is_dir())
         {
-            Some(path) => Err(Failure::input(
+            Some(path) => Err(Failure::unavailable(
                 format!("cannot write {}: it is a folder", path.display()),
                 "name another folder with -o",
             )),
@@ -183,7 +184,12 @@ pub(crate) fn tracer_failure(path: &Path, error: &TracerError) -> Failure {
         }
         _ => "docs/scene_file.md lists what is allowed".into(),
     };
-    Failure::input(format!("{}: {error}", path.display()), help)
+    let message = format!("{}: {error}", path.display());
+    let no_memory = matches!(
+        error,
+        TracerError::FilmMemory { .. } | TracerError::Speckle(SpeckleError::Memory { .. })
+    );
+    Failure::refused(no_memory, message, help)
 }
 
 /// A number of bytes in KiB, or MiB where those are many, rounded up.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use tem00_config::{
-    ConfigError, Document, FileAccess, Format, Problem, Section, Value, read_document,
+    Change, ConfigError, Document, FileAccess, Format, Problem, Section, Value, read_document,
 };
 
 const GRID: Format = Format {
@@ -94,6 +94,7 @@ impl Grid {
         let command = command.one_of(&Swept::ALL)?;
         let file = section.required("file", "\"data_sheet.toml\"")?.string()?;
         let axes = section.tables("vary", VARY)?;
+        check_keys(&axes)?;
         let axes: Vec<Axis> = axes.iter().map(axis).collect::<Result<_, _>>()?;
         let grid = Self {
             command,
@@ -151,6 +152,29 @@ fn axis(section: &Section<'_>) -> Result<Axis, Problem> {
         None => between(section)?,
     };
     Ok(Axis { key, values })
+}
+
+/// Checks that keys can be changed, and that no two change the same value.
+fn check_keys(axes: &[Section<'_>]) -> Result<(), Problem> {
+    let mut changes: Vec<Change> = Vec::new();
+    for section in axes {
+        let key = section.required("key", "\"camera.f_number\"")?;
+        let name = key.string()?;
+        let refused = |why: &str| key.problem(format_args!("`key`: {why}, got \"{name}\""));
+        if name.contains('=') {
+            return Err(refused("must be a key alone, such as camera.f_number"));
+        }
+        let change: Change = format!("{name}=0")
+            .parse()
+            .map_err(|why: String| refused(&why))?;
+        if let Some(other) = changes.iter().find(|other| other.overlaps(&change)) {
+            let other = other.to_string();
+            let other = other.trim_end_matches("=0");
+            return Err(refused(&format!("varies already, by \"{other}\"")));
+        }
+        changes.push(change);
+    }
+    Ok(())
 }
 
 const LIST: &str = "a list of values, such as [4, 8, 16]";

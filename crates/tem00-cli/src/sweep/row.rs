@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use tem00_config::{MAX_TEXT_BYTES, printable, read_input};
 
 use crate::{atomic::write_atomically, failure::Failure};
 
@@ -45,8 +46,8 @@ pub(super) struct Row {
 impl Row {
     /// Reads the row of a task, if there is one of the same inputs.
     pub(super) fn find(path: &Path, fingerprint: &str) -> Option<Self> {
-        let text = std::fs::read_to_string(path).ok()?;
-        let row: Self = serde_json::from_str(&text).ok()?;
+        let text = read_input(path, MAX_TEXT_BYTES).ok()?;
+        let row: Self = serde_json::from_slice(&text).ok()?;
         (row.fingerprint == fingerprint).then_some(row)
     }
 
@@ -88,13 +89,23 @@ pub(super) fn cell(value: &Value) -> String {
     }
 }
 
-/// Returns text as a cell, in quotation marks where it needs them.
+/// Returns text as a cell, in quotation marks where it needs them, that does nothing to a terminal nor, by an
+/// apostrophe in front of a formula, to a spreadsheet.
 pub(super) fn quoted(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
+    let shown = printable(text);
+    let apostrophe = if is_formula(&shown) { "'" } else { "" };
+    if shown.contains([',', '"', '\n']) {
+        format!("\"{apostrophe}{}\"", shown.replace('"', "\"\""))
     } else {
-        text.to_owned()
+        format!("{apostrophe}{shown}")
     }
+}
+
+/// Returns whether a spreadsheet would calculate a cell: `=1+1`, but not a number with or without a unit.
+fn is_formula(text: &str) -> bool {
+    let number = text.trim_end_matches(|c: char| c.is_alphabetic() || " °%".contains(c));
+    let is_number = |text: &str| text.parse::<f64>().is_ok();
+    text.starts_with(['=', '+', '-', '@', '\t']) && !is_number(text) && !is_number(number)
 }
 
 #[cfg(test)]
@@ -122,6 +133,16 @@ mod tests {
             (json!("a b"), "a b"),
             (json!("a, \"b\""), "\"a, \"\"b\"\"\""),
             (json!([1, 2]), "\"[1,2]\""),
+            (json!("=1+1"), "'=1+1"),
+            (json!("@a,b"), "\"'@a,b\""),
+            (json!("-2+cmd|' /C calc'!A0"), "'-2+cmd|' /C calc'!A0"),
+            (json!("\t=1"), "'\t=1"),
+            (json!("-8 mm"), "-8 mm"),
+            (json!("+1.5e-3"), "+1.5e-3"),
+            (json!(-3), "-3"),
+            (json!("\u{1b}]0;a\u{7}"), "\\u001b]0;a\\u0007"),
+            (json!("a\rb"), "a\\u000db"),
+            (json!("\u{202e}a"), "\\u202ea"),
         ] {
             assert_eq!(cell(&value), expected);
         }

@@ -1,13 +1,14 @@
 //! One task of a sweep.
 
 use std::{
-    fs,
+    ffi::OsString,
     io::{self, Write},
     path::{Path, PathBuf},
 };
 
 use clap::Parser;
 use serde_json::Value;
+use tem00_config::{MAX_TEXT_BYTES, read_input};
 
 use super::{
     grid::{Grid, Swept},
@@ -16,6 +17,7 @@ use super::{
 use crate::{
     args::{Cli, Command},
     failure::Failure,
+    folder_lock::{FolderLock, Refused},
     output,
 };
 
@@ -26,27 +28,48 @@ pub(super) type RunCommand = fn(&Command, &mut dyn Write) -> Result<(), Failure>
 pub(super) struct Sweep<'a> {
     pub(super) grid: &'a Grid,
     pub(super) folder: &'a Path,
-    /// The text of the scene or the set-up.
-    text: String,
+    rows: PathBuf,
+    tasks: PathBuf,
+    /// A number that changes with all inputs that the tasks have in common.
+    fingerprint: String,
     threads: Option<u16>,
     run_command: RunCommand,
 }
 
+/// What became of a task.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Worked {
+    /// It has a row.
+    Done,
+    /// Another process is doing it.
+    ByAnother,
+}
+
 impl<'a> Sweep<'a> {
-    /// Reads the file that the grid names.
+    /// Reads the file that the grid names, and makes the folder of the rows.
     pub(super) fn new(
         (grid, folder): (&'a Grid, &'a Path),
         threads: Option<u16>,
         run_command: RunCommand,
     ) -> Result<Self, Failure> {
-        let text = fs::read_to_string(&grid.file).map_err(|error| {
+        let text = read_input(&grid.file, MAX_TEXT_BYTES).map_err(|error| {
             let message = format!("cannot read {}: {error}", grid.file.display());
-            Failure::input(message, "the key `file` of the grid is relative to it")
+            Failure::unavailable(message, "the key `file` of the grid is relative to it")
         })?;
+        let version = env!("CARGO_PKG_VERSION");
+        let common = (
+            version,
+            grid.command.name(),
+            text,
+            &grid.options,
+            &grid.results,
+        );
         Ok(Self {
             grid,
             folder,
-            text,
+            rows: output::subfolder(folder, "rows")?,
+            tasks: output::subfolder(folder, "tasks")?,
+            fingerprint: format!("{:x}", md5::compute(format!("{common:?}"))),
             threads,
             run_command,
         })
@@ -57,13 +80,31 @@ impl<'a> Sweep<'a> {
         Row::find(&self.row_path(task), &self.fingerprint(task))
     }
 
-    /// Does a task and leaves its row.
+    /// Does a task that has no row, and leaves it.
     ///
     /// # Errors
     ///
     /// Returns the failures of the command but those that are an outcome; none leaves a row.
-    pub(super) fn run(&self, task: usize) -> Result<Row, Failure> {
-        let (outcome, reason) = match self.command(task) {
+    pub(super) fn run(&self, task: usize) -> Result<Worked, Failure> {
+        if self.find(task).is_some() {
+            return Ok(Worked::Done);
+        }
+        let lock = FolderLock::by_file(self.rows.join(format!(".tem00.{task:06}.lock")));
+        let _lock = match lock {
+            Ok(lock) => lock,
+            Err(Refused::InUse(_)) => return Ok(Worked::ByAnother),
+            Err(Refused::Io(error)) => return Err(output::not_writable(&self.rows, &error)),
+        };
+        // Its row may have come while nobody had the lock.
+        if self.find(task).is_none() {
+            self.work(task)?;
+        }
+        Ok(Worked::Done)
+    }
+
+    fn work(&self, task: usize) -> Result<(), Failure> {
+        let cli = self.command_line(task)?;
+        let (outcome, reason) = match (self.run_command)(&cli.command, &mut io::sink()) {
             Ok(()) => (Outcome::Done, None),
             Err(failure @ Failure::NoResult(_)) => (Outcome::NothingMeasured, Some(failure)),
             Err(failure @ Failure::Input(_)) => (Outcome::Refused, Some(failure)),
@@ -76,27 +117,26 @@ impl<'a> Sweep<'a> {
             reason: reason.map(|failure| self.reason(&failure)),
             results: self.results(task, outcome)?,
         };
-        row.write(&self.row_path(task))?;
-        Ok(row)
+        row.write(&self.row_path(task))
     }
 
-    fn command(&self, task: usize) -> Result<(), Failure> {
-        let mut line = vec!["tem00".to_owned(), self.grid.command.name().to_owned()];
-        line.push(self.grid.file.display().to_string());
-        line.extend(self.grid.options.iter().cloned());
-        for change in self.changes(task) {
-            line.extend(["--set".to_owned(), change]);
-        }
-        line.extend(["-o".to_owned(), self.task_path(task).display().to_string()]);
-        if let Some(threads) = self.threads {
-            line.extend(["--threads".to_owned(), threads.to_string()]);
-        }
-        let cli = Cli::try_parse_from(line).map_err(|error| {
+    /// The command line of a task. Files may have the names of options.
+    fn command_line(&self, task: usize) -> Result<Cli, Failure> {
+        let mut output = OsString::from("--output=");
+        output.push(output::subfolder(&self.tasks, &format!("{task:06}"))?);
+        let threads = self.threads.map(|threads| format!("--threads={threads}"));
+        let set = self.changes(task).into_iter();
+        let set = set.map(|change| format!("--set={change}"));
+        let words = ["tem00", self.grid.command.name()].map(str::to_owned);
+        let words = words.into_iter().chain(self.grid.options.clone());
+        let words = words.chain(set).chain(threads).map(OsString::from);
+        let file = self.grid.file.clone().into_os_string();
+        let line = words.chain([output, "--".into(), file]);
+        Cli::try_parse_from(line).map_err(|error| {
             let text = error.to_string();
             let message = text.trim_start_matches("error: ").replace('\n', " ");
             Failure::input(message, "the grid names the options and the keys")
-        })?;
-        (self.run_command)(&cli.command, &mut io::sink())
+        })
     }
 
     /// What a failure says, without the path of the file, which may differ from machine to machine.
@@ -117,8 +157,11 @@ impl<'a> Sweep<'a> {
 
     fn results(&self, task: usize, outcome: Outcome) -> Result<Vec<Value>, Failure> {
         let results = &self.grid.results;
-        let path = self.task_path(task).join(self.record_name());
-        let record = match (outcome, fs::read(&path)) {
+        let path = self
+            .tasks
+            .join(format!("{task:06}"))
+            .join(self.record_name());
+        let record = match (outcome, read_input(&path, MAX_TEXT_BYTES)) {
             (Outcome::Refused, _) => return Ok(vec![Value::Null; results.len()]),
             (_, Ok(bytes)) => serde_json::from_slice(&bytes).unwrap_or_default(),
             (_, Err(error)) => {
@@ -148,22 +191,13 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// A number that changes with the program, the command, the file, options, values and results.
+    /// A number that changes with the inputs of a task.
     fn fingerprint(&self, task: usize) -> String {
-        let grid = self.grid;
-        let inputs = (
-            env!("CARGO_PKG_VERSION"),
-            (grid.command.name(), &self.text, &grid.options),
-            (self.changes(task), &grid.results),
-        );
+        let inputs = (&self.fingerprint, self.changes(task));
         format!("{:x}", md5::compute(format!("{inputs:?}")))
     }
 
     fn row_path(&self, task: usize) -> PathBuf {
-        self.folder.join(format!("rows/{task:06}.json"))
-    }
-
-    fn task_path(&self, task: usize) -> PathBuf {
-        self.folder.join(format!("tasks/{task:06}"))
+        self.rows.join(format!("{task:06}.json"))
     }
 }

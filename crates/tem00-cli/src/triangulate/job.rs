@@ -178,13 +178,14 @@ pub(super) fn in_words(change: &SpeckleChange) -> String {
     )
 }
 
+/// The help for a scene that cannot be measured.
+const HELP: &str = "docs/scene_file.md lists what is allowed";
+
 pub(super) fn measurement_failure(path: &Path, error: &ScanError) -> Failure {
     match error {
         ScanError::Cancelled => Failure::Interrupted,
         ScanError::Tracer(error) => tracer_failure(path, error),
-        error => Failure::input(
-            format!("{}: {error}", path.display()),
-            "docs/scene_file.md lists what is allowed",
-        ),
+        ScanError::Triangulation(error) => Failure::measuring(path, error, HELP),
+        error => Failure::input(format!("{}: {error}", path.display()), HELP),
     }
 }

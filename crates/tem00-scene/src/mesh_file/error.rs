@@ -34,6 +34,14 @@ pub enum MeshFileError {
 }
 
 impl MeshFileError {
+    /// Returns whether the file could not be read, whatever stands in it.
+    pub(crate) fn is_unreadable(&self) -> bool {
+        match self {
+            Self::File { source, .. } => source.is_unreadable(),
+            error => matches!(error, Self::Read(_)),
+        }
+    }
+
     /// Returns the error without what stands in the file.
     pub(crate) fn unquoted(self) -> Self {
         match self {

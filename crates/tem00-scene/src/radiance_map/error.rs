@@ -33,6 +33,16 @@ pub enum RadianceMapError {
     Channels(Vec<String>),
 }
 
+impl RadianceMapError {
+    /// Returns whether the file could not be read, whatever stands in it.
+    pub(crate) fn is_unreadable(&self) -> bool {
+        match self {
+            Self::File { source, .. } => source.is_unreadable(),
+            error => matches!(error, Self::Read(_)),
+        }
+    }
+}
+
 impl fmt::Display for RadianceMapError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -1634,7 +1634,7 @@ tem00_status tem00_stack_read(const char *path,
 /**
  * Writes a stack as a file, which keeps its bits.
  *
- * `path` is a file name in UTF-8; a file of that name is replaced.
+ * `path` is a file name in UTF-8; a file of that name is replaced once all is written.
  *
  * The pointers are null or valid, `path` for a string that ends with a zero.
  */

@@ -1,7 +1,8 @@
 use core::ffi::{CStr, c_char};
 use std::{
     fs::File,
-    io::{self, BufReader, BufWriter},
+    io::{self, BufReader},
+    path::Path,
 };
 
 use tem00_speckle::SpeckleStack;
@@ -40,9 +41,8 @@ fn read(path: &str, memory_limit: u64, threads: u32) -> Result<Stack, Failure> {
 }
 
 fn save(stack: &Stack, path: &str) -> Result<(), Failure> {
-    let file = File::create(path).map_err(|error| file_failure(path, &error))?;
-    let written = stack.0.write_to(BufWriter::new(file));
-    written.map_err(|error| file_failure(path, &error))
+    let saved = stack.0.save(Path::new(path));
+    saved.map_err(|error| file_failure(path, &error))
 }
 
 /// Reads a stack that `tem00_stack_write` or the library in another language has written, if its
@@ -71,7 +71,7 @@ pub unsafe extern "C" fn tem00_stack_read(
 
 /// Writes a stack as a file, which keeps its bits.
 ///
-/// `path` is a file name in UTF-8; a file of that name is replaced.
+/// `path` is a file name in UTF-8; a file of that name is replaced once all is written.
 ///
 /// # Safety
 ///

@@ -1,8 +1,4 @@
-use std::{
-    fs::File,
-    io::{BufReader, BufWriter},
-    path::PathBuf,
-};
+use std::{fs::File, io::BufReader, path::PathBuf};
 
 use numpy::{Complex32, PyArray2};
 use pyo3::{
@@ -88,7 +84,7 @@ impl SpeckleStack {
     /// file : str or os.PathLike
     ///     Where to write.
     fn write_to(&self, py: Python<'_>, file: PathBuf) -> PyResult<()> {
-        Ok(py.detach(|| self.0.write_to(BufWriter::new(File::create(file)?)))?)
+        Ok(py.detach(|| self.0.save(&file))?)
     }
 
     /// Return the coefficients that look-ups interpolate, complex64 [row, column].

@@ -1,6 +1,12 @@
 //! Stacks as files: written once, read back with the same bits, or mapped into memory.
 
-use std::io::{self, Read, Write};
+use std::{
+    fs::{self, File},
+    io::{self, BufWriter, Read, Write},
+    path::Path,
+    process,
+    sync::atomic::{AtomicU64, Ordering},
+};
 
 use num_complex::Complex;
 use tem00_numerics::Grid;
@@ -59,6 +65,32 @@ impl SpeckleStack {
             }
         }
         writer.flush()
+    }
+
+    /// Writes the stack as [`write_to`](Self::write_to) does, as a file that appears whole or not at all: what has the
+    /// name before keeps it until then. What is no regular file, such as a pipe, is written as it is.
+    ///
+    /// # Errors
+    ///
+    /// Returns the error of the file system.
+    pub fn save(&self, path: &Path) -> io::Result<()> {
+        if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
+            return self.write_to(BufWriter::new(File::create(path)?));
+        }
+        static PARTS: AtomicU64 = AtomicU64::new(0);
+        let number = PARTS.fetch_add(1, Ordering::Relaxed);
+        let mut name = path.file_name().unwrap_or_default().to_os_string();
+        name.push(format!(".{}-{number}.part", process::id()));
+        let part = path.with_file_name(name);
+        let file = File::create_new(&part)?;
+        let written = self
+            .write_to(BufWriter::new(&file))
+            .and_then(|()| file.sync_all())
+            .and_then(|()| fs::rename(&part, path));
+        written.inspect_err(|_| {
+            // The first error tells more than that of a file which cannot be removed.
+            let _ = fs::remove_file(&part);
+        })
     }
 
     /// Reads a stack that [`write_to`](Self::write_to) has written and that takes no more than

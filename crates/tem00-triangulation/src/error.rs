@@ -2,8 +2,9 @@ use core::{error, fmt};
 
 use tem00_camera::CameraError;
 use tem00_coherence::CoherenceError;
+use tem00_numerics::Shown;
 use tem00_speckle::SpeckleError;
-use tem00_uncertainty::UncertaintyError;
+use tem00_uncertainty::{Distribution, UncertaintyError};
 
 /// Reason why a part of a triangulation set-up could not be constructed or evaluated.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,6 +64,15 @@ pub enum TriangulationError {
     Speckle(SpeckleError),
     /// An uncertainty is not possible.
     Uncertainty(UncertaintyError),
+    /// The distribution of an input reaches values that are not possible.
+    ImpossibleDraw {
+        /// The key of a quantity, as in `camera.angle`, or the name of a term of the budget.
+        input: String,
+        /// Its distribution.
+        distribution: Distribution,
+        /// The drawn value, in SI units.
+        value: f64,
+    },
     /// The caller asked to stop.
     Cancelled,
 }
@@ -112,6 +122,16 @@ impl fmt::Display for TriangulationError {
             Self::Coherence(source) => source.fmt(f),
             Self::Speckle(source) => source.fmt(f),
             Self::Uncertainty(source) => source.fmt(f),
+            Self::ImpossibleDraw {
+                input,
+                distribution,
+                value,
+            } => write!(
+                f,
+                "the distribution of `{input}` must reach possible values only: it is {distribution} and draws {} \
+                 (in SI units), with which nothing is measured",
+                Shown(*value)
+            ),
             Self::Cancelled => write!(f, "the work was cancelled"),
         }
     }

@@ -5,7 +5,7 @@ mod virtual_experiment;
 use glam::DVec2;
 use tem00_uncertainty::{
     Correlation, Decomposition, DecompositionOptions, Distribution, FirstOrder, Input, Inputs,
-    Propagation, PropagationOptions,
+    Propagation, PropagationOptions, UncertaintyError,
 };
 
 pub use self::virtual_experiment::VirtualExperiment;
@@ -230,11 +230,8 @@ impl Measurement {
         &self,
         options: PropagationOptions,
     ) -> Result<Propagation, TriangulationError> {
-        Ok(Propagation::new(
-            &self.inputs,
-            |x| self.height_of(x),
-            options,
-        )?)
+        let found = Propagation::new(&self.inputs, |x| self.height_of(x), options);
+        found.map_err(|error| self.named(error))
     }
 
     /// Returns the parts of the variance that the inputs make.
@@ -246,11 +243,27 @@ impl Measurement {
         &self,
         options: DecompositionOptions,
     ) -> Result<Decomposition, TriangulationError> {
-        Ok(Decomposition::new(
-            &self.inputs,
-            |x| self.height_of(x),
-            options,
-        )?)
+        let found = Decomposition::new(&self.inputs, |x| self.height_of(x), options);
+        found.map_err(|error| self.named(error))
+    }
+
+    /// Returns an error about an input by its name.
+    fn named(&self, error: UncertaintyError) -> TriangulationError {
+        match error {
+            UncertaintyError::ImpossibleDraw {
+                input,
+                distribution,
+                value,
+            } => TriangulationError::ImpossibleDraw {
+                input: match self.sources[input] {
+                    MeasurementInput::Quantity(quantity) => quantity.to_string(),
+                    MeasurementInput::Term(source) => source.to_string(),
+                },
+                distribution,
+                value,
+            },
+            error => error.into(),
+        }
     }
 
     /// Returns the description of the set-up with other values of its uncertain quantities.

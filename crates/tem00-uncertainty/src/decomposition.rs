@@ -191,17 +191,18 @@ fn sums(
     block: u64,
 ) -> Result<Vec<[Sums; 2]>, UncertaintyError> {
     let mut random = trials::stream(options.seed, block);
+    let drawn = |values: &[f64]| trials::drawn_value(inputs, model, values);
     let mut sums = vec![[Sums::default(); 2]; inputs.as_slice().len()];
     let [mut a, mut b] = [inputs.estimates(), inputs.estimates()];
     let before = block * u64::from(BLOCK);
     for _ in before..u64::from(options.samples).min(before + u64::from(BLOCK)) {
         inputs.draw(&mut random, &mut a);
         inputs.draw(&mut random, &mut b);
-        let (at_a, at_b) = (trials::value(model, &a)?, trials::value(model, &b)?);
+        let (at_a, at_b) = (drawn(&a)?, drawn(&b)?);
         let variance = 0.5 * (at_a - at_b).powi(2);
         for (input, [first_order, total]) in sums.iter_mut().enumerate() {
             let kept = core::mem::replace(&mut a[input], b[input]);
-            let change = trials::value(model, &a)? - at_a;
+            let change = drawn(&a)? - at_a;
             a[input] = kept;
             *first_order = first_order.and(Sums::of_sample(at_b * change, variance));
             *total = total.and(Sums::of_sample(0.5 * change * change, variance));

@@ -2,6 +2,8 @@ use core::{error, fmt};
 
 use tem00_numerics::Shown;
 
+use crate::Distribution;
+
 /// Reasons for which an uncertainty is refused.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -46,6 +48,15 @@ pub enum UncertaintyError {
         /// The values of the inputs.
         inputs: Vec<f64>,
     },
+    /// The distribution of an input reaches values that are not possible.
+    ImpossibleDraw {
+        /// The position of the input.
+        input: usize,
+        /// Its distribution.
+        distribution: Distribution,
+        /// The drawn value, at which the model is not finite even if all others are as estimated.
+        value: f64,
+    },
     /// Differences over ever smaller steps do not settle on a derivative.
     NotDifferentiable {
         /// The position of the input.
@@ -76,7 +87,7 @@ impl UncertaintyError {
             Self::OutOfRange { parameter, .. } => parameter,
             Self::NoInputs | Self::Correlated => "inputs",
             Self::Between { .. } | Self::Repeated { .. } => "between",
-            Self::NotNormal { .. } => "distribution",
+            Self::NotNormal { .. } | Self::ImpossibleDraw { .. } => "distribution",
             Self::Contradiction { .. } => "coefficient",
             Self::NotFinite { .. } | Self::NotDifferentiable { .. } => "model",
         }
@@ -120,6 +131,16 @@ impl fmt::Display for UncertaintyError {
                 write!(f, "model must be finite, got {value} at")?;
                 inputs.iter().try_for_each(|x| write!(f, " {}", Shown(*x)))
             }
+            Self::ImpossibleDraw {
+                input,
+                distribution,
+                value,
+            } => write!(
+                f,
+                "distribution of input {input} must reach possible values only: it is {distribution} and draws {}, \
+                 where the model is not finite",
+                Shown(*value)
+            ),
             Self::NotDifferentiable { input, open } => write!(
                 f,
                 "model must be smooth within a twentieth of the standard uncertainty of input {input}; its differences leave \

@@ -111,6 +111,25 @@ impl Inputs {
         }
     }
 
+    /// Returns the error about the first input whose drawn value is not possible even if all others are as estimated.
+    pub fn impossible_draw(
+        &self,
+        drawn: &[f64],
+        is_possible: impl Fn(&[f64]) -> bool,
+    ) -> Option<UncertaintyError> {
+        let mut inputs = drawn.iter().zip(&self.inputs).enumerate();
+        inputs.find_map(|(input, (&value, of))| {
+            let mut values = self.estimates();
+            values[input] = value;
+            let distribution = of.distribution();
+            (!is_possible(&values)).then_some(UncertaintyError::ImpossibleDraw {
+                input,
+                distribution,
+                value,
+            })
+        })
+    }
+
     /// Draws the values of all inputs.
     ///
     /// # Panics

@@ -31,6 +31,22 @@ pub(crate) fn value(
     })
 }
 
+/// Returns the value of a model at values that were drawn.
+///
+/// # Errors
+///
+/// Returns an error that names the input which alone makes the value impossible, if there is one.
+pub(crate) fn drawn_value(
+    inputs: &Inputs,
+    model: &impl Fn(&[f64]) -> f64,
+    drawn: &[f64],
+) -> Result<f64, UncertaintyError> {
+    value(model, drawn).map_err(|error| {
+        let is_possible = |values: &[f64]| model(values).is_finite();
+        inputs.impossible_draw(drawn, is_possible).unwrap_or(error)
+    })
+}
+
 /// Returns the values of a model in one block of trials.
 pub(crate) fn block(
     (inputs, model): (&Inputs, &impl Fn(&[f64]) -> f64),
@@ -41,7 +57,7 @@ pub(crate) fn block(
     let mut values = inputs.estimates();
     let mut trial = || {
         inputs.draw(&mut random, &mut values);
-        value(model, &values)
+        drawn_value(inputs, model, &values)
     };
     (0..trials).map(|_| trial()).collect()
 }

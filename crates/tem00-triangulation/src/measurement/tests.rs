@@ -183,6 +183,40 @@ fn a_virtual_experiment_agrees_with_the_propagation_of_distributions() {
 }
 
 #[test]
+fn an_input_whose_tail_is_not_possible_is_named() {
+    // One standard uncertainty is possible, three or four are not.
+    for (quantity, relative) in [
+        (SetupQuantity::FocalLength, 0.4),
+        (SetupQuantity::Distance, 0.4),
+        (SetupQuantity::PixelPitch, 0.3),
+    ] {
+        let measurement = measurement(&[(SetupQuantity::PrincipalRow, 1e-3), (quantity, relative)]);
+        let options = SimulationOptions {
+            trials: 2_000,
+            seed: 1,
+        };
+        let refused = [
+            measurement
+                .propagation(PropagationOptions::default())
+                .map(drop),
+            measurement
+                .decomposition(DecompositionOptions::default())
+                .map(drop),
+            measurement
+                .virtual_experiment(options, |_| (), &false.into())
+                .map(drop),
+        ];
+        for refused in refused {
+            let told = refused.unwrap_err().to_string();
+            let start = format!(
+                "the distribution of `{quantity}` must reach possible values only: it is normal"
+            );
+            assert!(told.starts_with(&start), "{told}");
+        }
+    }
+}
+
+#[test]
 fn impossible_measurements_are_refused() {
     let setup = setup();
     let refused =

@@ -115,7 +115,11 @@ impl Measurement {
             .position(|source| *source == calibration);
         let calibration = calibration.map_or(0.0, |index| values[index]);
         let described = self.setup.description();
-        let setup = Setup::new(self.with(&values))?;
+        let setup = Setup::new(self.with(&values)).map_err(|error| {
+            let is_possible = |values: &[f64]| Setup::new(self.with(values)).is_ok();
+            let found = self.inputs.impossible_draw(&values, is_possible);
+            found.map_or(error, |found| self.named(found))
+        })?;
         let line = setup
             .line_at(self.height)
             .ok_or(TriangulationError::NothingMeasured {

@@ -204,8 +204,55 @@ fn values_without_a_finite_variance_are_refused() {
         "overflow"
     );
     let found = Propagation::new(&normal(), |x| x[0].sqrt(), options);
-    let is_refused = matches!(found, Err(UncertaintyError::NotFinite { .. }));
-    assert!(is_refused, "the root of negative values");
+    let refused = found.map(drop).unwrap_err();
+    assert!(
+        refused
+            .to_string()
+            .starts_with("distribution of input 0 must reach possible values only: it is normal"),
+        "the root of negative values: {refused}"
+    );
+}
+
+#[test]
+fn inputs_that_leave_what_is_possible_are_named() {
+    let input = |estimate, shape| Input::new(estimate, 1.0, shape).unwrap();
+    let of = |shape: Distribution| {
+        let inputs = vec![input(9.0, Distribution::Normal), input(1.5, shape)];
+        Inputs::independent(inputs).unwrap()
+    };
+    let root = |x: &[f64]| x[0] + x[1].sqrt();
+    for shape in [
+        Distribution::Normal,
+        Distribution::Rectangular,
+        Distribution::Triangular,
+    ] {
+        let propagated = Propagation::new(&of(shape), root, PropagationOptions::default());
+        let parts = Decomposition::new(&of(shape), root, DecompositionOptions::default());
+        for found in [propagated.map(drop), parts.map(drop)] {
+            match found {
+                Err(UncertaintyError::ImpossibleDraw {
+                    input: 1,
+                    distribution,
+                    value,
+                }) => {
+                    assert!(
+                        distribution == shape && value < 0.0,
+                        "{distribution} {value}"
+                    );
+                }
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+    // An arcsine one ends before, and two that only together leave what is possible are none to blame.
+    let arcsine = of(Distribution::Arcsine);
+    assert!(Propagation::new(&arcsine, root, PropagationOptions::default()).is_ok());
+    let both = |x: &[f64]| (12.0 - x[0] - x[1]).sqrt();
+    let found = Propagation::new(&arcsine, both, PropagationOptions::default());
+    assert!(
+        matches!(found, Err(UncertaintyError::NotFinite { .. })),
+        "{found:?}"
+    );
 }
 
 #[cfg(feature = "parallel")]

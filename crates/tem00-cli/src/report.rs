@@ -23,7 +23,10 @@ pub(crate) use self::{
     units::Unit,
 };
 #[cfg(feature = "full")]
-pub(crate) use self::{cloud::Cloud, escape::escaped};
+pub(crate) use self::{
+    cloud::Cloud,
+    escape::{escaped, is_unwanted},
+};
 
 /// The results of a command.
 ///

@@ -10,7 +10,7 @@ use kuva::{
 };
 
 use super::cells::Cells;
-use crate::{atomic::write_atomically, failure::Failure};
+use crate::{atomic::write_atomically, failure::Failure, report::is_unwanted};
 
 /// The pixels of a PNG per unit of the drawing.
 const PNG_SCALE: f32 = 2.5;
@@ -122,13 +122,42 @@ fn lowest_text(scene: &Scene) -> f64 {
 /// Returns a scene as SVG that scales, with cells as a picture.
 fn svg(scene: &mut Scene) -> String {
     let cells = Cells::take(scene);
-    let svg = SvgBackend::new().render_scene(scene);
+    let svg = with_own_ids(&SvgBackend::new().render_scene(scene));
+    let svg = svg.replace(is_unwanted, "\u{fffd}");
     let view_box = format!("<svg viewBox=\"0 0 {} {}\"", scene.width, scene.height);
     let svg = svg.replacen("<svg", &view_box, 1);
     match cells {
         None => svg,
         Some(cells) => cells.put_back(scene, &svg),
     }
+}
+
+/// How the drawing library begins the names of elements, before a number that counts through the process.
+const COUNTED: &str = "kuva-clip-";
+
+/// Returns SVG whose elements have names that depend on it alone, and are its own among all drawings of a page.
+fn with_own_ids(svg: &str) -> String {
+    let mut parts = svg.split(COUNTED);
+    let mut texts = vec![parts.next().unwrap_or_default()];
+    let (mut numbers, mut seen) = (Vec::new(), Vec::new());
+    for part in parts {
+        let end = part
+            .find(|c: char| !c.is_ascii_digit())
+            .unwrap_or(part.len());
+        let (number, rest) = part.split_at(end);
+        let first = seen.iter().position(|&other| other == number);
+        numbers.push(first.unwrap_or(seen.len()));
+        if first.is_none() {
+            seen.push(number);
+        }
+        texts.push(rest);
+    }
+    let of = format!("{:x}", md5::compute(texts.concat()));
+    let (start, rest) = texts.split_at(1);
+    let named = numbers.iter().zip(rest);
+    named.fold(start.concat(), |svg, (number, rest)| {
+        format!("{svg}clip-{}-{number}{rest}", &of[..8])
+    })
 }
 
 #[cfg(test)]
@@ -143,6 +172,35 @@ mod tests {
         assert_eq!(of("b.png"), Some(Format::Png));
         assert_eq!(of("b.pdf"), None);
         assert_eq!(of("svg"), None);
+    }
+
+    #[test]
+    fn a_drawing_is_the_same_whatever_was_drawn_before() {
+        let chart = |name: &str| {
+            let line = [(0.0, 1.0), (1.0, 2.0)];
+            Chart::new(name, ["x (mm)", "z (mm)"])
+                .line("profile", line)
+                .draw()
+        };
+        let first = chart("heights").svg().to_owned();
+        assert!(
+            first.contains("clip-") && !first.contains(COUNTED),
+            "{first}"
+        );
+        let other = chart("other");
+        assert_eq!(first, chart("heights").svg());
+        let id = |svg: &str| svg.split("id=\"").nth(1).map(|rest| rest[..14].to_owned());
+        assert_ne!(id(&first), id(other.svg()), "two drawings on a page");
+    }
+
+    #[test]
+    fn no_name_makes_an_svg_ill_formed() {
+        for bad in ["\u{ffff}", "\u{fffe}", "\u{1b}[0m", "\0", "\u{202e}"] {
+            let chart = Chart::new(bad, [bad, bad]).line(bad, [(0.0, 1.0), (1.0, 2.0)]);
+            let drawing = chart.draw();
+            assert!(!drawing.svg().contains(is_unwanted), "{bad:?}");
+            assert!(drawing.svg().contains('\u{fffd}'), "{bad:?}");
+        }
     }
 
     #[test]

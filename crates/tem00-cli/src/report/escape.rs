@@ -6,10 +6,10 @@ use tem00_config::is_hazard;
 
 /// Returns text as HTML and XML show it, between tags and in quoted attributes.
 ///
-/// Control characters, which no such file may have, and those that turn the direction of writing become the
-/// replacement character.
+/// Characters that no such file may have, and those that turn the direction of writing, become the replacement
+/// character.
 pub(crate) fn escaped(text: &str) -> Cow<'_, str> {
-    let special = |c: char| matches!(c, '&' | '<' | '>' | '"' | '\'') || is_hazard(c);
+    let special = |c: char| matches!(c, '&' | '<' | '>' | '"' | '\'') || is_unwanted(c);
     if !text.contains(special) {
         return Cow::Borrowed(text);
     }
@@ -21,11 +21,16 @@ pub(crate) fn escaped(text: &str) -> Cow<'_, str> {
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
             '\'' => out.push_str("&#39;"),
-            c if is_hazard(c) => out.push(char::REPLACEMENT_CHARACTER),
+            c if is_unwanted(c) => out.push(char::REPLACEMENT_CHARACTER),
             c => out.push(c),
         }
     }
     Cow::Owned(out)
+}
+
+/// Returns whether a character does something other than show itself, or may be in no file of XML.
+pub(crate) fn is_unwanted(c: char) -> bool {
+    is_hazard(c) || matches!(c, '\u{fffe}' | '\u{ffff}')
 }
 
 #[cfg(test)]
@@ -43,6 +48,8 @@ mod tests {
             ("a & \"b\"", "a &amp; &quot;b&quot;"),
             ("two\nlines\tand \u{1b}[0m", "two\nlines\tand \u{fffd}[0m"),
             ("\u{202e}fdp.exe", "\u{fffd}fdp.exe"),
+            ("a\u{fffe}b\u{ffff}\u{fffd}", "a\u{fffd}b\u{fffd}\u{fffd}"),
+            ("\u{10ffff}\u{fdd0}", "\u{10ffff}\u{fdd0}"),
         ] {
             assert_eq!(escaped(text), expected);
         }

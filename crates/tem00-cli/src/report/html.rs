@@ -27,15 +27,16 @@ impl Report {
         let mut body = String::new();
         // Memory takes whatever it is given.
         let _ = self.write_body(&mut body);
-        let script = if self.sections.iter().any(Section::turns) {
-            format!("<script>\n{}</script>\n", cloud::SCRIPT)
+        let (policy, script) = if self.sections.iter().any(Section::turns) {
+            let script = format!("<script>\n{}</script>\n", cloud::SCRIPT);
+            ("; script-src 'unsafe-inline'", script)
         } else {
-            String::new()
+            ("", String::new())
         };
         format!(
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; \
-             style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+             style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'{policy}\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
              <title>{title}</title>\n<style>\n{style}{dark}</style>\n</head>\n<body>\n<main>\n{body}\
              <footer>tem00 {version}</footer>\n</main>\n{script}</body>\n</html>\n"
         )

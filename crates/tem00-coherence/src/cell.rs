@@ -2,9 +2,8 @@ use core::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 use num_complex::Complex;
-use tem00_numerics::disc_overlap;
 
-use crate::{CoherenceError, SourceExtent, excess::HeightExcess, kernel::LagKernel, lens};
+use crate::{CoherenceError, SourceExtent, blur::Blur, excess::HeightExcess, kernel::LagKernel};
 
 /// How a camera sees a rough surface that a source lights, for [`ResolutionCell::new`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -241,6 +240,11 @@ impl ResolutionCell {
         self.height_factor
     }
 
+    /// Returns whether the surface is in focus.
+    pub(crate) const fn is_in_focus(&self) -> bool {
+        self.defocus == 0.0
+    }
+
     /// Returns the unit vector from the surface to the source.
     pub(crate) const fn source(&self) -> DVec3 {
         self.source
@@ -313,7 +317,7 @@ impl ResolutionCell {
     /// image, for a dense relief without correlation length.
     pub fn field_correlation(&self, kappa: f64) -> Complex<f64> {
         let shift = kappa / self.tilt_wave_number();
-        self.shared_pupil(shift, kappa) * self.height_correlation(kappa)
+        self.blur(false).mean(shift, kappa) * self.height_correlation(kappa)
     }
 
     /// Returns the mean of `|P̂|²`, with the correlation length of the relief.
@@ -329,22 +333,7 @@ impl ResolutionCell {
             shift: DVec2::new(kappa / self.tilt_wave_number(), 0.0),
             of_heights: kappa,
         };
-        let excess = self.height_excess(LagKernel::CONTRAST, false);
-        self.squared_correlation_of(difference, &excess)
-    }
-
-    /// Returns the mean of the squared correlation of two parts of the light, with the excess of a contrast.
-    pub(crate) fn squared_correlation_of(
-        &self,
-        difference: Difference,
-        excess: &HeightExcess,
-    ) -> f64 {
-        let shared = self.shared_pupil(difference.shift.length(), difference.kappa);
-        let dense = (shared * self.height_correlation(difference.of_heights)).norm_sqr();
-        if self.defocus != 0.0 {
-            return dense;
-        }
-        dense + excess.at(difference.of_heights, difference.shift.length())
+        Correlation::new(self, false).squared(difference)
     }
 
     /// The correlation length of the relief in speckles.
@@ -373,21 +362,41 @@ impl ResolutionCell {
         }
     }
 
-    /// Returns the part of the pupil that two parts of the light share whose fields are so many diameters apart, with the
-    /// phases of defocus.
-    fn shared_pupil(&self, shift: f64, kappa: f64) -> Complex<f64> {
-        if self.defocus == 0.0 {
-            return disc_overlap(shift).into();
-        }
+    /// Returns what parts of the light share of the pupil, with the phases of defocus, for which `is_often` asked.
+    fn blur(&self, is_often: bool) -> Blur {
         let half_depth = 0.5 * self.defocus * self.sin_aperture.powi(2);
-        let bend = kappa * half_depth;
         // Of the displacement: that of a sphere about the plane in focus.
-        let linear = 2.0 * half_depth * shift * self.full_displacement() / self.sin_aperture;
-        lens::mean_over_lens(
-            shift,
-            [linear.abs() + bend.abs(), bend.abs()],
-            |along, across| linear * along - bend * (along * along + across * across),
-        )
+        let linear = 2.0 * half_depth * self.full_displacement() / self.sin_aperture;
+        Blur::new([linear, half_depth], is_often)
+    }
+}
+
+/// What correlates parts of the light of a cell, from tables where many are asked for.
+#[derive(Debug)]
+pub(crate) struct Correlation<'a> {
+    cell: &'a ResolutionCell,
+    blur: Blur,
+    excess: HeightExcess,
+}
+
+impl<'a> Correlation<'a> {
+    pub(crate) fn new(cell: &'a ResolutionCell, is_often: bool) -> Self {
+        Self {
+            cell,
+            blur: cell.blur(is_often),
+            excess: cell.height_excess(LagKernel::CONTRAST, is_often),
+        }
+    }
+
+    /// Returns the mean of the squared correlation of two parts of the light.
+    pub(crate) fn squared(&self, difference: Difference) -> f64 {
+        let shift = difference.shift.length();
+        let shared = self.blur.squared(shift, difference.kappa);
+        let dense = shared * self.cell.height_correlation(difference.of_heights).powi(2);
+        if self.cell.defocus != 0.0 {
+            return dense;
+        }
+        dense + self.excess.at(difference.of_heights, shift)
     }
 }
 

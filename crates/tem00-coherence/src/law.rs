@@ -5,9 +5,8 @@ use tem00_numerics::{cast::to_usize, disc_overlap, quadrature::integrate, sinc_p
 
 use crate::{
     ResolutionCell, SpectralLine,
-    cell::Difference,
+    cell::{Correlation, Difference},
     chebyshev::Tabulated,
-    excess::HeightExcess,
     kernel::LagKernel,
     lens,
     line::{LADDER_END, breaks_about},
@@ -180,6 +179,9 @@ fn power_in(shift: DVec2, of_chord: impl Fn(f64) -> f64) -> f64 {
     integrate(by_root, [0.0, 1.0], 0.125)
 }
 
+/// Lags in radians across the pupil beyond which less than 3e−9 is left.
+const FARTHEST: f64 = 1e3;
+
 impl PolychromaticSpeckle<'_> {
     /// Returns the contrast, standard deviation over mean, `C² = ∫ R(κ) |P̂(κ)|² dκ`.
     pub fn contrast(&self) -> f64 {
@@ -196,14 +198,14 @@ impl PolychromaticSpeckle<'_> {
     /// for a relief without correlation length; without a displacement it is the squared contrast.
     pub fn covariance(&self, displacement: [f64; 2]) -> f64 {
         let displacement = DVec2::from_array(displacement);
-        let excess = self.height_excess(LagKernel::CONTRAST);
+        let correlation = Correlation::new(self.cell, self.is_of_many_parts());
         self.mean(|difference| {
             let shift = displacement + difference.shift;
             let moved = Difference {
                 shift,
                 ..difference
             };
-            self.cell.squared_correlation_of(moved, &excess)
+            correlation.squared(moved)
         })
     }
 
@@ -215,9 +217,13 @@ impl PolychromaticSpeckle<'_> {
             // Along the shift and across it.
             let axis = difference.shift.try_normalize().unwrap_or(DVec2::X);
             let [first, second] = [axis.dot(lag), axis.perp_dot(lag)];
-            let phase = |along: f64, across: f64| first * along + second * across;
-            let ranges = [first.abs(), second.abs()];
-            let lens = lens::mean_over_lens(difference.shift.length(), ranges, phase);
+            let shift = difference.shift.length();
+            let range = first.abs() + second.abs();
+            if shift >= 1.0 || range > FARTHEST {
+                return 0.0;
+            }
+            let across = |chord: f64| lens::linear_across(second, chord);
+            let lens = lens::mean_over_lens(shift, range, |along| first * along, across);
             lens.norm_sqr() * self.cell.height_correlation(difference.of_heights).powi(2)
         })
     }
@@ -259,7 +265,8 @@ impl PolychromaticSpeckle<'_> {
 
     fn line_variance_by(&self, rows: Rows, shared: impl Fn(DVec2) -> f64) -> f64 {
         let contrast_like = rows.weight_of_contrast();
-        let excess = self.height_excess(LagKernel { contrast_like });
+        let kernel = LagKernel { contrast_like };
+        let excess = self.cell.height_excess(kernel, self.is_of_many_parts());
         // Heights that are correlated over many speckles leave f alone.
         let long = self.cell.correlation_length().powi(2);
         let long = long / (long + 4.0);
@@ -276,11 +283,9 @@ impl PolychromaticSpeckle<'_> {
         })
     }
 
-    /// Returns what correlated heights add, from a table where the parts of the light are many.
-    fn height_excess(&self, kernel: LagKernel) -> HeightExcess {
-        let is_point = self.cell.source_extent().is_point();
-        self.cell
-            .height_excess(kernel, !is_point || self.line.has_many_pairs())
+    /// Returns whether the light is of so many parts that tables pay.
+    fn is_of_many_parts(&self) -> bool {
+        !self.cell.source_extent().is_point() || self.line.has_many_pairs()
     }
 
     /// Returns the mean over two parts of the light.

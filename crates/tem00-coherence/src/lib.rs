@@ -25,6 +25,7 @@
 //! No dispersion of the line by the colour of the surface; scattering within one relief happens
 //! once. Paths over several surfaces are given, not found. Surfaces are rough: below `σ_L = λ/2` a mirror part is left that these laws do not know.
 
+mod blur;
 mod cell;
 mod chebyshev;
 mod eigenvalues;

@@ -3,8 +3,12 @@
 use num_complex::Complex;
 
 use crate::{
-    PolychromaticSpeckle, Relief, ResolutionCell, SourceExtent, eigenvalues::hermitian_eigenvalues,
-    heights::representative_heights, mode_ratio,
+    PolychromaticSpeckle, Relief, ResolutionCell, SourceExtent,
+    chebyshev::Tabulated,
+    eigenvalues::hermitian_eigenvalues,
+    heights::representative_heights,
+    line::{LADDER_END, breaks_about},
+    mode_ratio,
 };
 
 /// Speckle patterns of one wavelength that together make the speckle of other light, for renderers.
@@ -90,10 +94,11 @@ impl PolychromaticSpeckle<'_> {
             return geometric_fractions(self.contrast().powi(2));
         };
         let mut matrix = vec![Complex::ZERO; nodes.len() * nodes.len()];
+        let correlation = self.field_correlation();
         for (i, first) in nodes.iter().enumerate() {
             for (j, second) in nodes.iter().enumerate() {
-                let correlation = self.cell.field_correlation(first[0] - second[0]);
-                matrix[i * nodes.len() + j] = correlation * (first[1] * second[1]).sqrt();
+                let root = (first[1] * second[1]).sqrt();
+                matrix[i * nodes.len() + j] = correlation(first[0] - second[0]) * root;
             }
         }
         let mut modes = hermitian_eigenvalues(matrix, nodes.len());
@@ -107,6 +112,23 @@ impl PolychromaticSpeckle<'_> {
         });
         let kept: f64 = modes.iter().sum();
         modes.iter().map(|mode| mode / kept).collect()
+    }
+}
+
+impl<'a> PolychromaticSpeckle<'a> {
+    /// Returns the correlation of the fields of two wave numbers, from a table out of focus.
+    fn field_correlation(&self) -> impl Fn(f64) -> Complex<f64> + use<'a> {
+        let cell = self.cell;
+        let unit = cell.scale().min(1e200);
+        let part = |of: fn(Complex<f64>) -> f64| {
+            let breaks = breaks_about([(0.0, unit)], LADDER_END * unit);
+            Tabulated::new(breaks, move |kappa| of(cell.field_correlation(kappa)))
+        };
+        let parts = [part(|field| field.re), part(|field| field.im)];
+        move |kappa| match cell.is_in_focus() {
+            true => cell.field_correlation(kappa),
+            false => Complex::new(parts[0].at(kappa), parts[1].at(kappa)),
+        }
     }
 }
 

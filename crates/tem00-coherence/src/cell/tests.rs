@@ -2,7 +2,7 @@ use core::f64::consts::PI;
 
 use approx::assert_relative_eq;
 use proptest::prelude::*;
-use tem00_numerics::{jinc, quadrature::integrate};
+use tem00_numerics::{disc_overlap, jinc, quadrature::integrate};
 
 use super::*;
 

@@ -1,25 +1,21 @@
 //! A table of the excess, whose size does not grow with the relief.
 
-use core::{array::from_fn, f64::consts::TAU};
+use core::f64::consts::TAU;
 
 use tem00_numerics::quadrature::for_each_node;
 
 use super::{STEEP, is_beyond};
 use crate::{
-    chebyshev::{at_place, coefficients, node, place, polynomials},
+    chebyshev::{Grid, SIDE, at_place, node},
     kernel::LagKernel,
 };
 
-/// The number of Chebyshev nodes on each side of a cell.
-const NODES: usize = 8;
-
-/// The excess over phases x and displacements s, as polynomials on cells.
+/// The excess over phases and displacements.
 #[derive(Clone, Debug)]
 pub(super) struct Table {
-    phases: Vec<f64>,
-    shifts: Vec<f64>,
-    /// Coefficients of Chebyshev polynomials, of phases first.
-    cells: Vec<[[f64; NODES]; NODES]>,
+    grid: Grid,
+    /// At the nodes of the panels of displacements, at those of phases.
+    values: Vec<Vec<f64>>,
 }
 
 /// The longest correlation length in speckles over which lags are summed. Of a longer one the loss is of first order in its
@@ -57,18 +53,8 @@ impl Table {
         let values: Vec<Vec<f64>> = nodes(&shifts)
             .map(|shift| over_phases(&rows, &lags, kernel, shift))
             .collect();
-        let cell = |i: usize, j: usize| {
-            let over_phases: [[f64; NODES]; NODES] =
-                from_fn(|l| coefficients(from_fn(|k| values[j * NODES + l][i * NODES + k])));
-            from_fn(|m| coefficients(from_fn(|l| over_phases[l][m])))
-        };
-        let cells = (0..phases.len() - 1).flat_map(|i| (0..shifts.len() - 1).map(move |j| (i, j)));
-        let cells = cells.map(|(i, j)| cell(i, j)).collect();
-        Self {
-            phases,
-            shifts,
-            cells,
-        }
+        let grid = Grid::new(phases, shifts);
+        Self { grid, values }
     }
 
     /// The number of Bessel functions that a table of a relief sums, and of its cells.
@@ -76,19 +62,15 @@ impl Table {
     pub(super) fn size(&self) -> (usize, usize) {
         let mut lags = 0;
         for_each_lag(6.0 * LONGEST, |_, _| lags += 1);
-        (lags * NODES * (self.shifts.len() - 1), self.cells.len())
+        let [phases, shifts] = self.grid.breaks().each_ref().map(|breaks| breaks.len() - 1);
+        (lags * SIDE * shifts, phases * shifts)
     }
 
     pub(super) fn at(&self, phase: f64, shift: f64) -> f64 {
-        let (Some((i, x)), Some((j, s))) = (place(&self.phases, phase), place(&self.shifts, shift))
-        else {
-            return 0.0;
+        let value = |(i, k): (usize, usize), (j, l): (usize, usize)| {
+            self.values[j * SIDE + l][i * SIDE + k]
         };
-        let [of_phase, of_shift] = [x, s].map(polynomials::<NODES>);
-        let cell = &self.cells[i * (self.shifts.len() - 1) + j];
-        let rows = cell.iter().zip(of_phase);
-        let sum = |row: &[f64; NODES]| row.iter().zip(of_shift).map(|(c, t)| c * t).sum::<f64>();
-        rows.map(|(row, t)| t * sum(row)).sum()
+        self.grid.at_nodes([phase, shift], value)
     }
 }
 
@@ -206,6 +188,6 @@ fn for_each_lag(end: f64, mut visit: impl FnMut(f64, f64)) {
 fn nodes(breaks: &[f64]) -> impl Iterator<Item = f64> {
     breaks.windows(2).flat_map(|ends| {
         let ends = [ends[0], ends[1]];
-        (0..NODES).map(move |k| at_place(ends, node::<NODES>(k)))
+        (0..SIDE).map(move |k| at_place(ends, node::<SIDE>(k)))
     })
 }

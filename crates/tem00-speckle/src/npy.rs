@@ -22,9 +22,9 @@ const CHUNK: usize = 1 << 16;
 /// A NumPy file (NPY) whose header has been read and whose values follow.
 ///
 /// Versions 1 to 3 of the format are understood, both orders of the values (C and Fortran) and both
-/// byte orders. Real values are `float32`, `float64`, `uint8` or `uint16`, complex ones
-/// `complex64` or `complex128`; all are kept in single precision. An array of the shape
-/// (height, width) becomes a grid of height rows.
+/// byte orders. Real values are `float16`, `float32`, `float64`, `bool` or integers of 8 to 64 bits, complex
+/// ones `complex64` or `complex128`; all are kept in single precision. An array of the shape
+/// (height, width) becomes a grid of height rows; further axes may have the length 1.
 ///
 /// Memory is only asked for as the file fills it, whatever its header claims.
 ///
@@ -79,6 +79,16 @@ impl<R: Read> NpyReader<R> {
         &self.header.shape
     }
 
+    /// Returns height and width if the array has two dimensions, beside axes of the length 1.
+    pub fn grid_shape(&self) -> Option<[u64; 2]> {
+        let mut shape = self.header.shape.clone();
+        while shape.len() > 2 {
+            let one = shape.iter().rposition(|&side| side == 1)?;
+            shape.remove(one);
+        }
+        shape.try_into().ok()
+    }
+
     /// Returns the type of the values as the file names it, such as `<c8` for `complex64`.
     pub fn element_type(&self) -> &str {
         &self.header.element_type
@@ -115,7 +125,7 @@ impl<R: Read> NpyReader<R> {
     }
 
     fn into_grid<T: Element>(mut self, memory_limit: u64) -> Result<Grid<T>, NpyError> {
-        let &[height, width] = self.shape() else {
+        let Some([height, width]) = self.grid_shape() else {
             return Err(NpyError::Shape(self.header.shape));
         };
         let (bytes_each, decode) = self.decoder()?;

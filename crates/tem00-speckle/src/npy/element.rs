@@ -27,14 +27,16 @@ pub(super) enum ElementType {
 /// Number types of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Number {
+    /// `float16`.
+    Half,
     /// `float32`.
     Single,
     /// `float64`.
     Double,
-    /// `uint8`.
-    Byte,
-    /// `uint16`.
-    Word,
+    /// `uint8` to `uint64`, and `bool`, of so many bytes.
+    Unsigned(usize),
+    /// `int8` to `int64`, of so many bytes.
+    Signed(usize),
 }
 
 impl ElementType {
@@ -46,11 +48,19 @@ impl ElementType {
             ">" => true,
             _ => return None,
         };
+        let real = |number| Some(Self::Real(number, highest_first));
         match kind {
-            "f4" => Some(Self::Real(Number::Single, highest_first)),
-            "f8" => Some(Self::Real(Number::Double, highest_first)),
-            "u1" => Some(Self::Real(Number::Byte, highest_first)),
-            "u2" => Some(Self::Real(Number::Word, highest_first)),
+            "f2" => real(Number::Half),
+            "f4" => real(Number::Single),
+            "f8" => real(Number::Double),
+            "b1" | "u1" => real(Number::Unsigned(1)),
+            "u2" => real(Number::Unsigned(2)),
+            "u4" => real(Number::Unsigned(4)),
+            "u8" => real(Number::Unsigned(8)),
+            "i1" => real(Number::Signed(1)),
+            "i2" => real(Number::Signed(2)),
+            "i4" => real(Number::Signed(4)),
+            "i8" => real(Number::Signed(8)),
             "c8" => Some(Self::Complex(Number::Single, highest_first)),
             "c16" => Some(Self::Complex(Number::Double, highest_first)),
             _ => None,
@@ -61,8 +71,8 @@ impl ElementType {
 impl Number {
     const fn bytes(self) -> usize {
         match self {
-            Self::Byte => 1,
-            Self::Word => 2,
+            Self::Unsigned(bytes) | Self::Signed(bytes) => bytes,
+            Self::Half => 2,
             Self::Single => 4,
             Self::Double => 8,
         }
@@ -79,16 +89,37 @@ impl Number {
         }
         let bits = u64::from_le_bytes(word);
         match self {
-            Self::Byte | Self::Word => bits as u16 as f32,
+            Self::Unsigned(_) => bits as f32,
+            Self::Signed(bytes) => {
+                let unused = 64 - 8 * bytes;
+                ((bits << unused).cast_signed() >> unused) as f32
+            }
+            Self::Half => half(bits as u16),
             Self::Single => f32::from_bits(bits as u32),
             Self::Double => f64::from_bits(bits) as f32,
         }
     }
 }
 
+/// Returns the number that the bits of a `float16` stand for: IEEE 754 binary16, whose exponent has 5 bits and the
+/// bias 15, its fraction 10 bits.
+fn half(bits: u16) -> f32 {
+    let [exponent, fraction] = [(bits >> 10) & 31, bits & 1023].map(u32::from);
+    let magnitude = match exponent {
+        0 => fraction as f32 / 16_777_216.0,
+        31 => f32::from_bits(0xff << 23 | fraction << 13),
+        _ => f32::from_bits((exponent + 112) << 23 | fraction << 13),
+    };
+    if bits >> 15 == 1 {
+        -magnitude
+    } else {
+        magnitude
+    }
+}
+
 impl Element for f32 {
     const WRITTEN: &'static str = "<f4";
-    const READABLE: &'static str = "float32, float64, uint8 or uint16";
+    const READABLE: &'static str = "float16, float32, float64, bool, or integers of 8 to 64 bits";
 
     fn decoder(element_type: ElementType) -> Option<(usize, impl Fn(&[u8]) -> Self)> {
         let ElementType::Real(number, highest_first) = element_type else {

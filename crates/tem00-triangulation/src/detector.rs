@@ -60,9 +60,7 @@ impl LineDetector {
     /// decile of the column. Lines less than [`min_peak`](DetectorSettings::min_peak) above it are
     /// left out. Windows end where the next line begins, at the least value between both.
     pub fn detect_column(&self, column: &[f32]) -> Vec<LinePoint> {
-        let found = Column::of(column, &self.settings);
-        let position = |profile: &Profile<'_>| profile.estimate(&self.settings.method);
-        self.points(column, &found, position)
+        self.in_column(column, &[])
     }
 
     /// Finds the lines of an image: for each column the points on them, from the top.
@@ -77,20 +75,44 @@ impl LineDetector {
     /// one that it is nearer to. Lines are numbered from the top, by their mean positions; those of less than
     /// a tenth of the points of the longest come after all others.
     pub fn detect(&self, image: &Grid<f32>) -> Vec<Vec<LinePoint>> {
-        let columns = Grid::from_fn(image.height(), image.width(), |y, x| image[(x, y)]);
-        self.detect_rows(&columns)
+        self.find(&turned(image), None)
+    }
+
+    /// Finds the lines of an image as [`detect`](Self::detect) does, where it is known which pixels are
+    /// saturated: by their colours, for instance, of which the image is the mean.
+    ///
+    /// A pixel is saturated if it is marked or reaches [`saturation`](DetectorSettings::saturation).
+    ///
+    /// # Panics
+    ///
+    /// Panics if both grids differ in size.
+    pub fn detect_marked(&self, image: &Grid<f32>, saturated: &Grid<bool>) -> Vec<Vec<LinePoint>> {
+        let sizes = [
+            [image.width(), image.height()],
+            [saturated.width(), saturated.height()],
+        ];
+        assert_eq!(sizes[0], sizes[1], "both are of one image");
+        self.find(&turned(image), Some(&turned(saturated)))
     }
 
     /// Finds the lines of an image in which they run from top to bottom, as [`detect`](Self::detect)
     /// does: for each *row* the points on them, from the left, with positions along x.
     pub fn detect_rows(&self, image: &Grid<f32>) -> Vec<Vec<LinePoint>> {
+        self.find(image, None)
+    }
+
+    /// Finds the lines of an image in its rows, some of whose pixels may be marked as saturated.
+    fn find(&self, image: &Grid<f32>, saturated: Option<&Grid<bool>>) -> Vec<Vec<LinePoint>> {
         let kernels = match self.settings.method {
             LineMethod::Steger { sigma } => Some(Kernels::new(sigma)),
             _ => None,
         };
-        let find = |y| match &kernels {
-            Some(kernels) => self.ridges(image, y, kernels),
-            None => self.detect_column(image.row(y)),
+        let find = |y| {
+            let marked = saturated.map_or(&[][..], |saturated| saturated.row(y));
+            match &kernels {
+                Some(kernels) => self.ridges((image, marked), y, kernels),
+                None => self.in_column(image.row(y), marked),
+            }
         };
         let rows = (0..image.height()).into_par_iter();
         let mut points: Vec<Vec<LinePoint>> = rows.map(find).collect();
@@ -98,19 +120,30 @@ impl LineDetector {
         points
     }
 
-    fn ridges(&self, image: &Grid<f32>, y: usize, kernels: &Kernels) -> Vec<LinePoint> {
+    fn in_column(&self, column: &[f32], marked: &[bool]) -> Vec<LinePoint> {
+        let found = Column::of(column, &self.settings);
+        let position = |profile: &Profile<'_>| profile.estimate(&self.settings.method);
+        self.points((column, marked), &found, position)
+    }
+
+    fn ridges(
+        &self,
+        (image, marked): (&Grid<f32>, &[bool]),
+        y: usize,
+        kernels: &Kernels,
+    ) -> Vec<LinePoint> {
         let found = Column::of(image.row(y), &self.settings);
         let position = |profile: &Profile<'_>| {
             let position = steger::in_image(profile, image, (y, found.background), kernels)?;
             let width = None;
             profile.placed(Estimate { position, width })
         };
-        self.points(image.row(y), &found, position)
+        self.points((image.row(y), marked), &found, position)
     }
 
     fn points(
         &self,
-        raw: &[f32],
+        raw: (&[f32], &[bool]),
         column: &Column,
         position: impl Fn(&Profile<'_>) -> Option<Estimate>,
     ) -> Vec<LinePoint> {
@@ -142,10 +175,13 @@ impl LineDetector {
     }
 
     /// Returns the validity of a line whose position was estimated.
-    fn validity(&self, raw: &[f32], line: &Sighting) -> Validity {
+    fn validity(&self, (raw, marked): (&[f32], &[bool]), line: &Sighting) -> Validity {
         let half = self.settings.window / 2;
         let window = || raw[line.window.clone()].iter().copied();
-        if window().any(|value| f64::from(value) >= self.settings.saturation) {
+        let is_marked = marked
+            .get(line.window.clone())
+            .is_some_and(|pixels| pixels.contains(&true));
+        if is_marked || window().any(|value| f64::from(value) >= self.settings.saturation) {
             Validity::Saturated
         } else if window().any(|value| !value.is_finite()) {
             Validity::Missing
@@ -157,4 +193,9 @@ impl LineDetector {
             Validity::Valid
         }
     }
+}
+
+/// Returns an image whose rows are the columns of another.
+fn turned<T: Copy>(image: &Grid<T>) -> Grid<T> {
+    Grid::from_fn(image.height(), image.width(), |y, x| image[(x, y)])
 }

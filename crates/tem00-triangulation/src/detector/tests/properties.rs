@@ -180,6 +180,31 @@ fn validity_says_what_speaks_against_a_point() {
 }
 
 #[test]
+fn marked_pixels_saturate_the_points_whose_windows_hold_them() {
+    let column: Vec<f32> = integrated(LENGTH, MIDDLE, 3.0);
+    let image = Grid::from_fn(3, LENGTH, |x, y| column[y] + x as f32);
+    for method in methods() {
+        let detector = detector(method, 31);
+        let plain = detector.detect(&image);
+        let none = Grid::filled(3, LENGTH, false);
+        assert_eq!(detector.detect_marked(&image, &none), plain, "{method}");
+        let middle = column
+            .iter()
+            .enumerate()
+            .max_by(|a, b| a.1.total_cmp(b.1))
+            .unwrap()
+            .0;
+        // At the end of the window of the second column, and far outside of that of the third.
+        let places = [(1, middle + 12), (2, middle + 40)];
+        let marked = Grid::from_fn(3, LENGTH, |x, y| places.contains(&(x, y)));
+        let mut found = detector.detect_marked(&image, &marked);
+        assert_eq!(found[1][0].validity, Validity::Saturated, "{method}");
+        found[1][0].validity = plain[1][0].validity;
+        assert_eq!(found, plain, "{method}");
+    }
+}
+
+#[test]
 fn settings_outside_of_their_range_are_refused() {
     let good = DetectorSettings::default();
     let bad = [

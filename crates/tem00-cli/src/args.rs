@@ -32,7 +32,7 @@ use clap::{Args, Parser, Subcommand};
 use tem00_speckle::Pupil;
 use tem00_tracer::Crop;
 
-use self::values::{crop, pupil};
+use self::values::{black_level, crop, pupil};
 #[cfg(feature = "full")]
 pub(crate) use self::{
     budget::BudgetArgs,
@@ -176,7 +176,7 @@ Examples:
 
 /// Measure the speckle in an image, and compare it with the theory.
 ///
-/// The image may come from a camera, a simulation or this program: grey or RGB of 8 or 16 bits, an
+/// The image may come from a camera, a simulation or this program: grey or in colours, an
 /// OpenEXR channel, or a two-dimensional NumPy array. The light should be even over the image: take a
 /// part of it with --crop, or divide by its local mean with --flatten. Where it is not, its own shape
 /// counts as contrast, and a warning says so.
@@ -197,13 +197,17 @@ pub(crate) struct StatsArgs {
     pub(crate) flatten: Option<Option<usize>>,
 
     /// The channel to take: R, G, B, or `channel` or `layer.channel` of an OpenEXR file [default:
-    /// the mean of R, G and B, or the first one].
+    /// Y, or the mean of R, G and B, or the only one that shows light].
     #[arg(long, value_name = "NAME")]
     pub(crate) channel: Option<String>,
 
     /// The relation of grey values to light [default: as the file says, else linear].
     #[arg(long, value_name = "CURVE")]
     pub(crate) transfer: Option<Transfer>,
+
+    /// The grey value of darkness, which is subtracted; noise about it may be negative.
+    #[arg(long, value_name = "DN", value_parser = black_level)]
+    pub(crate) black_level: Option<f64>,
 
     /// Print JSON instead of a table, with the curves of the page.
     #[arg(long)]
@@ -221,6 +225,7 @@ Examples:
   tem00 stats photo.jpg --transfer srgb --flatten
   tem00 stats photo.png --plot page.svg
   tem00 stats photo.png --channel R --transfer srgb
+  tem00 stats raw.tif --black-level 64
   tem00 stats out/spot/spot.exr --channel speckle --json";
 
 /// The commands that are built with the feature `full` alone.

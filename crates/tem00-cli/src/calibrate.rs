@@ -1,5 +1,6 @@
 //! `tem00 calibrate`.
 
+mod left_out;
 mod table;
 
 use std::{
@@ -9,10 +10,10 @@ use std::{
 };
 
 use tem00_triangulation::{
-    BoardView, Calibration, CameraModel, Checkerboard, DetectorSettings, LineDetector,
-    TriangulationError, calibrate,
+    BoardView, Calibration, CameraModel, Checkerboard, LineDetector, TriangulationError, calibrate,
 };
 
+use self::left_out::Found;
 use crate::{
     args::CalibrateArgs,
     atomic::probe_writable,
@@ -45,16 +46,25 @@ pub(crate) fn run(args: &CalibrateArgs, out: &mut impl Write) -> Result<(), Fail
             "name another file with -o",
         )
     })?;
-    let (views, resolution) = views(&pairs, &board, args)?;
+    let (views, found, resolution) = views(&pairs, &board, args)?;
     let calibration = calibrate(&board, &views, &model(args, resolution)).map_err(|error| {
+        let doubts: Vec<String> = found
+            .warnings()
+            .iter()
+            .map(|line| format!("; {line}"))
+            .collect();
         Failure::input(
-            format!("{} gives no calibration: {error}", args.folder.display()),
+            format!(
+                "{} gives no calibration: {error}{}",
+                args.folder.display(),
+                doubts.concat()
+            ),
             "at least 3 whole boards are needed, tilted by 15° to 30° about different axes, with \
              the line on boards at different heights",
         )
     })?;
     write_calibration(&target, &calibration)?;
-    report(&calibration).print(false, &[target], out)
+    report(&calibration, &found).print(false, &[target], out)
 }
 
 fn model(args: &CalibrateArgs, resolution: [usize; 2]) -> CameraModel {
@@ -68,13 +78,15 @@ fn model(args: &CalibrateArgs, resolution: [usize; 2]) -> CameraModel {
     }
 }
 
-fn report(calibration: &Calibration) -> Report {
+fn report(calibration: &Calibration, found: &Found) -> Report {
     let mut report = Report::new("Calibration of a camera and a laser");
     report
         .section("Camera")
         .table(table::parameters(calibration));
-    let sentences = table::sentences(calibration).into_iter();
+    let sentences = table::sentences(calibration, found).into_iter();
     sentences.for_each(|sentence| report.verdict(sentence));
+    let warnings = found.warnings().into_iter();
+    warnings.for_each(|line| report.warning(line));
     report
 }
 
@@ -134,27 +146,29 @@ fn views(
     pairs: &[Pair],
     board: &Checkerboard,
     args: &CalibrateArgs,
-) -> Result<(Vec<BoardView>, [usize; 2]), Failure> {
+) -> Result<(Vec<BoardView>, Found, [usize; 2]), Failure> {
     let settings = args.detector.settings().map_err(of_detector)?;
+    let detector = LineDetector::new(settings).map_err(|error| of_detector(error.to_string()))?;
     let progress = Progress::of(pairs.len() as u64, "boards");
-    let mut views = Vec::new();
+    let (mut views, mut found) = (Vec::new(), Found::default());
     let mut size = None;
     for pair in pairs {
         interrupt::check()?;
         progress.name(pair.lit.display().to_string());
         let lit = read(&pair.lit, args, &mut size)?;
-        let line = pair
-            .line
-            .as_deref()
-            .map(|path| read(path, args, &mut size))
-            .transpose()?;
-        let detector = detector(settings, line.as_ref())?;
-        let line = line.map(|line| line.values);
-        let view = BoardView::find(&lit.values, line.as_ref(), board, &detector);
+        let columns = match &pair.line {
+            Some(path) => {
+                let line = read(path, args, &mut size)?;
+                detector.detect_marked(&line.values, &line.saturated)
+            }
+            None => Vec::new(),
+        };
+        found.add(pair.line.as_deref(), &columns);
+        let view = BoardView::find(&lit.values, &columns, board);
         views.push(view.map_err(|error| no_board(&pair.lit, &error))?);
         progress.advance(1);
     }
-    Ok((views, size.unwrap_or_default()))
+    Ok((views, found, size.unwrap_or_default()))
 }
 
 fn no_board(path: &Path, error: &TriangulationError) -> Failure {
@@ -169,15 +183,6 @@ fn of_detector(message: String) -> Failure {
     Failure::input(message, "`tem00 calibrate --help` lists what is allowed")
 }
 
-fn detector(settings: DetectorSettings, line: Option<&RawImage>) -> Result<LineDetector, Failure> {
-    let saturation = line.map_or(settings.saturation, RawImage::saturation);
-    LineDetector::new(DetectorSettings {
-        saturation,
-        ..settings
-    })
-    .map_err(|error| of_detector(error.to_string()))
-}
-
 /// Reads an image, of the size of those before.
 fn read(
     path: &Path,
@@ -187,10 +192,10 @@ fn read(
     let unreadable = |error: ImageError| {
         Failure::input(
             format!("cannot read {}: {error}", path.display()),
-            "images are PNG, TIFF, JPEG, BMP, PGM or PPM files of 8 to 16 bits, grey or RGB",
+            "images are PNG, TIFF, JPEG, BMP, PGM or PPM files, grey or in colours",
         )
     };
-    let image = read_raw(path, args.channel.as_deref()).map_err(unreadable)?;
+    let image = read_raw(path, args.channel.as_deref(), None).map_err(unreadable)?;
     let [width, height] = [image.values.width(), image.values.height()];
     let [first_width, first_height] = *size.get_or_insert([width, height]);
     if [width, height] == [first_width, first_height] {

@@ -3,12 +3,18 @@
 mod common;
 mod exr_file;
 #[cfg(feature = "full")]
+mod exr_reader;
+#[cfg(feature = "full")]
 mod npy_file;
+#[cfg(feature = "full")]
+mod orientation;
 mod png_file;
 #[cfg(feature = "full")]
 mod raw_file;
 #[cfg(feature = "full")]
 mod reading;
+#[cfg(feature = "full")]
+mod saturation;
 #[cfg(feature = "full")]
 mod selection;
 

@@ -49,6 +49,8 @@ mod progress;
 mod render;
 mod report;
 #[cfg(feature = "full")]
+mod saturated_points;
+#[cfg(feature = "full")]
 mod shell;
 mod speckle;
 #[cfg(feature = "full")]

@@ -1,6 +1,6 @@
 //! `tem00 lines`.
 
-mod notes;
+pub(crate) mod notes;
 pub(crate) mod overlay;
 mod points;
 mod summary;
@@ -12,7 +12,7 @@ use std::{
 };
 
 use tem00_numerics::Grid;
-use tem00_triangulation::{Calibration, DetectorSettings, LineDetector, LinePoint};
+use tem00_triangulation::{Calibration, LineDetector, LinePoint};
 
 use crate::{
     args::LinesArgs,
@@ -24,6 +24,7 @@ use crate::{
     kind::{Kind, wrong_or},
     output,
     progress::Progress,
+    saturated_points::PointCounts,
 };
 
 use self::{
@@ -38,7 +39,7 @@ use self::{
 /// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or, with all
 /// files written, if no image has a valid point.
 pub(crate) fn run(args: &LinesArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let settings = settings(args)?;
+    let detector = detector(args)?;
     let calibration = args
         .calibration
         .as_deref()
@@ -54,37 +55,43 @@ pub(crate) fn run(args: &LinesArgs, out: &mut impl Write) -> Result<(), Failure>
         interrupt::check()?;
         progress.name(path.display().to_string());
         let target = folder.join(names.unused(path));
-        let (summary, remarks) = image(path, &target, (args, settings, calibration.as_ref()))?;
+        let (summary, remarks) = image(path, &target, (args, detector, calibration.as_ref()))?;
         summaries.push(summary);
         notes.extend(remarks);
         progress.advance(1);
     }
     drop(progress);
-    let mut report = summary::report(&settings, &summaries);
+    let mut report = summary::report(detector.settings(), &summaries);
+    summaries
+        .iter()
+        .filter_map(ImageSummary::warning)
+        .for_each(|line| report.warning(line));
     notes.into_iter().for_each(|line| report.note(line));
     report.save_json(&folder.join("lines.json"))?;
     report.print(args.json, &[folder.join("lines.json")], out)?;
-    if summaries.iter().any(ImageSummary::has_valid_points) {
+    if summaries.iter().any(ImageSummary::has_result) {
         return Ok(());
     }
     Err(Failure::no_result(
         match &summaries[..] {
+            [one] if one.counts.valid > 0 => {
+                "most points of the lines of the image are on saturated pixels".to_owned()
+            }
             [_] => "the image has no point of a line that is valid".to_owned(),
             several => format!(
-                "none of the {} images has a point of a line that is valid",
+                "none of the {} images has a point of a line that is valid, or most are on saturated pixels",
                 several.len()
             ),
         },
-        "the notes say why; the pictures show what was found",
+        "warnings and notes say why; the pictures show what was found",
     ))
 }
 
-fn settings(args: &LinesArgs) -> Result<DetectorSettings, Failure> {
+fn detector(args: &LinesArgs) -> Result<LineDetector, Failure> {
     let refused =
         |message: String| Failure::input(message, "`tem00 lines --help` lists what is allowed");
     let settings = args.detector.settings().map_err(refused)?;
-    LineDetector::new(settings).map_err(|error| refused(error.to_string()))?;
-    Ok(settings)
+    LineDetector::new(settings).map_err(|error| refused(error.to_string()))
 }
 
 /// Finds the lines of one image and writes its files, whose names begin with `target`; returns what was
@@ -92,22 +99,16 @@ fn settings(args: &LinesArgs) -> Result<DetectorSettings, Failure> {
 fn image(
     path: &Path,
     target: &Path,
-    (args, settings, calibration): (&LinesArgs, DetectorSettings, Option<&Calibration>),
+    (args, detector, calibration): (&LinesArgs, LineDetector, Option<&Calibration>),
 ) -> Result<(ImageSummary, Vec<String>), Failure> {
     let image = read(path, args)?;
     if let Some(calibration) = calibration {
         check_size(path, &image, calibration)?;
     }
-    let settings = DetectorSettings {
-        saturation: image.saturation(),
-        ..settings
-    };
-    let detector =
-        LineDetector::new(settings).map_err(|error| Failure::running(error.to_string()))?;
     let found = if args.rows {
-        detector.detect_rows(&image.values)
+        detector.detect_marked(&turned(&image.values), &turned(&image.saturated))
     } else {
-        detector.detect(&image.values)
+        detector.detect_marked(&image.values, &image.saturated)
     };
     let lines = LineSummary::of_all(&found);
     let places = Places {
@@ -125,7 +126,14 @@ fn image(
         (&found, args.rows),
     )?;
     let notes = notes::of(path, &image, (&found, args));
-    Ok((ImageSummary::new(path, &image, lines), notes))
+    let validities = found.iter().flatten().map(|point| point.validity);
+    let counts = PointCounts::of(validities);
+    Ok((ImageSummary::new(path, &image, (lines, counts)), notes))
+}
+
+/// Returns an image whose columns are the rows of another.
+fn turned<T: Copy>(image: &Grid<T>) -> Grid<T> {
+    Grid::from_fn(image.height(), image.width(), |y, x| image[(x, y)])
 }
 
 fn read(path: &Path, args: &LinesArgs) -> Result<RawImage, Failure> {
@@ -139,20 +147,11 @@ fn read(path: &Path, args: &LinesArgs) -> Result<RawImage, Failure> {
         wrong_or(path, Kind::Image, || {
             Failure::input(
                 format!("cannot read {}: {error}", path.display()),
-                "images are PNG, TIFF, JPEG, BMP, PGM or PPM files of 8 to 16 bits, grey or RGB",
+                "images are PNG, TIFF, JPEG, BMP, PGM or PPM files, grey or in colours",
             )
         })
     };
-    let image = read_raw(path, args.channel.as_deref()).map_err(unreadable)?;
-    match args.bits {
-        Some(bits) => image.with_bit_depth(bits).map_err(|error| {
-            Failure::input(
-                format!("--bits {bits}: {}: {error}", path.display()),
-                "give the bits of the camera, or leave --bits out",
-            )
-        }),
-        None => Ok(image),
-    }
+    read_raw(path, args.channel.as_deref(), args.bits).map_err(unreadable)
 }
 
 fn check_size(path: &Path, image: &RawImage, calibration: &Calibration) -> Result<(), Failure> {

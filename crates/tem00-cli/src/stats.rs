@@ -68,6 +68,7 @@ pub(crate) fn run(args: &StatsArgs, out: &mut impl Write) -> Result<(), Failure>
     let reading = Reading {
         channel: args.channel.as_deref(),
         transfer: args.transfer,
+        black_level: args.black_level,
         crop: args.crop,
     };
     let image = read_image(&args.image, &reading).map_err(|error| {
@@ -113,7 +114,8 @@ fn measurement(args: &StatsArgs, image: &LoadedImage) -> Result<Measurement, Fai
         })?),
         None => None,
     };
-    measure(&args.image, image, flat.as_ref()).map_err(|error| cannot(&error, help))
+    let is_raw = args.black_level.is_none();
+    measure(&args.image, image, (flat.as_ref(), is_raw)).map_err(|error| cannot(&error, help))
 }
 
 /// Returns the file of the page and its format, if it can be written.
@@ -233,7 +235,7 @@ fn pixels(length: f64) -> usize {
 fn measure(
     path: &Path,
     image: &LoadedImage,
-    flat: Option<&FlatImage>,
+    (flat, is_raw): (Option<&FlatImage>, bool),
 ) -> Result<Measurement, StatisticsError> {
     let original = GreyLevels::from_values(image.values.values());
     let values = flat.map_or(&image.values, FlatImage::values);
@@ -251,10 +253,13 @@ fn measure(
         assumptions: Vec::new(),
     };
     let mean = Moments::from_samples(image.values.values())?.mean();
-    found.brightness(mean, image.saturated, original.as_ref());
+    found.brightness(mean, image);
     let lags = autocovariance(values, Boundary::Finite)?;
     let size = found.size(&lags)?;
     found.evenness(&lags, size)?;
+    if is_raw && found.is_even && flat.is_none() {
+        found.pedestal(image, original.as_ref())?;
+    }
     found.contrast(size)?;
     found.size_rows(size);
     let fit = found.distribution(size)?;
@@ -287,12 +292,17 @@ mod tests {
     use crate::comparison::Expectation;
 
     fn measured(values: Grid<f32>) -> Measurement {
-        let image = LoadedImage {
+        measure(Path::new("pattern"), &loaded(values), (None, true)).expect("an image of speckle")
+    }
+
+    fn loaded(values: Grid<f32>) -> LoadedImage {
+        LoadedImage {
             values,
             interpretation: "computed".into(),
             saturated: None,
-        };
-        measure(Path::new("pattern"), &image, None).expect("the image can be measured")
+            unit: Some(1.0),
+            step: None,
+        }
     }
 
     fn row<'a>(measurement: &'a Measurement, quantity: &str) -> &'a Row {
@@ -407,15 +417,58 @@ mod tests {
         assert_eq!(fitted.next(), None, "three levels");
     }
 
+    /// The warning of a pedestal, if there is one.
+    fn pedestal(values: Grid<f32>) -> Option<String> {
+        let mut warnings = measured(values).warnings.into_iter();
+        warnings.find(|warning| warning.contains("--black-level"))
+    }
+
     #[test]
-    fn a_sensor_that_saturates_below_its_file_is_noticed() {
-        let share = |limit: f32| {
-            let light = window(13).map(|value| (value * 100.0).round().min(limit));
-            row(&measured(light), "saturated fraction of pixels").measured
+    fn a_pedestal_is_told_by_the_darkest_values() {
+        // A tenth of the mean of 3500 to thirty times that of 70 over a black level of 64 and more.
+        for (mean, level) in [
+            (3_500.0, 350.0),
+            (300.0, 64.0),
+            (70.0, 64.0),
+            (200.0, 6_000.0),
+        ] {
+            let raw = window(21).map(|value| (value / 7.0 * mean + level).round());
+            let told = pedestal(raw).expect("a warning");
+            let number = told.split("--black-level ").nth(1).and_then(|rest| {
+                rest.split(|c: char| !c.is_ascii_digit() && c != '.')
+                    .next()?
+                    .parse::<f32>()
+                    .ok()
+            });
+            let number = number.expect("a number");
+            // A thousandth of the pixels have less than a thousandth of the mean.
+            assert!(
+                (number - level).abs() < 2e-3 * mean + 1.0,
+                "{mean} + {level}: {told}"
+            );
+        }
+        let two = |degree: f32| {
+            let (a, b) = (window(22), window(23));
+            Grid::from_fn(400, 300, |x, y| a[(x, y)] + degree * b[(x, y)])
         };
-        // The light above 4095 of a mean of 700 is exp(−5.85) = 0.0029, to 30 % in 7500 speckles.
-        assert!((0.002..0.004).contains(&share(4_095.0)), "12 bits");
-        assert!(share(60_000.0) < 1e-4, "nothing is cut");
+        let many = |count: u64| {
+            let patterns: Vec<_> = (30..30 + count).map(window).collect();
+            Grid::from_fn(400, 300, |x, y| {
+                patterns.iter().map(|p| p[(x, y)]).sum::<f32>()
+            })
+        };
+        let coarse = |mean: f32| window(24).map(|value| (value / 7.0 * mean).round());
+        for (name, values) in [
+            ("one pattern", window(21)),
+            ("two patterns", two(1.0)),
+            ("partly polarised", two(0.3)),
+            ("five patterns", many(5)),
+            ("twenty patterns", many(20)),
+            ("a mean of 3 levels", coarse(3.0)),
+            ("a mean of 40 levels", coarse(40.0)),
+        ] {
+            assert_eq!(pedestal(values), None, "{name}");
+        }
     }
 
     #[test]
@@ -455,13 +508,9 @@ mod tests {
 
     #[test]
     fn an_even_image_is_no_speckle() {
-        let image = LoadedImage {
-            values: Grid::filled(20, 20, 1.0),
-            interpretation: "computed".into(),
-            saturated: None,
-        };
+        let image = loaded(Grid::filled(20, 20, 1.0));
         assert!(
-            measure(Path::new("grey"), &image, None).is_err(),
+            measure(Path::new("grey"), &image, (None, true)).is_err(),
             "nothing varies"
         );
     }

@@ -7,15 +7,16 @@ use tem00_triangulation::{DetectorSettings, LineMethod};
 
 /// Find laser lines in images, to a fraction of a pixel.
 ///
-/// The images come from a camera or from this program: grey or RGB, of 8 to 16 bits. A line runs from
+/// The images come from a camera or from this program: grey or in colours. A line runs from
 /// left to right, and has a position in each column (with --rows from top to bottom, and in each row). For every image
 /// there is a table of all points and a picture of the image with the lines drawn on it; the summary
 /// on standard output says how much of each line was found, how much it scatters from column to column
-/// and how wide it is. If no image has a valid point of a line, the exit code is 3.
+/// and how wide it is. If no image has a valid point of a line, or most points are on saturated pixels, the
+/// exit code is 3.
 #[derive(Args, Debug)]
 #[command(after_help = LINES_EXAMPLES)]
 pub(crate) struct LinesArgs {
-    /// The images: .png, .tif, .jpg, .bmp, .pgm or .ppm, of 8 to 16 bits.
+    /// The images: .png, .tif, .jpg, .bmp, .pgm or .ppm.
     #[arg(required = true, value_name = "IMAGE")]
     pub(crate) images: Vec<PathBuf>,
 
@@ -34,8 +35,8 @@ pub(crate) struct LinesArgs {
     #[arg(long, value_name = "NAME")]
     pub(crate) channel: Option<String>,
 
-    /// The bits of a grey value, where the camera has fewer than the file: 8, 10, 12, 14 or 16. They
-    /// determine when a pixel is saturated.
+    /// The bits of a grey value, where the camera has fewer than the file: 8, 10, 12, 14 or 16. A pixel is
+    /// saturated at their largest value [default: at that of the file, or where the values end in a pile].
     #[arg(long, value_name = "BITS", value_parser = bits)]
     pub(crate) bits: Option<u32>,
 

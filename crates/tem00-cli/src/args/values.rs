@@ -11,6 +11,14 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Reads a grey value.
+pub(super) fn black_level(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value >= 0.0 && value.is_finite() => Ok(value),
+        _ => Err("must be a grey value of 0 or more".into()),
+    }
+}
+
 /// Reads a length as scene files have it, with its unit: a bare number would be in metres there, and
 /// hardly meant so.
 pub(super) fn length(text: &str) -> Result<f64, String> {

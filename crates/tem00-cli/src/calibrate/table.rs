@@ -3,6 +3,7 @@
 use tem00_camera::RadialDistortion;
 use tem00_triangulation::{Calibration, DVec2, DVec3, PARAMETERS};
 
+use super::left_out::Found;
 use crate::{
     digits::number,
     report::{Column, Table},
@@ -61,7 +62,7 @@ const fn shown_in(unit: &'static str) -> (f64, &'static str) {
 }
 
 /// Returns what the table cannot tell, one sentence per line.
-pub(super) fn sentences(calibration: &Calibration) -> Vec<String> {
+pub(super) fn sentences(calibration: &Calibration, found: &Found) -> Vec<String> {
     let mut sentences = Vec::new();
     if let Some(quality) = calibration.quality() {
         sentences.push(format!(
@@ -70,11 +71,10 @@ pub(super) fn sentences(calibration: &Calibration) -> Vec<String> {
             quality.boards,
             number(quality.rms_reprojection)
         ));
+        sentences.push(found.sentence(quality));
         sentences.push(format!(
-            "{} points of the line lie within {} µm (rms) of a plane; {} lay too far off.",
-            quality.line_points,
-            number(1e6 * quality.rms_plane),
-            quality.outliers
+            "They lie within {} µm (rms) of a plane.",
+            number(1e6 * quality.rms_plane)
         ));
     }
     sentences.extend(height(calibration));

@@ -18,6 +18,10 @@ pub(super) const MAXIMUM_PIXELS: u64 = 1 << 28;
 /// The most bytes of an image file: 8 GiB, which hold as many complex numbers and a header.
 pub(super) const MAX_IMAGE_BYTES: u64 = 8 << 30;
 
+/// A byte of compressed data stands for at most so many (zlib, Technical Details).
+#[cfg(feature = "full")]
+pub(super) const MAX_DEFLATION: u64 = 1032;
+
 /// The formats of patterns, told apart by the end of the file's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Format {
@@ -52,10 +56,12 @@ pub(crate) enum Transfer {
 /// Options for reading an image.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Reading<'a> {
-    /// One channel of several; without it the mean of R, G and B is taken, or the first channel.
+    /// One channel of several; without it Y, the mean of R, G and B, or the only one that shows light.
     pub(crate) channel: Option<&'a str>,
     /// The relation of grey values to light, instead of that of the file.
     pub(crate) transfer: Option<Transfer>,
+    /// The value of darkness, in grey values of the file, to be subtracted.
+    pub(crate) black_level: Option<f64>,
     /// A part of the image.
     pub(crate) crop: Option<Crop>,
 }
@@ -67,8 +73,12 @@ pub(crate) struct LoadedImage {
     pub(crate) values: Grid<f32>,
     /// A description of what was read from the file and how.
     pub(crate) interpretation: String,
-    /// The fraction of pixels at the largest value that the file can hold, if it has one.
+    /// The fraction of saturated pixels, where something tells what saturation is.
     pub(crate) saturated: Option<f64>,
+    /// The light of one grey value of the file, where the values are in proportion to the light.
+    pub(crate) unit: Option<f64>,
+    /// The light of the smallest difference of two grey values of one channel, likewise.
+    pub(crate) step: Option<f64>,
 }
 
 /// Errors of reading or writing an image file.
@@ -100,12 +110,20 @@ pub(crate) enum ImageError {
     RawFormat(String),
     #[error("{0} cannot hold a frame: use .png or .tif")]
     FrameFormat(String),
-    #[error("pixels of {0} are not supported: use grey or RGB of 8 or 16 bits, not in planes")]
+    #[cfg(feature = "full")]
+    #[error("not a readable JPEG file: it ends before its last pixel")]
+    CutJpeg,
+    #[error("{0} are not supported: docs/program.md lists what is read")]
     Pixels(String),
-    #[error("grey values of the file have {found} bits, not {expected}")]
+    #[error("--bits {expected}: grey values of the file have {found} bits; leave --bits out")]
     FewerBits { expected: u32, found: u32 },
-    #[error("grey values of {expected} bits are at most {}, but there is one of {found}", (1_u32 << .expected) - 1)]
-    Bits { expected: u32, found: u16 },
+    #[error("--bits {expected}: grey values are then at most {}, but there is one of {found}", (1_u32 << .expected) - 1)]
+    Bits { expected: u32, found: f32 },
+    #[error(
+        "the file names the transfer function {0} of ITU-T H.273, which is not supported: \
+             --transfer linear or --transfer srgb takes another"
+    )]
+    Transfer(u8),
     #[error("the image has {width} × {height} pixels; between 1 and {MAXIMUM_PIXELS} are allowed")]
     Size { width: u64, height: u64 },
     #[error(
@@ -123,15 +141,26 @@ pub(crate) enum ImageError {
     Cut { width: u64, height: u64, bytes: u64 },
     #[error("the array has the shape {0:?}; two dimensions, height × width, are needed")]
     Shape(Vec<u64>),
-    #[error("values of the type {0} are not supported: use f4, f8, u1, u2, c8 or c16")]
+    #[error(
+        "values of the type {0} are not supported: use integers, floating-point or complex numbers, or bool"
+    )]
     ValueType(String),
     #[error("there is no channel {wanted}; the file has {}", available.join(", "))]
     Channel {
         wanted: String,
         available: Vec<String>,
     },
-    #[error("the pixel ({x}, {y}) is {value}; images of light hold numbers of 0 to 3.4e38")]
-    Value { x: usize, y: usize, value: f32 },
+    #[error("several channels may be meant; name one by --channel: {}", .0.join(", "))]
+    NoChannel(Vec<String>),
+    #[error("the pixel ({x}, {y}) is {value}; images of light hold numbers of 0 to 3.4e38{help}")]
+    Value {
+        x: usize,
+        y: usize,
+        value: f32,
+        help: &'static str,
+    },
+    #[error("--black-level {black_level} is not below the largest value of the image, {largest}")]
+    BlackLevel { black_level: f64, largest: f64 },
 }
 
 /// Makes sure that a rectangle lies in an image.
@@ -171,6 +200,22 @@ pub(super) fn checked_area(width: u64, height: u64) -> Result<usize, ImageError>
         .ok_or(ImageError::Size { width, height })
 }
 
+/// Makes sure that a file is as long as its pixels need, `pixels_per_byte` of which take a byte at least.
+pub(super) fn check_length(
+    [width, height]: [u64; 2],
+    bytes: u64,
+    pixels_per_byte: u64,
+) -> Result<(), ImageError> {
+    if width.saturating_mul(height) / pixels_per_byte.max(1) <= bytes {
+        return Ok(());
+    }
+    Err(ImageError::Cut {
+        width,
+        height,
+        bytes,
+    })
+}
+
 /// Makes sure that there is memory for so many bytes of each of the pixels.
 pub(super) fn check_room(area: usize, bytes_per_pixel: usize) -> Result<(), ImageError> {
     Ok(check_memory(
@@ -179,7 +224,7 @@ pub(super) fn check_room(area: usize, bytes_per_pixel: usize) -> Result<(), Imag
 }
 
 /// Returns the grid of values whose number was checked against the size before.
-pub(super) fn grid(width: usize, height: usize, values: Vec<f32>) -> Result<Grid<f32>, ImageError> {
+pub(super) fn grid<T>(width: usize, height: usize, values: Vec<T>) -> Result<Grid<T>, ImageError> {
     Grid::from_vec(width, height, values).map_err(|_| ImageError::Size {
         width: width as u64,
         height: height as u64,

@@ -1,12 +1,12 @@
-use std::io::{BufRead, Seek, SeekFrom, Write};
+use std::io::{Seek, Write};
 
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, ImageAttributes,
-    IntegerBounds, LayerAttributes, MetaData, ReadChannels, ReadLayers, Text, Vec2, WritableImage,
+    IntegerBounds, LayerAttributes, Text, Vec2, WritableImage,
 };
 use tem00_numerics::Grid;
 
-use super::common::{ImageError, LoadedImage, check_room, checked_area, grid};
+use super::common::ImageError;
 
 /// Named channels of the same size, stored as one part of an OpenEXR file.
 #[derive(Debug)]
@@ -107,117 +107,11 @@ fn ascii(text: &str) -> String {
     text.chars().map(|c| printable(c).unwrap_or('?')).collect()
 }
 
-/// Reads one channel, or the mean of R, G and B.
-///
-/// `channel` is `channel` or `layer.channel`.
-pub(super) fn read(
-    mut reader: impl BufRead + Seek,
-    channel: Option<&str>,
-) -> Result<LoadedImage, ImageError> {
-    let (mut pixels, mut bytes) = (0_usize, 0_usize);
-    for header in MetaData::read_from_buffered(&mut reader, false)?.headers {
-        let [width, height] = [header.layer_size.width(), header.layer_size.height()];
-        let area = checked_area(width as u64, height as u64)?;
-        let channels = header.channels.list.iter();
-        let of_pixel: usize = channels.map(|c| c.sample_type.bytes_per_sample()).sum();
-        pixels = pixels.max(area);
-        bytes = bytes.saturating_add(area.saturating_mul(of_pixel));
-    }
-    // All channels of all layers are read, and a sum is taken of the chosen ones.
-    check_room(bytes, 1).and_then(|()| check_room(pixels, size_of::<f32>()))?;
-    reader.seek(SeekFrom::Start(0))?;
-    let image = exr::prelude::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .all_layers()
-        .all_attributes()
-        .from_buffered(reader)?;
-    let channels: Vec<_> = image.layer_data.iter().flat_map(channels_of).collect();
-    let (chosen, interpretation) = select(&channels, channel)?;
-    let (width, height) = chosen.first().map_or((0, 0), |channel| channel.size);
-    let mut sum = vec![0.0_f32; width * height];
-    for channel in &chosen {
-        for (sum, value) in sum.iter_mut().zip(channel.samples.values_as_f32()) {
-            *sum += value;
-        }
-    }
-    if chosen.len() > 1 {
-        sum.iter_mut().for_each(|sum| *sum /= 3.0);
-    }
-    Ok(LoadedImage {
-        values: grid(width, height, sum)?,
-        interpretation,
-        saturated: None,
-    })
-}
-
-/// A channel of a file that was read.
-struct NamedChannel<'a> {
-    layer: String,
-    name: String,
-    size: (usize, usize),
-    samples: &'a FlatSamples,
-}
-
-impl NamedChannel<'_> {
-    fn full_name(&self) -> String {
-        if self.layer.is_empty() {
-            self.name.clone()
-        } else {
-            format!("{}.{}", self.layer, self.name)
-        }
-    }
-}
-
-fn channels_of(layer: &exr::prelude::Layer<AnyChannels<FlatSamples>>) -> Vec<NamedChannel<'_>> {
-    let name = layer.attributes.layer_name.as_ref();
-    let name = name.map_or_else(String::new, ToString::to_string);
-    let named = |channel| {
-        let channel: &AnyChannel<FlatSamples> = channel;
-        NamedChannel {
-            layer: name.clone(),
-            name: channel.name.to_string(),
-            size: (layer.size.width(), layer.size.height()),
-            samples: &channel.sample_data,
-        }
-    };
-    layer.channel_data.list.iter().map(named).collect()
-}
-
-fn select<'a, 'b>(
-    channels: &'b [NamedChannel<'a>],
-    wanted: Option<&str>,
-) -> Result<(Vec<&'b NamedChannel<'a>>, String), ImageError> {
-    let missing = |wanted: &str| ImageError::Channel {
-        wanted: wanted.to_owned(),
-        available: channels.iter().map(NamedChannel::full_name).collect(),
-    };
-    let named = |wanted: &str| {
-        let matches = |channel: &&NamedChannel<'_>| channel.full_name() == wanted;
-        let by_full_name = channels.iter().find(matches);
-        by_full_name.or_else(|| channels.iter().find(|channel| channel.name == wanted))
-    };
-    let one =
-        |channel: &'b NamedChannel<'a>| (vec![channel], format!("channel {}", channel.full_name()));
-    if let Some(wanted) = wanted {
-        return named(wanted).map(one).ok_or_else(|| missing(wanted));
-    }
-    let first = channels.first().ok_or_else(|| missing("at all"))?;
-    let colours: Vec<_> = channels
-        .iter()
-        .filter(|channel| channel.layer == first.layer && ["R", "G", "B"].contains(&&*channel.name))
-        .collect();
-    Ok(if colours.len() == 3 {
-        (colours, "mean of R, G and B".into())
-    } else {
-        one(first)
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use std::io::Cursor;
+
+    use exr::prelude::MetaData;
 
     use super::*;
 
@@ -249,39 +143,6 @@ mod tests {
         ];
         write_exr(&mut file, &layers, Some(WINDOW)).expect("written");
         file.into_inner()
-    }
-
-    #[test]
-    fn every_channel_survives_bit_by_bit() {
-        let grids = example();
-        let file = written(&grids);
-        let channel = |name| {
-            read(Cursor::new(&file), Some(name))
-                .expect("an EXR file")
-                .values
-        };
-        assert_eq!(channel("total.R"), grids[0]);
-        assert_eq!(channel("laser 0.speckle"), grids[1]);
-        assert_eq!(channel("incoherent"), grids[2]);
-    }
-
-    #[test]
-    fn without_a_name_the_mean_of_the_colours_is_taken() {
-        let grids = example();
-        let image = read(Cursor::new(written(&grids)), None).expect("an EXR file");
-        assert_eq!(image.interpretation, "mean of R, G and B");
-        for (index, got) in image.values.values().iter().enumerate() {
-            let mean = grids
-                .iter()
-                .map(|grid| f64::from(grid.values()[index]))
-                .sum::<f64>()
-                / 3.0;
-            // Three roundings of 2⁻²⁴.
-            assert!(
-                (f64::from(*got) / mean - 1.0).abs() < 2e-7,
-                "{got} is {mean}"
-            );
-        }
     }
 
     #[test]
@@ -320,23 +181,5 @@ mod tests {
         let grids = example();
         let file = written(&grids);
         assert!((0..8).all(|_| written(&grids) == file), "the bytes differ");
-    }
-
-    #[test]
-    fn a_missing_channel_names_those_that_exist() {
-        let file = written(&example());
-        let error = read(Cursor::new(&file), Some("spekle")).expect_err("there is none");
-        assert!(error.to_string().contains("laser 0.speckle"), "{error}");
-    }
-
-    #[test]
-    fn a_cut_file_is_an_error() {
-        let file = written(&example());
-        for length in [0, 8, 100, file.len() - 10] {
-            assert!(
-                read(Cursor::new(&file[..length]), None).is_err(),
-                "{length} bytes"
-            );
-        }
     }
 }

@@ -81,7 +81,7 @@ mod tests {
     use approx::assert_abs_diff_eq;
     use png::Decoder;
 
-    use super::super::{LoadedImage, RawFormat, Transfer, raw_file::decode};
+    use super::super::{LoadedImage, RawFormat, Reading, Transfer, raw_file::decode};
     use super::*;
 
     fn read(
@@ -89,7 +89,13 @@ mod tests {
         channel: Option<&str>,
         transfer: Option<Transfer>,
     ) -> Result<LoadedImage, ImageError> {
-        decode(Cursor::new(file), RawFormat::Png)?.light(channel, transfer)
+        let reading = Reading {
+            channel,
+            transfer,
+            ..Reading::default()
+        };
+        let samples = decode(Cursor::new(file), RawFormat::Png)?.judged(None)?;
+        samples.light(&reading)
     }
 
     fn read_back(file: Vec<u8>, channel: Option<&str>, transfer: Option<Transfer>) -> LoadedImage {
@@ -193,6 +199,124 @@ mod tests {
         assert!(said(0.4, None).contains("differ"), "a blue pixel");
         assert!(!said(0.3, None).contains("differ"), "grey");
         assert!(!said(0.4, Some("B")).contains("differ"), "one channel");
+    }
+
+    /// A grey file of two pixels of 8 bits with chunks before its image.
+    fn with_chunks(chunks: &[(&[u8; 4], &[u8])]) -> Vec<u8> {
+        let mut file = Vec::new();
+        let mut writer = Encoder::new(&mut file, 2, 1)
+            .write_header()
+            .expect("a header");
+        for (kind, content) in chunks {
+            let kind = png::chunk::ChunkType(**kind);
+            writer.write_chunk(kind, content).expect("a chunk");
+        }
+        writer.write_image_data(&[51, 255]).expect("data");
+        writer.finish().expect("an end");
+        file
+    }
+
+    #[test]
+    fn the_curve_of_a_file_is_undone_or_said() {
+        let mut packed =
+            flate2::write::ZlibEncoder::new(b"p\0\0".to_vec(), flate2::Compression::fast());
+        packed.write_all(b"any profile").expect("memory");
+        let profile = packed.finish().expect("memory");
+        let [gamma, one] = [45_455_u32, 100_000].map(u32::to_be_bytes);
+        // 0.2 by each curve: x^2.2, IEC 61966-2-1, BT.709.
+        let srgb = ((0.2_f32 + 0.055) / 1.055).powf(2.4);
+        let television = ((0.2_f32 + 0.099) / 1.099).powf(1.0 / 0.45);
+        let cases: [(&[(&[u8; 4], &[u8])], f32, &str); 9] = [
+            (&[], 0.2, "taken as linear, the file does not say"),
+            (
+                &[(b"gAMA", &gamma)],
+                0.2_f32.powf(2.2),
+                "gamma 0.45455 undone",
+            ),
+            (&[(b"gAMA", &one)], 0.2, "gamma 1 undone"),
+            (
+                &[(b"sRGB", &[0])],
+                srgb,
+                "sRGB curve undone, as the file says",
+            ),
+            (
+                &[(b"gAMA", &one), (b"sRGB", &[0])],
+                srgb,
+                "sRGB curve undone",
+            ),
+            (
+                &[(b"cICP", &[1, 13, 0, 1])],
+                srgb,
+                "sRGB curve undone, as the file says",
+            ),
+            (
+                &[(b"sRGB", &[0]), (b"cICP", &[1, 8, 0, 1])],
+                0.2,
+                "linear, as the file says",
+            ),
+            (
+                &[(b"gAMA", &gamma), (b"cICP", &[1, 1, 0, 1])],
+                television,
+                "curve of BT.709 undone",
+            ),
+            (
+                &[(b"iCCP", &profile)],
+                0.2,
+                "the colour profile of the file is not read",
+            ),
+        ];
+        for (chunks, expected, part) in cases {
+            let file = with_chunks(chunks);
+            let image = read(&file, None, None).expect("two pixels");
+            assert_abs_diff_eq!(image.values[(0, 0)], expected, epsilon = 2e-6);
+            assert!(
+                image.interpretation.contains(part),
+                "{}",
+                image.interpretation
+            );
+            let samples = decode(Cursor::new(&file), RawFormat::Png).expect("two pixels");
+            let raw = samples
+                .judged(None)
+                .and_then(|samples| samples.image(None))
+                .expect("raw");
+            let is_curved = (expected - 0.2).abs() > 1e-3 || part.contains("profile");
+            assert_eq!(
+                raw.interpretation.contains("as they are"),
+                is_curved,
+                "{raw:?}"
+            );
+            assert_abs_diff_eq!(raw.values[(0, 0)], 51.0);
+        }
+        // The perceptual quantiser.
+        let file = with_chunks(&[(b"cICP", &[9, 16, 0, 1])]);
+        let told = read(&file, None, None)
+            .expect_err("it is not known")
+            .to_string();
+        assert!(
+            told.contains("function 16") && told.contains("--transfer linear"),
+            "{told}"
+        );
+        assert!(
+            read(&file, None, Some(Transfer::Linear)).is_ok(),
+            "as asked"
+        );
+    }
+
+    #[test]
+    fn parts_are_named_as_viewers_show_the_image() {
+        // The orientation 8 in an EXIF entry, a quarter turn to the left.
+        let exif = b"MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x08\0\0\0\0\0\0";
+        let file = with_chunks(&[(b"eXIf", exif)]);
+        let samples = decode(Cursor::new(&file), RawFormat::Png).expect("two pixels");
+        let upright = samples.upright().judged(None).expect("two pixels");
+        let light = upright.light(&Reading::default()).expect("light");
+        assert_eq!((light.values.width(), light.values.height()), (1, 2));
+        assert_abs_diff_eq!(light.values[(0, 0)], 1.0);
+        assert!(
+            light.interpretation.contains("turned"),
+            "{}",
+            light.interpretation
+        );
     }
 
     #[test]

@@ -1,13 +1,14 @@
 //! Images of cameras: grey values in DN, as the converter gave them, in PNG, TIFF, JPEG, BMP, PGM and PPM
 //! files. Frames are written as PNG or TIFF.
 //!
-//! Files have 8 or 16 bits per value. Values of 10, 12 and 14 bits stand in files of 16 bits as they
-//! are, not scaled up; a text entry `bit_depth` says so. The chunk sBIT of PNG means the opposite,
+//! Files that are written have 8 or 16 bits per value. Values of 10, 12 and 14 bits stand in files of 16 bits as
+//! they are, not scaled up; a text entry `bit_depth` says so. The chunk sBIT of PNG means the opposite,
 //! values scaled up to 16 bits, and is undone in the files of others.
 
 mod bmp_frame;
 #[cfg(test)]
 mod camera_formats;
+mod curve;
 mod frame;
 mod jpeg_frame;
 mod png_frame;
@@ -15,7 +16,11 @@ mod pnm_frame;
 mod samples;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tiff_flavours;
 mod tiff_frame;
+mod tiff_packed;
+mod tiff_pixels;
 
 use std::{
     fs::File,
@@ -25,26 +30,35 @@ use std::{
 
 use tem00_triangulation::RawFrame;
 
-use self::frame::{BIT_DEPTH, BYTES_PER_PIXEL, stated_bit_depth};
+use self::curve::StoredCurve;
+use self::frame::{BIT_DEPTH, stated_bit_depth};
 pub(crate) use self::frame::{RawFormat, RawImage};
-pub(super) use self::samples::Samples;
-use self::samples::StoredCurve;
-use super::common::{ImageError, check_room, checked_area, name_of, open};
+pub(super) use self::{frame::BYTES_PER_PIXEL, samples::Samples};
+use super::common::{
+    ImageError, MAX_DEFLATION, check_length, check_room, checked_area, name_of, open,
+};
+use super::orientation;
 use super::selection::Components;
 use crate::atomic::write_atomically;
 
-/// Reads a frame of 8 to 16 bits.
+/// Reads a frame.
 ///
 /// `channel` picks one channel of a coloured file; without it the mean of R, G and B is taken. Grey
-/// values are taken as they are, whatever curve the file names.
+/// values are taken as they are, whatever curve the file names, and rows are those of the sensor, however the image is
+/// to be shown. `bits` are those of the camera, if they are
+/// known.
 ///
 /// # Errors
 ///
 /// Returns an error if the file cannot be read, is none of the formats, is cut, empty or too large, or has
 /// pixels that are not supported.
-pub(crate) fn read_raw(path: &Path, channel: Option<&str>) -> Result<RawImage, ImageError> {
+pub(crate) fn read_raw(
+    path: &Path,
+    channel: Option<&str>,
+    bits: Option<u32>,
+) -> Result<RawImage, ImageError> {
     let format = RawFormat::of_path(path).ok_or_else(|| ImageError::RawFormat(name_of(path)))?;
-    read_samples(path, format)?.image(channel)
+    read_samples(path, format)?.judged(bits)?.image(channel)
 }
 
 /// Reads all components of all pixels.

@@ -3,11 +3,10 @@
 use std::path::Path;
 
 use tem00_numerics::Grid;
-use tem00_tracer::Crop;
 
 use super::{
-    common::{Format, ImageError, LoadedImage, Reading, check_inside, name_of, open},
-    exr_file, npy_file,
+    common::{Format, ImageError, LoadedImage, Reading, name_of, open},
+    exr_reader, npy_file,
     raw_file::{self, RawFormat},
 };
 
@@ -18,45 +17,39 @@ use super::{
 /// Returns an error if the file cannot be read, is none of the formats, is empty or too large, does not
 /// have the part or the channel wanted, or holds a value that is no amount of light.
 pub(crate) fn read_image(path: &Path, reading: &Reading<'_>) -> Result<LoadedImage, ImageError> {
-    let image = match Format::of_path(path) {
-        Some(Format::Exr) => cropped(exr_file::read(open(path)?, reading.channel)?, reading.crop),
-        Some(Format::Npy) => cropped(npy_file::read(open(path)?)?, reading.crop),
-        Some(Format::Png) | None => grey_values(path, reading),
-    }?;
-    check_values(&image.values)?;
-    Ok(image)
-}
-
-/// Reads an image of grey values.
-fn grey_values(path: &Path, reading: &Reading<'_>) -> Result<LoadedImage, ImageError> {
-    let format = RawFormat::of_path(path).ok_or_else(|| ImageError::Format(name_of(path)))?;
-    let whole = raw_file::read_samples(path, format)?;
+    let mut reading = *reading;
+    let samples = match Format::of_path(path) {
+        // Channels of OpenEXR are as many as there are: its reader chooses.
+        Some(Format::Exr) => exr_reader::read(open(path)?, reading.channel.take())?,
+        Some(Format::Npy) => npy_file::read(open(path)?)?,
+        Some(Format::Png) | None => {
+            let format =
+                RawFormat::of_path(path).ok_or_else(|| ImageError::Format(name_of(path)))?;
+            raw_file::read_samples(path, format)?
+        }
+    };
+    // Parts are named as viewers show the image.
+    let whole = samples.upright().judged(None)?;
     let part = match reading.crop {
         Some(crop) => whole.cropped(crop)?,
         None => whole,
     };
-    part.light(reading.channel, reading.transfer)
+    let image = part.light(&reading)?;
+    check_values(&image.values, reading.black_level.is_some())?;
+    Ok(image)
 }
 
-/// Returns the part of an image in a rectangle.
-fn cropped(image: LoadedImage, crop: Option<Crop>) -> Result<LoadedImage, ImageError> {
-    let Some(crop) = crop else {
-        return Ok(image);
-    };
-    let values = &image.values;
-    check_inside(crop, [values.width(), values.height()])?;
-    let at = |x: usize, y: usize| values[(crop.x + x, crop.y + y)];
-    Ok(LoadedImage {
-        values: Grid::from_fn(crop.width, crop.height, at),
-        ..image
-    })
-}
-
-fn check_values(values: &Grid<f32>) -> Result<(), ImageError> {
-    let bad = |value: &&f32| !(value.is_finite() && **value >= 0.0);
+/// Makes sure that values are light; above a black level noise may be negative.
+fn check_values(values: &Grid<f32>, above_black: bool) -> Result<(), ImageError> {
+    let bad = |value: &&f32| !(value.is_finite() && (above_black || **value >= 0.0));
     for (y, row) in values.rows().enumerate() {
         if let Some((x, &value)) = row.iter().enumerate().find(|(_, value)| bad(value)) {
-            return Err(ImageError::Value { x, y, value });
+            let help = if value < 0.0 {
+                "; noise about a black level may be below it: --black-level 0 takes it as it is"
+            } else {
+                ""
+            };
+            return Err(ImageError::Value { x, y, value, help });
         }
     }
     Ok(())
@@ -68,12 +61,14 @@ mod tests {
 
     #[test]
     fn light_is_finite_and_not_negative() {
-        let with = |value| {
-            check_values(&Grid::from_fn(3, 2, |x, y| {
-                if (x, y) == (1, 1) { value } else { 0.5 }
-            }))
+        let grid = |value| {
+            let at = |x, y| if (x, y) == (1, 1) { value } else { 0.5 };
+            Grid::from_fn(3, 2, at)
         };
+        let with = |value| check_values(&grid(value), false);
         assert!(with(0.0).is_ok(), "darkness is allowed");
+        assert!(check_values(&grid(-1.0), true).is_ok(), "noise");
+        assert!(check_values(&grid(f32::NAN), true).is_err(), "no number");
         for bad in [-1.0, f32::NAN, f32::INFINITY] {
             assert!(
                 matches!(with(bad), Err(ImageError::Value { x: 1, y: 1, .. })),

@@ -11,12 +11,20 @@ pub(super) enum Components {
     GreyAlpha,
     Rgb,
     Rgba,
+    /// So many of which nothing is known, at most 16.
+    Bands(u16),
 }
+
+/// The names of components of which nothing is known.
+const BANDS: [&str; 16] = [
+    "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12", "13", "14", "15", "16",
+];
 
 impl Components {
     /// Returns the names of the components, in order.
-    pub(super) const fn names(self) -> &'static [&'static str] {
+    pub(super) fn names(self) -> &'static [&'static str] {
         match self {
+            Self::Bands(count) => &BANDS[..usize::from(count).min(BANDS.len())],
             Self::Grey => &["Y"],
             Self::GreyAlpha => &["Y", "A"],
             Self::Rgb => &["R", "G", "B"],
@@ -49,10 +57,15 @@ pub(super) struct Selection {
 }
 
 impl Selection {
-    /// Takes the component of the name `channel`, or without one the grey value or all colours.
+    /// Takes the component of the name `channel`, or without one the grey value or all colours, never
+    /// alpha.
     pub(super) fn new(of: Components, channel: Option<&str>) -> Result<Self, ImageError> {
         let names = of.names();
         let (chosen, description) = match channel {
+            None if matches!(of, Components::Bands(_)) => {
+                let names = names.iter().map(|name| (*name).to_owned());
+                return Err(ImageError::NoChannel(names.collect()));
+            }
             None if of.is_grey() => (0..1, "grey".to_owned()),
             None => (0..3, "mean of R, G and B".to_owned()),
             Some(wanted) => {

@@ -22,8 +22,12 @@ pub(super) fn of(
     let several = image
         .has_further_images
         .then(|| "the file has several images, and only the first was read".to_owned());
+    let turned = (image.orientation != 1).then(|| {
+        "viewers show the image turned, as the file asks: rows and columns are those of the sensor"
+            .to_owned()
+    });
     let of_lines = too_few(found, args).or_else(|| doubtful(found));
-    let notes = several.into_iter().chain(of_lines);
+    let notes = several.into_iter().chain(turned).chain(of_lines);
     notes.map(|note| format!("{name}: {note}")).collect()
 }
 
@@ -44,7 +48,7 @@ fn too_few(found: &[Vec<LinePoint>], args: &LinesArgs) -> Option<String> {
     ))
 }
 
-/// Returns a note if many points cannot be trusted.
+/// Returns a note if many points cannot be trusted, for other reasons than saturation.
 fn doubtful(found: &[Vec<LinePoint>]) -> Option<String> {
     let points = found.iter().map(Vec::len).sum::<usize>();
     let of = |validity: Validity| {
@@ -52,7 +56,8 @@ fn doubtful(found: &[Vec<LinePoint>]) -> Option<String> {
         points.filter(|point| point.validity == validity).count()
     };
     let share = |count: usize| count as f64 / points.max(1) as f64;
-    let doubtful = points - of(Validity::Valid);
+    // Of saturated ones the warning tells.
+    let doubtful = points - of(Validity::Valid) - of(Validity::Saturated);
     if share(doubtful) <= DOUBTFUL {
         return None;
     }
@@ -62,18 +67,25 @@ fn doubtful(found: &[Vec<LinePoint>]) -> Option<String> {
         .max_by_key(|&(count, ..)| count)?;
     Some(format!(
         "{:.0} % of the points are not valid, {:.0} % because {why}: {help}",
-        100.0 * share(doubtful),
+        100.0 * share(points - of(Validity::Valid)),
         100.0 * share(count)
     ))
 }
 
-/// The defects of doubtful points, and their remedies.
-const REASONS: [(Validity, &str, &str); 5] = [
-    (
-        Validity::Saturated,
-        "pixels are saturated",
-        "expose shorter",
-    ),
+/// Returns why points are not valid, and what helps.
+pub(crate) fn reason(validity: Validity) -> String {
+    let mut reasons = REASONS.iter();
+    match reasons.find(|(of, ..)| *of == validity) {
+        Some((_, why, help)) => format!("{why}: {help}"),
+        None => SATURATED.to_owned(),
+    }
+}
+
+/// The reason of saturated points, and what helps.
+pub(crate) const SATURATED: &str = "pixels are saturated: expose shorter";
+
+/// The defects of doubtful points, and their remedies, but for saturation.
+const REASONS: [(Validity, &str, &str); 4] = [
     (
         Validity::Cut,
         "the window reaches beyond the image",

@@ -5,9 +5,11 @@ use std::path::Path;
 use serde::Serialize;
 use tem00_triangulation::{DetectorSettings, LinePoint, Validity};
 
+use super::notes::SATURATED;
 use crate::{
     image::RawImage,
     report::{Cell, Column, Report, Table},
+    saturated_points::PointCounts,
 };
 
 /// The columns to either side of one that a parabola is fitted to.
@@ -102,9 +104,11 @@ fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
 pub(super) struct ImageSummary {
     image: String,
     size: [usize; 2],
-    bit_depth: u32,
+    bit_depth: Option<u32>,
     interpretation: String,
     saturated_pixels: usize,
+    #[serde(skip)]
+    pub(super) counts: PointCounts,
     #[serde(skip)]
     lines: Vec<LineSummary>,
     #[serde(skip)]
@@ -112,21 +116,32 @@ pub(super) struct ImageSummary {
 }
 
 impl ImageSummary {
-    pub(super) fn new(path: &Path, image: &RawImage, lines: Vec<LineSummary>) -> Self {
+    pub(super) fn new(
+        path: &Path,
+        image: &RawImage,
+        (lines, counts): (Vec<LineSummary>, PointCounts),
+    ) -> Self {
         Self {
             image: path.display().to_string(),
             size: [image.values.width(), image.values.height()],
             bit_depth: image.bit_depth,
             interpretation: image.interpretation.clone(),
-            saturated_pixels: image.saturated,
+            saturated_pixels: image.saturated_pixels(),
+            counts,
             lines,
             name: crate::output::name(path, "image"),
         }
     }
 
-    /// Returns whether any of its lines can be trusted anywhere.
-    pub(super) fn has_valid_points(&self) -> bool {
-        self.lines.iter().any(|line| line.valid > 0)
+    /// Returns whether any of its lines can be trusted anywhere, and most points are not saturated.
+    pub(super) fn has_result(&self) -> bool {
+        self.counts.valid > 0 && !self.counts.are_too_many()
+    }
+
+    /// Returns what saturation leaves, if it is much.
+    pub(super) fn warning(&self) -> Option<String> {
+        let warning = self.counts.warning(SATURATED)?;
+        Some(format!("{}: {warning}", self.image))
     }
 
     /// Adds its lines to the table, or that there is none.

@@ -2,12 +2,16 @@
 
 use tem00_numerics::Grid;
 use tem00_statistics::{
-    AIRY_FIRST_ZERO, Contrast, Evenness, FlatImage, GammaFit, GoodnessOfFit, GreyLevels,
+    AIRY_FIRST_ZERO, Contrast, Evenness, FlatImage, GammaFit, GoodnessOfFit, GreyLevels, Moments,
     SpeckleSize, StatisticsError, decorrelated_samples, exponential_cumulative, pixel_contrast,
     size_before_pixels,
 };
 
-use crate::comparison::{Expectation, Row};
+use crate::{
+    comparison::{Expectation, Row},
+    digits::number,
+    image::LoadedImage,
+};
 
 /// The tolerances, in standard errors.
 const SIGMAS: f64 = 4.0;
@@ -60,33 +64,69 @@ impl Findings<'_> {
         self.assumptions.push(assumption.into());
     }
 
-    /// Describes the light of the image; `levels` are those of the image as it was read.
-    pub(super) fn brightness(
-        &mut self,
-        mean: f64,
-        saturated: Option<f64>,
-        levels: Option<&GreyLevels>,
-    ) {
+    /// Describes the light of the image as it was read.
+    pub(super) fn brightness(&mut self, mean: f64, image: &LoadedImage) {
         self.row("mean", mean, Expectation::Open);
-        if let Some(mean) = self.mean_level() {
-            self.row("mean (grey levels)", mean, Expectation::Open);
-            if mean < FINE {
-                self.assume(
-                    "the image is rounded to few grey levels: each pixel is taken to be rounded \
-                     to the nearest, and laws are compared at the edges between the levels",
-                );
+        if let Some(levels) = self.levels {
+            let linear = levels.are_multiples().then(|| levels.step());
+            // The levels of a mean of channels lie closer than those of a channel.
+            if let Some(step) = image.step.or(linear.filter(|_| image.unit.is_some())) {
+                self.row("mean (grey levels)", mean / step, Expectation::Open);
             }
         }
-        // Sensors of fewer bits than the file saturate below its largest value.
-        let at_largest = levels
-            .filter(|levels| mean / levels.step() >= COARSE)
-            .map(GreyLevels::share_of_largest);
-        if let Some(share) = saturated.into_iter().chain(at_largest).reduce(f64::max) {
+        if self.mean_level().is_some_and(|mean| mean < FINE) {
+            self.assume(
+                "the image is rounded to few grey levels: each pixel is taken to be rounded \
+                 to the nearest, and laws are compared at the edges between the levels",
+            );
+        }
+        if let Some(share) = image.saturated {
             let theory = Expectation::AtMost {
                 at_most: GreyLevels::CLIPPED_FRACTION,
             };
             self.row("saturated fraction of pixels", share, theory);
         }
+    }
+
+    /// Warns if the darkest values say that darkness has a grey value of its own, in even light.
+    ///
+    /// A thousandth of the pixels of speckle are darker than a thousandth of the mean; where patterns are added or
+    /// pixels are large there are fewer dark ones, but then the law is less skew: its skewness is twice the
+    /// contrast or a little more. A pedestal lowers the contrast alone.
+    pub(super) fn pedestal(
+        &mut self,
+        image: &LoadedImage,
+        levels: Option<&GreyLevels>,
+    ) -> Result<(), StatisticsError> {
+        let Some(unit) = image.unit else {
+            return Ok(());
+        };
+        let values = image.values.values();
+        let moments = Moments::from_samples(values)?;
+        let (mean, deviation) = (moments.mean(), moments.standard_deviation());
+        let mut sorted = values.to_vec();
+        let rank = values.len() / 1_000;
+        let darkest = f64::from(*sorted.select_nth_unstable_by(rank, f32::total_cmp).1);
+        let rounding = levels.map_or(0.0, |levels| 2.0 * levels.step());
+        if darkest < 0.05 * mean + rounding {
+            return Ok(());
+        }
+        let cubes = values
+            .iter()
+            .map(|&value| ((f64::from(value) - mean) / deviation).powi(3));
+        let skewness = cubes.sum::<f64>() / values.len() as f64;
+        let without = deviation / (mean - darkest);
+        if without < 0.8 && skewness < 3.0 * deviation / mean {
+            return Ok(());
+        }
+        self.warnings.push(format!(
+            "the darkest thousandth of the pixels begins at {:.0} % of the mean: if that is darkness, --black-level \
+             {} subtracts it, and the contrast is {}; light without speckle does the same",
+            100.0 * darkest / mean,
+            number(darkest / unit),
+            number(without)
+        ));
+        Ok(())
     }
 
     /// Says whether the light is even over the image, and if not, why.
@@ -312,7 +352,7 @@ impl Findings<'_> {
         let fit = match fit {
             Err(StatisticsError::NotPositive { .. }) => {
                 self.assume(
-                    "some samples are 0, which no Gamma law expects: its shape is 1/C² of the \
+                    "some samples are 0 or less, which no Gamma law expects: its shape is 1/C² of the \
                      samples",
                 );
                 GammaFit::by_moments(samples)?

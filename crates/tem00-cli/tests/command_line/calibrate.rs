@@ -8,7 +8,7 @@ use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
 use tem00_tracer::RigidMotion;
 use tem00_triangulation::{DVec3, LaserPlane};
 
-use super::{folder, run};
+use super::{folder, message, run};
 
 const SQUARE: f64 = 12e-3;
 const OPTIONS: &str = "--corners 6x4 --square 12mm --pixel-pitch 16um --radial 0";
@@ -111,6 +111,7 @@ fn photographs_give_camera_and_plane() {
         "image distance",
         "principal point x",
         "120 corners on 5 boards",
+        "in 5 of 5 pictures, are used; left out: 0 too far off, ",
         "found.json",
     ] {
         assert!(told.contains(part), "{part}: {told}");
@@ -141,6 +142,48 @@ fn photographs_give_camera_and_plane() {
         "{:e} m",
         plane.distance(origin)
     );
+}
+
+#[test]
+fn what_photographs_of_lines_did_not_give_is_told() {
+    let folder = folder();
+    photographs(folder.path());
+    // Two of five clipped, one without a line, and one without a photograph of it.
+    for number in [1, 2] {
+        let line = |point: DVec3| (600.0 * (-2.0 * (point.y / 1.2e-3).powi(2)).exp()).min(255.0);
+        let path = folder.path().join(format!("line_{number}.png"));
+        photograph(&path, &pose(number), line);
+    }
+    photograph(&folder.path().join("line_3.png"), &pose(3), |_| 0.0);
+    fs::remove_file(folder.path().join("line_4.png")).expect("it was there");
+    let done = run(folder.path(), &format!("calibrate . {OPTIONS}"));
+    let told = message(&done);
+    assert_eq!(
+        done.status.code(),
+        Some(2),
+        "one line leaves the plane open: {told}"
+    );
+    for part in [
+        "because pixels are saturated",
+        "3 of 4 pictures of the line gave no point",
+    ] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+
+    let line = |point: DVec3| 200.0 * (-2.0 * (point.y / 1.2e-3).powi(2)).exp();
+    photograph(&folder.path().join("line_4.png"), &pose(4), line);
+    let done = run(folder.path(), &format!("calibrate . {OPTIONS}"));
+    let (table, told) = (String::from_utf8_lossy(&done.stdout), message(&done));
+    assert_eq!(done.status.code(), Some(0), "{told}");
+    for part in [
+        "3 of 5 pictures of the line gave no point: line_1 (pixels are saturated: expose shorter), line_2",
+        "line_3 (no line was found",
+    ] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+    // 640 columns of the two clipped photographs, if the line crosses the whole image.
+    assert!(table.contains("in 2 of 5 pictures, are used"), "{table}");
+    assert!(table.contains(" saturated."), "{table}");
 }
 
 #[test]

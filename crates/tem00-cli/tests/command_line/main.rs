@@ -9,6 +9,7 @@ mod characterise;
 mod design;
 mod folders;
 mod hostile;
+mod images;
 mod inspection;
 mod lines;
 mod manners;

@@ -94,7 +94,7 @@ impl BoardPlan {
     ) -> Result<Calibration, ScanError> {
         let view = |[lit, line]: &[RawFrame; 2]| {
             let (lit, line) = (lit.grey_values(), line.grey_values());
-            BoardView::find(&lit, Some(&line), &self.board, detector)
+            BoardView::find(&lit, &detector.detect(&line), &self.board)
         };
         let views: Vec<_> = frames.iter().map(view).collect::<Result<_, _>>()?;
         let calibration = calibrate(&self.board, &views, &self.model())?;

@@ -14,7 +14,7 @@ use super::{
     plane_fit::{FittedPlane, correlation_factor, without_outliers},
     start::{starts, tilted},
 };
-use crate::{LaserPlane, LineDetector, LinePoint, TriangulationError, Validity};
+use crate::{LaserPlane, LinePoint, TriangulationError, Validity};
 
 /// The minimum number of boards.
 const MIN_BOARDS: usize = 3;
@@ -31,19 +31,17 @@ pub struct BoardView {
 }
 
 impl BoardView {
-    /// Finds a board in its image and, if there is one, the laser line in the image of the same board
-    /// under the laser: of each column the point with the highest peak, if it is valid.
+    /// Finds a board in its image; `line` are the points of each column of the image of the same board under the
+    /// laser, if there is one, of which the one with the highest peak is taken, if it is valid.
     ///
     /// # Errors
     ///
     /// Returns the errors of [`find_corners`].
     pub fn find(
         lit: &Grid<f32>,
-        line: Option<&Grid<f32>>,
+        line: &[Vec<LinePoint>],
         board: &Checkerboard,
-        detector: &LineDetector,
     ) -> Result<Self, TriangulationError> {
-        let columns = line.map_or_else(Vec::new, |line| detector.detect(line));
         let brightest = |(column, found): (usize, &Vec<LinePoint>)| {
             let valid = found
                 .iter()
@@ -53,7 +51,7 @@ impl BoardView {
         };
         Ok(Self {
             corners: find_corners(lit, board)?,
-            line: columns.iter().enumerate().filter_map(brightest).collect(),
+            line: line.iter().enumerate().filter_map(brightest).collect(),
         })
     }
 }

@@ -2,10 +2,10 @@
 //!
 //! Readers of other crates fill a file that was cut with black; here it is an error.
 
-use std::io::{BufRead, Read};
+use std::io::{BufRead, Read, Seek, SeekFrom};
 
 use super::{
-    BYTES_PER_PIXEL, Components, ImageError, Samples, StoredCurve, check_room, checked_area,
+    BYTES_PER_PIXEL, Components, ImageError, Samples, check_length, check_room, checked_area,
 };
 
 /// The bytes before the header that describes the pixels.
@@ -27,11 +27,14 @@ struct Header {
     pixels: u32,
 }
 
-pub(super) fn read(mut reader: impl BufRead) -> Result<Samples, ImageError> {
+pub(super) fn read(mut reader: impl BufRead + Seek) -> Result<Samples, ImageError> {
+    let length = reader.seek(SeekFrom::End(0))?;
+    reader.rewind()?;
     let header = Header::read(&mut reader)?;
     let area = checked_area(header.width.into(), header.height.into())?;
-    // Up to three components of 16 bits.
-    check_room(area, 6 + BYTES_PER_PIXEL)?;
+    check_length([header.width, header.height].map(u64::from), length, 1)?;
+    // Up to three components of 32 bits.
+    check_room(area, 12 + BYTES_PER_PIXEL)?;
     let (width, height) = (header.width as usize, header.height as usize);
     let colours = header.colours(&mut reader)?;
     let bytes = usize::from(header.bits / 8);
@@ -39,13 +42,13 @@ pub(super) fn read(mut reader: impl BufRead) -> Result<Samples, ImageError> {
         Some(colours) if colours.iter().all(|[r, g, b]| r == g && g == b) => Components::Grey,
         _ => Components::Rgb,
     };
-    let of_pixel = |pixel: &[u8], row: &mut Vec<u16>| {
+    let of_pixel = |pixel: &[u8], row: &mut Vec<f32>| {
         let colour = match &colours {
             Some(colours) => colours[usize::from(pixel[0])],
             None => [pixel[2], pixel[1], pixel[0]],
         };
         let taken = &colour[..components.names().len()];
-        row.extend(taken.iter().map(|&value| u16::from(value)));
+        row.extend(taken.iter().map(|&value| f32::from(value)));
     };
     // Rows take a multiple of four bytes.
     let mut line = vec![0; (width * bytes).next_multiple_of(4)];
@@ -61,17 +64,12 @@ pub(super) fn read(mut reader: impl BufRead) -> Result<Samples, ImageError> {
     if header.upside_down {
         rows.reverse();
     }
-    let values = rows.concat();
-    Ok(Samples {
-        width,
-        height,
+    Ok(Samples::new(
+        [width, height],
         components,
-        values,
-        bit_depth: 8,
-        curve: StoredCurve::Unknown,
-        remark: "",
-        has_further_images: false,
-    })
+        rows.concat(),
+        Some(8),
+    ))
 }
 
 impl Header {
@@ -101,7 +99,7 @@ impl Header {
         }
         if four(30) != 0 || !matches!(header.bits, 8 | 24 | 32) {
             return Err(ImageError::Pixels(format!(
-                "{} bits, compressed by the method {}",
+                "pixels of {} bits, compressed by the method {},",
                 header.bits,
                 four(30)
             )));

@@ -2,20 +2,32 @@
 
 use std::io::Cursor;
 
-use super::super::{LoadedImage, Transfer};
+use super::super::{LoadedImage, Reading, Transfer};
 use super::{RawFormat, RawImage, decode};
 use crate::image::ImageError;
 
 const GREY_JPEG: &[u8] = include_bytes!("data/grey.jpg");
+const TURNED_JPEG: &[u8] = include_bytes!("data/turned.jpg");
+const RESTARTS_JPEG: &[u8] = include_bytes!("data/restarts.jpg");
+const PROGRESSIVE_JPEG: &[u8] = include_bytes!("data/progressive.jpg");
 const COLOUR_JPEG: &[u8] = include_bytes!("data/colour.jpg");
 
 fn raw(file: &[u8], format: RawFormat, channel: Option<&str>) -> Result<RawImage, ImageError> {
-    decode(Cursor::new(file), format)?.image(channel)
+    decode(Cursor::new(file), format)?
+        .judged(None)?
+        .image(channel)
 }
 
-fn light(file: &[u8], format: RawFormat) -> LoadedImage {
+fn light(file: &[u8], format: RawFormat, transfer: Option<Transfer>) -> LoadedImage {
+    let reading = Reading {
+        transfer,
+        ..Reading::default()
+    };
     let samples = decode(Cursor::new(file), format).expect("the file is read");
-    samples.light(None, None).expect("the file is light")
+    let light = samples
+        .judged(None)
+        .and_then(|samples| samples.light(&reading));
+    light.expect("the file is light")
 }
 
 /// A bitmap of so many bits and rows from the bottom up, with its rows given as they stand in the file.
@@ -66,7 +78,7 @@ fn grey_palettes_make_grey_bitmaps() {
         "{}",
         grey.interpretation
     );
-    assert_eq!(grey.saturated, 1);
+    assert_eq!(grey.saturated_pixels(), 1);
     // Blue, green, red.
     let colours = bitmap([2, 1], 8, &[[1, 2, 6, 0], [5, 5, 5, 0]], &[0, 1, 0, 0]);
     let mean = raw(&colours, RawFormat::Bmp, None).expect("a bitmap");
@@ -79,8 +91,8 @@ fn maps_of_twelve_bits_know_their_bits() {
     file.extend([0x00, 0x07, 0x0a, 0xbc, 0x0f, 0xff]);
     let image = raw(&file, RawFormat::Pnm, None).expect("a map");
     assert_eq!(image.values.values(), [7.0, 2_748.0, 4_095.0]);
-    assert_eq!((image.bit_depth, image.saturated), (12, 1));
-    let light = light(&file, RawFormat::Pnm);
+    assert_eq!((image.bit_depth, image.saturated_pixels()), (Some(12), 1));
+    let light = light(&file, RawFormat::Pnm, None);
     assert_eq!(light.saturated, Some(1.0 / 3.0));
     assert!(
         (light.values[(1, 0)] - 2_748.0 / 4_095.0).abs() < 1e-7,
@@ -100,7 +112,7 @@ fn maps_are_read_as_text_and_in_colour() {
     let text = raw(b"P3 1 1 65535 1 2 60000\n", RawFormat::Pnm, Some("b")).expect("a map");
     assert_eq!(
         (text.values.values(), text.bit_depth),
-        (&[60_000.0][..], 16)
+        (&[60_000.0][..], Some(16))
     );
 }
 
@@ -158,19 +170,85 @@ fn photographs_have_the_grey_values_of_another_reader() {
         let value = image.values[(0, 0)];
         assert!((value - at).abs() <= 3.0, "{channel} is {value}");
     }
-    let light = light(GREY_JPEG, RawFormat::Jpeg);
-    assert!(
-        light.interpretation.contains("losses"),
-        "{}",
-        light.interpretation
-    );
+    let told = light(GREY_JPEG, RawFormat::Jpeg, None).interpretation;
+    assert!(told.contains("losses"), "{told}");
     // 0.006995 is the linear value of 20 / 255 by the sRGB curve.
-    let samples = decode(Cursor::new(GREY_JPEG), RawFormat::Jpeg).expect("a photograph");
-    let dark = samples
-        .light(None, Some(Transfer::Srgb))
-        .expect("light")
-        .values[(0, 0)];
+    let dark = light(GREY_JPEG, RawFormat::Jpeg, Some(Transfer::Srgb)).values[(0, 0)];
     assert!((dark - 0.006_995).abs() < 1e-3, "{dark}");
+}
+
+#[test]
+fn photographs_of_other_kinds_have_the_same_grey_values() {
+    let expected = raw(GREY_JPEG, RawFormat::Jpeg, None).expect("a photograph");
+    for (name, file, orientation) in [
+        ("turned", TURNED_JPEG, 6),
+        ("restarts", RESTARTS_JPEG, 1),
+        ("progressive", PROGRESSIVE_JPEG, 1),
+    ] {
+        let image = raw(file, RawFormat::Jpeg, None).expect(name);
+        assert_eq!(image.values, expected.values, "{name}");
+        assert_eq!(image.orientation, orientation, "{name}");
+    }
+    let samples = decode(Cursor::new(TURNED_JPEG), RawFormat::Jpeg).expect("a photograph");
+    let upright = samples
+        .upright()
+        .judged(None)
+        .and_then(|samples| samples.image(None));
+    let upright = upright.expect("a photograph").values;
+    assert_eq!((upright.width(), upright.height()), (16, 24));
+    // A quarter turn to the right: the left lower corner comes to the left upper one.
+    assert_eq!(upright[(0, 0)], expected.values[(0, 15)]);
+    assert_eq!(upright[(15, 0)], expected.values[(0, 0)]);
+}
+
+#[test]
+fn photographs_without_all_of_their_data_are_refused() {
+    for (name, file) in [
+        ("one scan", GREY_JPEG),
+        ("colour", COLOUR_JPEG),
+        ("restarts", RESTARTS_JPEG),
+        ("progressive", PROGRESSIVE_JPEG),
+    ] {
+        let scan = file
+            .windows(2)
+            .position(|pair| pair == [0xff, 0xda])
+            .expect("a scan");
+        let start = scan + 2 + usize::from(file[scan + 3]);
+        // The last bytes may hold but the ones that fill them.
+        for length in start..file.len() - 4 {
+            let cut = [&file[..length], &[0xff, 0xd9]].concat();
+            let refused = raw(&cut, RawFormat::Jpeg, None).map(|_| ());
+            let told = refused.expect_err(name).to_string();
+            assert!(
+                told.contains("before its last pixel"),
+                "{name}, {length}: {told}"
+            );
+        }
+        let followed = [file, b"anything else \xff\xd8 \xff\xd9"].concat();
+        assert!(
+            raw(&followed, RawFormat::Jpeg, None).is_ok(),
+            "{name}, with more behind it"
+        );
+    }
+    // A restart and what stands before it are lost on the way.
+    let restart = RESTARTS_JPEG
+        .windows(2)
+        .position(|pair| pair == [0xff, 0xd1])
+        .expect("one");
+    let next = RESTARTS_JPEG
+        .windows(2)
+        .position(|pair| pair == [0xff, 0xd2])
+        .expect("one");
+    let lost = [&RESTARTS_JPEG[..restart], &RESTARTS_JPEG[next..]].concat();
+    assert!(
+        raw(&lost, RawFormat::Jpeg, None).is_err(),
+        "a restart is missing"
+    );
+    let end = [&RESTARTS_JPEG[..restart], &[0xff, 0xd9]].concat();
+    assert!(
+        raw(&end, RawFormat::Jpeg, None).is_err(),
+        "cut where a restart was"
+    );
 }
 
 #[test]

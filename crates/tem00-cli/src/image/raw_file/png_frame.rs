@@ -4,12 +4,12 @@ use png::{BitDepth, ColorType, Decoder, Encoder, Reader, Transformations};
 use tem00_triangulation::RawFrame;
 
 use super::{
-    BIT_DEPTH, BYTES_PER_PIXEL, Components, ImageError, Samples, StoredCurve, check_room,
-    checked_area, stated_bit_depth,
+    BIT_DEPTH, BYTES_PER_PIXEL, Components, ImageError, MAX_DEFLATION, Samples, StoredCurve,
+    check_length, check_room, checked_area, orientation::of_exif, stated_bit_depth,
 };
 
 pub(super) fn read(reader: impl BufRead + Seek) -> Result<Samples, ImageError> {
-    let (mut reader, area) = decoder(reader, [size_of::<u16>(), BYTES_PER_PIXEL])?;
+    let (mut reader, area) = decoder(reader, [size_of::<f32>(), BYTES_PER_PIXEL])?;
     let (width, height) = (reader.info().width, reader.info().height);
     let (colour, depth) = reader.output_color_type();
     let components = Components::from(colour);
@@ -29,21 +29,21 @@ pub(super) fn read(reader: impl BufRead + Seek) -> Result<Samples, ImageError> {
     // The text may stand behind the image.
     reader.finish()?;
     let bits = Bits::of(reader.info(), stored);
-    values.iter_mut().for_each(|value| *value >>= bits.shift);
+    if bits.shift > 0 {
+        let scale = (1_u32 << bits.shift) as f32;
+        values
+            .iter_mut()
+            .for_each(|value| *value = (*value / scale).floor());
+    }
+    let size = [width as usize, height as usize];
+    let exif = reader.info().exif_metadata.as_deref();
     Ok(Samples {
-        width: width as usize,
-        height: height as usize,
-        components,
-        values,
-        bit_depth: bits.depth,
         curve: curve(reader.info()),
-        remark: bits.remark,
-        has_further_images: false,
+        orientation: exif.and_then(of_exif).unwrap_or(1),
+        remark: bits.remark.into(),
+        ..Samples::new(size, components, values, Some(bits.depth))
     })
 }
-
-/// A byte of compressed data stands for at most so many (zlib, Technical Details).
-const MAX_DEFLATION: u64 = 1032;
 
 /// Returns the reader of a PNG file of any colour type and depth, and its number of pixels, once it is known
 /// that the file can have as many and that there is memory for them: what the reader needs, and so many bytes
@@ -61,13 +61,7 @@ fn decoder<R: BufRead + Seek>(
     let (width, height) = (u64::from(info.width), u64::from(info.height));
     let area = checked_area(width, height)?;
     let bits = info.color_type.samples() as u64 * u64::from(info.bit_depth as u8);
-    if width * height * bits / 8 / MAX_DEFLATION > bytes {
-        return Err(ImageError::Cut {
-            width,
-            height,
-            bytes,
-        });
-    }
+    check_length([width, height], bytes, 8 * MAX_DEFLATION / bits)?;
     let (colour, depth) = reader.output_color_type();
     // Interlaced rows come in no order: all of them are held.
     let held = if info.interlaced {
@@ -79,22 +73,29 @@ fn decoder<R: BufRead + Seek>(
     Ok((reader, area))
 }
 
-fn extend(values: &mut Vec<u16>, data: &[u8], stored: u32) {
+fn extend(values: &mut Vec<f32>, data: &[u8], stored: u32) {
     if stored == 16 {
         let pairs = data.chunks_exact(2);
-        values.extend(pairs.map(|pair| u16::from_be_bytes([pair[0], pair[1]])));
+        values.extend(pairs.map(|pair| f32::from(u16::from_be_bytes([pair[0], pair[1]]))));
     } else {
-        values.extend(data.iter().map(|&value| u16::from(value)));
+        values.extend(data.iter().map(|&value| f32::from(value)));
     }
 }
 
+/// The curve by the chunk that goes before the others (PNG, third edition, 4.3): cICP, iCCP, sRGB, gAMA.
 fn curve(info: &png::Info<'_>) -> StoredCurve {
-    match (info.srgb, info.gama_chunk) {
-        (Some(_), _) => StoredCurve::Srgb,
-        (None, Some(gamma)) if gamma.into_scaled() > 0 => {
-            StoredCurve::Gamma(f64::from(gamma.into_scaled()) / 1e5)
-        }
-        _ => StoredCurve::Unknown,
+    let gamma = info.gama_chunk.map(png::ScaledFloat::into_scaled);
+    if let Some(points) = info.coding_independent_code_points {
+        StoredCurve::of_code(points.transfer_function)
+    } else if info.srgb.is_some() {
+        StoredCurve::Srgb
+    } else if let Some(gamma) = gamma.filter(|gamma| *gamma > 0) {
+        // Beside a profile it stands for those who do not read that.
+        StoredCurve::Gamma(f64::from(gamma) / 1e5)
+    } else if info.icc_profile.is_some() {
+        StoredCurve::Profile
+    } else {
+        StoredCurve::Unknown
     }
 }
 

@@ -3,16 +3,18 @@
 //! Their header is four numbers, of which the last, the largest grey value, gives the bits of the
 //! camera; the readers of other crates drop it.
 
-use std::io::{BufRead, Read};
+use std::io::{BufRead, Read, Seek, SeekFrom};
 
 use super::{
-    BYTES_PER_PIXEL, Components, ImageError, Samples, StoredCurve, check_room, checked_area,
+    BYTES_PER_PIXEL, Components, ImageError, Samples, check_length, check_room, checked_area,
 };
 
 const TOO_SHORT: ImageError = ImageError::Pnm("it ends before its last pixel");
 const TOO_LONG: ImageError = ImageError::Pnm("it goes on behind its last pixel");
 
-pub(super) fn read(mut reader: impl BufRead) -> Result<Samples, ImageError> {
+pub(super) fn read(mut reader: impl BufRead + Seek) -> Result<Samples, ImageError> {
+    let bytes = reader.seek(SeekFrom::End(0))?;
+    reader.rewind()?;
     let mut magic = [0; 2];
     reader.read_exact(&mut magic)?;
     let (components, binary) = match &magic {
@@ -36,7 +38,8 @@ pub(super) fn read(mut reader: impl BufRead) -> Result<Samples, ImageError> {
             "its largest grey value is not from 1 to 65535",
         ))?;
     let length = area * components.names().len();
-    check_room(area, 2 * components.names().len() + BYTES_PER_PIXEL)?;
+    check_length([width, height].map(u64::from), bytes, 1)?;
+    check_room(area, 6 * components.names().len() + BYTES_PER_PIXEL)?;
     let (values, has_further_images) = if binary {
         header.binary_values(length, largest)?
     } else {
@@ -55,15 +58,13 @@ pub(super) fn read(mut reader: impl BufRead) -> Result<Samples, ImageError> {
             "a grey value is above the largest it states",
         ));
     }
+    let size = [width as usize, height as usize];
+    let values = values.into_iter().map(f32::from).collect();
+    let bits = u16::BITS - largest.leading_zeros();
     Ok(Samples {
-        width: width as usize,
-        height: height as usize,
-        components,
-        values,
-        bit_depth: u16::BITS - largest.leading_zeros(),
-        curve: StoredCurve::Unknown,
-        remark: ", as the file says",
+        remark: ", as the file says".into(),
         has_further_images,
+        ..Samples::new(size, components, values, Some(bits))
     })
 }
 

@@ -5,7 +5,10 @@ use std::collections::BTreeMap;
 use tem00_scan::MeasuredFrame;
 use tem00_triangulation::Validity;
 
-use crate::report::{Cell, Column, Table, units::NUMBER};
+use crate::{
+    report::{Cell, Column, Table, units::NUMBER},
+    saturated_points::PointCounts,
+};
 
 /// The summary of a frame.
 #[derive(Clone, Debug)]
@@ -51,6 +54,16 @@ impl FrameRecord {
             peak: frame.raw.values.values().iter().copied().max().unwrap_or(0),
             mean_width,
         }
+    }
+}
+
+/// Returns the numbers of points of all frames.
+pub(super) fn point_counts(frames: &[FrameRecord]) -> PointCounts {
+    let sum = |of: fn(&FrameRecord) -> usize| frames.iter().map(of).sum();
+    PointCounts {
+        points: sum(|frame| frame.points),
+        valid: sum(|frame| frame.valid),
+        saturated: sum(|frame| frame.saturated),
     }
 }
 

@@ -8,7 +8,12 @@ use tem00_scan::{
 };
 use tem00_tracer::{Formulas, SpeckleChange, SpeckleModel, SpecklePlan};
 
-use super::{files::Files, frame::FrameRecord, refusal::Refusal, terms::Terms};
+use super::{
+    files::Files,
+    frame::{FrameRecord, point_counts},
+    refusal::Refusal,
+    terms::Terms,
+};
 use crate::{
     args::{IndexRange, TriangulateArgs},
     failure::Failure,
@@ -101,7 +106,8 @@ impl<'a> Job<'a> {
         }
         let part = scan.finish();
         let profiles = part.profiles().to_vec();
-        let terms = Terms::of(&profiles, self.measurement.settings().height);
+        let terms = Terms::of(&profiles, self.measurement.settings().height)
+            .filter(|_| !point_counts(&frames).are_too_many());
         let has_map = profiles.len() > 1 && terms.is_some();
         let map = has_map.then(|| part.height_map()).transpose();
         Ok(Measured {

@@ -1,4 +1,4 @@
-//! The reason for which a measurement has no valid point, and the remedy.
+//! The reason for which a measurement has no result, and the remedy.
 
 use tem00_triangulation::Validity;
 
@@ -12,7 +12,7 @@ pub(super) struct Refusal {
 }
 
 impl Refusal {
-    /// Returns why no point of the frames is valid.
+    /// Returns why no point of the frames is valid, or too few to measure with.
     pub(super) fn of(frames: &[FrameRecord]) -> Self {
         let points: usize = frames.iter().map(|frame| frame.points).sum();
         let count = |reason: &Reason| -> usize {
@@ -26,9 +26,14 @@ impl Refusal {
             .map(|reason| (count(reason), reason))
             .max_by_key(|(count, _)| *count)
             .filter(|(count, _)| *count > 0);
+        let valid: usize = frames.iter().map(|frame| frame.valid).sum();
         match most {
             Some((count, (_, what, advice))) => Self {
-                why: format!("none of {points} points of the line is valid: {count} {what}"),
+                why: if valid == 0 {
+                    format!("none of {points} points of the line is valid: {count} {what}")
+                } else {
+                    format!("{count} of {points} points of the line {what}")
+                },
                 advice,
             },
             None => Self::without_points(frames),
@@ -53,7 +58,9 @@ impl Refusal {
 /// A validity, its description and its remedy.
 type Reason = (Validity, &'static str, &'static str);
 
-const BRIGHT: &str = "pixels are saturated: lower `exposure` in [sensor] or `power` in [[laser]]";
+/// The sentence on saturated pixels, and what helps.
+pub(super) const BRIGHT: &str =
+    "pixels are saturated: lower `exposure` in [sensor] or `power` in [[laser]]";
 
 const REASONS: [Reason; 6] = [
     (Validity::Saturated, "lie on saturated pixels", BRIGHT),

@@ -9,7 +9,7 @@ use super::{
     files::{MapImage, images},
     frame,
     job::{Job, Measured, in_words},
-    refusal::Refusal,
+    refusal::{BRIGHT, Refusal},
     terms::Terms,
 };
 use crate::{
@@ -54,9 +54,14 @@ pub(super) fn report(job: &Job<'_>, measured: &Measured) -> Result<Report, Failu
     report.data("scene", &scene);
     report.data("profiles", measured.profiles.len());
     job.notes.iter().for_each(|note| report.note(note));
+    let saturation = frame::point_counts(&measured.frames).warning(BRIGHT);
+    saturation.iter().for_each(|line| report.warning(line));
     match &measured.terms {
         Ok(terms) => {
             report.verdict(terms.verdict());
+            saturation
+                .iter()
+                .for_each(|line| report.verdict(format!("{line}.")));
             for line in terms.notes_of_indirect_light() {
                 report.verdict(line);
             }

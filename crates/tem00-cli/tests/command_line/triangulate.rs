@@ -280,6 +280,50 @@ fn without_a_valid_point_there_is_no_number() {
 }
 
 #[test]
+fn points_on_saturated_pixels_are_told_and_most_of_them_are_no_result() {
+    let folder = folder();
+    let mut seen = [false; 3];
+    // From no saturated point to two thirds of them.
+    for exposure in ["0.1 ms", "0.2 ms", "0.3 ms", "0.5 ms"] {
+        let scene = SCAN.replace("0.1 ms", exposure);
+        fs::write(folder.path().join("a.toml"), scene).expect("written");
+        let output = run(folder.path(), "triangulate a.toml --frames 0..1");
+        let record = record(&folder.path().join("out/a"));
+        let sum = |key: &str| {
+            let frames = record["frames"].as_array().expect("frames");
+            frames
+                .iter()
+                .filter_map(|frame| frame[key].as_f64())
+                .sum::<f64>()
+        };
+        let fraction = sum("saturated") / sum("points");
+        let [is_told, is_refused] = [fraction > 0.05, fraction > 0.5];
+        seen[usize::from(is_told) + usize::from(is_refused)] = true;
+        assert_code(&output, if is_refused { 3 } else { 0 });
+        let sentence = format!("{:.0} % because pixels are saturated", 100.0 * fraction);
+        assert_eq!(
+            record["warnings"].to_string().contains(&sentence),
+            is_told,
+            "{record}"
+        );
+        assert_eq!(message(&output).contains(&sentence), is_told, "{exposure}");
+        let table = text(&output.stdout);
+        assert_eq!(table.contains("U = "), !is_refused, "{exposure}: {table}");
+        assert_eq!(
+            table.contains(&sentence),
+            is_told && !is_refused,
+            "{exposure}: {table}"
+        );
+        assert_eq!(
+            record["uncertainty"]["expanded"].is_null(),
+            is_refused,
+            "{record}"
+        );
+    }
+    assert_eq!(seen, [true; 3], "none, some and most");
+}
+
+#[test]
 fn height_maps_may_be_tiff_and_square() {
     let scan = "[scan]\npitch = \"0.3 mm\"\nraw = \"tiff\"\naverage = { frames = 2, columns = 2 }\n[render]";
     let folder = written(&SCAN.replace("[render]", scan));

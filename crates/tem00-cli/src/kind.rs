@@ -44,7 +44,10 @@ impl Kind {
         let file = is_file.then(|| File::open(path).ok()).flatten()?;
         let mut bytes = Vec::new();
         file.take(MAX_BYTES).read_to_end(&mut bytes).ok()?;
-        let is_netpbm = matches!(*bytes, [b'P', b'2' | b'3' | b'5' | b'6', end, ..] if end.is_ascii_whitespace());
+        let is_netpbm = match *bytes {
+            [b'P', b'2' | b'3' | b'5' | b'6', end, ..] => end.is_ascii_whitespace(),
+            _ => false,
+        };
         if is_netpbm || IMAGES.iter().any(|magic| bytes.starts_with(magic)) {
             return Some(Self::Image);
         }
@@ -57,7 +60,8 @@ impl Kind {
     }
 }
 
-/// The first bytes of image files: PNG, OpenEXR, NumPy, JPEG, TIFF in both orders of bytes, and BMP.
+/// The first bytes of image files: PNG, OpenEXR, NumPy, JPEG, TIFF in both orders of bytes, and
+/// BMP.
 const IMAGES: [&[u8]; 7] = [
     b"\x89PNG",
     b"\x76\x2f\x31\x01",

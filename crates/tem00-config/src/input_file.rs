@@ -69,7 +69,8 @@ pub fn is_standard_input(path: &Path) -> bool {
     path == Path::new(STANDARD_INPUT)
 }
 
-/// Returns a text without the byte order mark of UTF-8 that some editors and spreadsheets put in front.
+/// Returns a text without the byte order mark of UTF-8 that some editors and spreadsheets put in
+/// front.
 pub fn without_byte_order_mark(content: &[u8]) -> &[u8] {
     content.strip_prefix(b"\xef\xbb\xbf").unwrap_or(content)
 }

@@ -125,7 +125,8 @@ impl Sources {
     }
 
     fn add(&mut self, mut source: Source, canonical: Option<PathBuf>) -> Result<(), Problem> {
-        // Some editors begin a text with a byte order mark, which would shift the first line by a column.
+        // Some editors begin a text with a byte order mark, which would shift the first line by a
+        // column.
         if source.text.starts_with('\u{feff}') {
             source.text.remove(0);
         }

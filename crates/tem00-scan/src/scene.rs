@@ -26,8 +26,8 @@ pub struct MeasurementScene {
 }
 
 impl MeasurementScene {
-    /// Reads a scene file with the sections `[sensor]`, `[detector]`, `[calibration]` and `[scan]`, and returns
-    /// [what was left out](SceneFile::notes) of its meshes.
+    /// Reads a scene file with the sections `[sensor]`, `[detector]`, `[calibration]` and `[scan]`,
+    /// and returns [what was left out](SceneFile::notes) of its meshes.
     ///
     /// # Errors
     ///

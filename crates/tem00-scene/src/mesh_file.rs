@@ -57,19 +57,21 @@ impl MeshFormat {
 /// `scale`, the length of the file's unit in metres: 1e−3 for a file in millimetres, 1 for glTF,
 /// whose unit is the metre. All groups, solids, nodes and instances become one mesh.
 ///
-/// Faces of any number of corners are cut into triangles in the plane that is closest to them, convex or not.
-/// Triangle strips and fans are read. Normals of vertices are kept as they are, also where they point to the back of a
-/// triangle; one that is zero or NaN is none, and STL has none. Everything else is passed over: points, lines,
-/// colours, materials, textures, skins, animations; of a scene, [`SceneFile::notes`](crate::SceneFile::notes) says
-/// what was left out of the shapes. Text may begin with a byte order mark. Files with
-/// the data of a glTF file lie below its folder. No file has more than [4 GiB](tem00_config::MAX_ASSET_BYTES).
+/// Faces of any number of corners are cut into triangles in the plane that is closest to them,
+/// convex or not. Triangle strips and fans are read. Normals of vertices are kept as they are, also
+/// where they point to the back of a triangle; one that is zero or NaN is none, and STL has none.
+/// Everything else is passed over: points, lines, colours, materials, textures, skins, animations;
+/// of a scene, [`SceneFile::notes`](crate::SceneFile::notes) says what was left out of the shapes.
+/// Text may begin with a byte order mark. Files with the data of a glTF file lie below its folder.
+/// No file has more than [4 GiB](tem00_config::MAX_ASSET_BYTES).
 ///
 /// # Errors
 ///
 /// Returns an error that names the file if the scale is not positive and finite, the extension is
-/// that of no format, the file cannot be read or breaks its format, or its content is not a mesh (see
-/// [`TriangleMesh::new`]). Errors of text files say the line. Of glTF, sparse accessors are refused, and
-/// extensions that the file requires unless they concern materials, textures, lights or animations alone.
+/// that of no format, the file cannot be read or breaks its format, or its content is not a mesh
+/// (see [`TriangleMesh::new`]). Errors of text files say the line. Of glTF, sparse accessors are
+/// refused, and extensions that the file requires unless they concern materials, textures, lights
+/// or animations alone.
 ///
 /// # Examples
 ///
@@ -87,8 +89,8 @@ pub fn read_mesh(path: &Path, scale: f64) -> Result<TriangleMesh, MeshFileError>
     read_mesh_with(path, scale, FileAccess::WithinFolder).map(|(mesh, _)| mesh)
 }
 
-/// Reads a triangle mesh as [`read_mesh`] does, and says what was left out; the data of a glTF file may lie where
-/// `access` says.
+/// Reads a triangle mesh as [`read_mesh`] does, and says what was left out; the data of a glTF file
+/// may lie where `access` says.
 pub(crate) fn read_mesh_with(
     path: &Path,
     scale: f64,

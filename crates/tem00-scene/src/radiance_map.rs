@@ -13,9 +13,9 @@ pub use error::RadianceMapError;
 /// Reads a map of radiance, for an [`Environment`](tem00_tracer::Environment), from an OpenEXR or PFM file.
 ///
 /// The extension of the file name, in any case, says which. Of colours the luminance is taken: the
-/// channels R, G and B by the chromaticities that an OpenEXR file states, or else those of Rec. 709; or the only
-/// channel there is. Of an OpenEXR file with several parts the first is read. The values are multiplied by `scale`, the radiance of the
-/// file's unit in W/(m² sr).
+/// channels R, G and B by the chromaticities that an OpenEXR file states, or else those of Rec.
+/// 709; or the only channel there is. Of an OpenEXR file with several parts the first is read. The
+/// values are multiplied by `scale`, the radiance of the file's unit in W/(m² sr).
 ///
 /// # Errors
 ///

@@ -3,11 +3,12 @@ use glam::{DMat3, DVec3};
 
 use super::error::{MeshFileError, wrong};
 
-/// The maximum number of corners of a face that is not convex: the time to cut it up grows with their square.
+/// The maximum number of corners of a face that is not convex: the time to cut it up grows with
+/// their square.
 const MAX_CORNERS: usize = 1 << 15;
 
-/// The part of the area of a face that its triangles may cover the wrong way round: coordinates in single precision
-/// are not exact.
+/// The part of the area of a face that its triangles may cover the wrong way round: coordinates in
+/// single precision are not exact.
 const TOLERANCE: f64 = 1e-6;
 
 /// Faces of any number of corners, one after the other.
@@ -85,7 +86,8 @@ impl<T: Copy> Faces<T> {
 fn too_many<T>(face: usize, corners: &[T]) -> MeshFileError {
     let got = corners.len();
     wrong(format!(
-        "face {face} (from 0) is not convex and has {got} corners: cut it up, at most {MAX_CORNERS} are read"
+        "face {face} (from 0) is not convex and has {got} corners: cut it up, at most \
+         {MAX_CORNERS} are read"
     ))
 }
 
@@ -106,10 +108,10 @@ struct Cutter {
 impl Cutter {
     /// Cuts the face with the corners `points`, and returns whether it crosses itself.
     ///
-    /// Triangles that all turn as the face does cover it once. Halves of halves do so in a convex face. They keep
-    /// the triangles as wide as the corners allow: a fan around one corner would make slivers, which overlap so
-    /// much that no hierarchy of boxes tells them apart. Other faces are cut by their ears, in the plane
-    /// that their corners are closest to.
+    /// Triangles that all turn as the face does cover it once. Halves of halves do so in a convex
+    /// face. They keep the triangles as wide as the corners allow: a fan around one corner would
+    /// make slivers, which overlap so much that no hierarchy of boxes tells them apart. Other faces
+    /// are cut by their ears, in the plane that their corners are closest to.
     fn cut(&mut self) -> Result<bool, TooManyCorners> {
         let count = u32::try_from(self.points.len()).map_err(|_| TooManyCorners)?;
         self.triangles.clear();
@@ -147,8 +149,8 @@ impl Cutter {
         Ok(false)
     }
 
-    /// Multiplies the points by a power of two, so that areas neither overflow nor vanish; returns whether there
-    /// are finite ones.
+    /// Multiplies the points by a power of two, so that areas neither overflow nor vanish; returns
+    /// whether there are finite ones.
     fn scale(&mut self) -> bool {
         let first = self.points[0];
         let offsets = self.points.iter().map(|&point| (point - first).abs());
@@ -166,8 +168,8 @@ impl Cutter {
         (b - a).cross(c - a)
     }
 
-    /// Returns the ears of the face, cut off one after the other in the plane across its normal and turned as
-    /// it is: if it crosses itself they cover more or less than its area.
+    /// Returns the ears of the face, cut off one after the other in the plane across its normal and
+    /// turned as it is: if it crosses itself they cover more or less than its area.
     fn ears(&mut self, normal: DVec3) -> Vec<[u32; 3]> {
         let (right, up) = normal.any_orthonormal_pair();
         let to_plane = DMat3::from_cols(right, up, normal).transpose();

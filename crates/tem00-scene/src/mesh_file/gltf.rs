@@ -96,8 +96,8 @@ fn leave_out_appearance(root: &mut Root) -> Result<(), MeshFileError> {
     Ok(())
 }
 
-/// Returns whether an extension is one of materials, textures, lights, animations or remarks, as its name says
-/// behind the mark of who made it: `KHR_materials_ior`, `EXT_texture_webp`.
+/// Returns whether an extension is one of materials, textures, lights, animations or remarks, as
+/// its name says behind the mark of who made it: `KHR_materials_ior`, `EXT_texture_webp`.
 fn concerns_appearance(extension: &str) -> bool {
     const WORDS: [&str; 6] = [
         "animation",

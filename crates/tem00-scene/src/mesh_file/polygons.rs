@@ -39,21 +39,10 @@ impl Polygons {
         let mesh = TriangleMesh::with_normals(self.vertices, self.normals, self.triangles);
         let mut notes = self.notes;
         let dropped = mesh.as_ref().map_or(0, TriangleMesh::dropped_triangles);
-        let left_out = [
-            (
-                self.flat + dropped,
-                ["face without area", "faces without area"],
-            ),
-            (
-                no_numbers,
-                ["normal that is not finite", "normals that are not finite"],
-            ),
-        ];
-        notes.extend(
-            left_out
-                .into_iter()
-                .filter_map(|(count, names)| note(count, names)),
-        );
+        let flat = ["face without area", "faces without area"];
+        notes.extend(note(self.flat + dropped, flat));
+        let not_finite = ["normal that is not finite", "normals that are not finite"];
+        notes.extend(note(no_numbers, not_finite));
         match mesh {
             Ok(mesh) => Ok((mesh, notes)),
             Err(error @ MeshError::Empty { degenerate: 0 }) if !notes.is_empty() => {
@@ -64,16 +53,15 @@ impl Polygons {
     }
 
     /// Takes the triangles of faces; `corner` returns the index of a corner's vertex.
-    pub(super) fn take<T>(&mut self, cut: Cut<T>, corner: impl FnMut(T) -> u32) {
-        let mut corner = corner;
+    pub(super) fn take<T>(&mut self, cut: Cut<T>, mut corner: impl FnMut(T) -> u32) {
         let triangles = cut.triangles.into_iter();
         self.triangles.extend(triangles.map(|t| t.map(&mut corner)));
         self.flat += cut.flat;
         if let [first, ..] = *cut.crossing {
             let count = cut.crossing.len();
             self.notes.push(format!(
-                "faces that cross themselves: {count}, the first is face {first} (from 0); what they enclose is not \
-                 defined, and they may cover too much or too little"
+                "faces that cross themselves: {count}, the first is face {first} (from 0); what \
+                 they enclose is not defined, and they may cover too much or too little"
             ));
         }
     }

@@ -11,13 +11,14 @@ const PREAMBLE: usize = 84;
 /// A normal, three corners and two spare bytes.
 const RECORD: usize = 50;
 
-/// The first bytes, among which a binary file has one that is zero: in its number of triangles, if not before.
+/// The first bytes, among which a binary file has one that is zero: in its number of triangles, if
+/// not before.
 const HEAD: usize = 512;
 
 /// Reads an STL file, text or binary.
 ///
-/// Many binary files begin with the word `solid` that marks text, and some end with bytes that their length does
-/// not count. Text has no bytes that are zero.
+/// Many binary files begin with the word `solid` that marks text, and some end with bytes that
+/// their length does not count. Text has no bytes that are zero.
 pub(super) fn parse(content: &[u8]) -> Result<Polygons, MeshFileError> {
     let needed = binary_length(content);
     let has_zeros = content[..content.len().min(HEAD)].contains(&0);

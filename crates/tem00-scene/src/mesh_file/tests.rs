@@ -428,7 +428,8 @@ fn broken_ply_files_are_explained() {
         begins(
             &text.replace("int vertex_indices", other),
             &format!(
-                "the element face needs a list of whole numbers, vertex_indices or vertex_index, got {name:?}"
+                "the element face needs a list of whole numbers, vertex_indices or vertex_index, \
+                 got {name:?}"
             ),
         );
     }

@@ -17,7 +17,8 @@ pub(super) fn checked_size(width: u64, height: u64) -> Result<(usize, usize), Ra
     }
 }
 
-/// Returns the luminance of a pixel from one value or three, by the parts of red, green and blue in it.
+/// Returns the luminance of a pixel from one value or three, by the parts of red, green and blue in
+/// it.
 pub(super) fn luminance(channels: &[f32], parts: [f32; 3]) -> f32 {
     match channels {
         [red, green, blue] => parts[0] * red + parts[1] * green + parts[2] * blue,

@@ -69,11 +69,11 @@ const OF_REC_709: Chromaticities = Chromaticities {
     white: Vec2(0.3127, 0.329),
 };
 
-/// Returns the parts of red, green and blue in the luminance: those of the primaries that together make
-/// white, of luminance 1.
+/// Returns the parts of red, green and blue in the luminance: those of the primaries that together
+/// make white, of luminance 1.
 ///
-/// In the chromaticity diagram white is a mean of the primaries, with weights b. A primary of chromaticity (x, y)
-/// takes part with the luminance `b y / y_white` (CIE 15:2018; SMPTE RP 177).
+/// In the chromaticity diagram white is a mean of the primaries, with weights b. A primary of
+/// chromaticity (x, y) takes part with the luminance `b y / y_white` (CIE 15:2018; SMPTE RP 177).
 #[expect(
     clippy::cast_possible_truncation,
     reason = "pixels are in single precision"
@@ -102,8 +102,8 @@ fn parts(colours: Chromaticities) -> Result<[f32; 3], RadianceMapError> {
     {
         let [r, g, b, w] = [red, green, blue, white].map(|Vec2(x, y)| format!("({x}, {y})"));
         return Err(RadianceMapError::Format(format!(
-            "its chromaticities must have white inside the triangle of red, green and blue, got white {w}, red {r}, \
-             green {g} and blue {b}"
+            "its chromaticities must have white inside the triangle of red, green and blue, got \
+             white {w}, red {r}, green {g} and blue {b}"
         )));
     }
     let [r, g, b] = [r, g, b].map(|primary| primary.y / w.y);

@@ -78,7 +78,8 @@ struct Numbers<R> {
 }
 
 impl<R: BufRead> Numbers<R> {
-    /// Reads a decimal number and the character behind it; comments run from `#` to the end of the line.
+    /// Reads a decimal number and the character behind it; comments run from `#` to the end of the
+    /// line.
     fn number(&mut self) -> Result<u32, ImageError> {
         let mut digits = None;
         let mut comment = false;
@@ -111,10 +112,11 @@ impl<R: BufRead> Numbers<R> {
         digits.ok_or(TOO_SHORT)
     }
 
-    /// Reads values of one byte, or of two with the higher one first, and returns whether another map follows.
+    /// Reads values of one byte, or of two with the higher one first, and returns whether another
+    /// map follows.
     ///
-    /// One character of white space ends the header, or the two that end a line on Windows: its other lines tell, and
-    /// if it has none the length.
+    /// One character of white space ends the header, or the two that end a line on Windows: its
+    /// other lines tell, and if it has none the length.
     fn binary_values(
         &mut self,
         length: usize,

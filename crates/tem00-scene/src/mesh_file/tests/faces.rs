@@ -1,5 +1,5 @@
-//! Faces of many corners. The oracle is the area by the shoelace formula: triangles that all turn as the face does
-//! and have its area together cover it once.
+//! Faces of many corners. The oracle is the area by the shoelace formula: triangles that all turn
+//! as the face does and have its area together cover it once.
 
 use core::f64::consts::TAU;
 
@@ -172,7 +172,9 @@ fn faces_that_are_not_convex_cover_their_area_and_no_more() {
 
 proptest! {
     #[test]
-    fn outlines_around_a_point_cover_their_area(radii in prop::collection::vec(0.1_f64..10.0, 4..120)) {
+    fn outlines_around_a_point_cover_their_area(
+        radii in prop::collection::vec(0.1_f64..10.0, 4..120),
+    ) {
         let outline = star(&radii);
         let (mesh, notes) = read_face(&outline, |[x, y]| DVec3::new(x, y, 0.0));
         let (sum, all) = areas(&mesh);

@@ -208,7 +208,7 @@ fn broken_gltf_files_are_explained() {
         (
             "\"scene\": 0,\n",
             "\"extensionsRequired\": [\"KHR_draco_mesh_compression\"],",
-            "the file requires \"KHR_draco_mesh_compression\", an extension that is not read: export it without",
+            "the file requires \"KHR_draco_mesh_compression\", an extension that is not read",
         ),
         (
             "\"count\": 12",

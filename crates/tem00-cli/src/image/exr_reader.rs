@@ -277,16 +277,21 @@ mod tests {
         file.into_inner()
     }
 
+    /// The name of a part of a file, and those of its channels.
+    type Part<'a> = (&'a str, &'a [&'a str]);
+
     /// A file of parts with channels of two pixels; those of identifiers have `#` before their names.
-    fn parts(parts: &[(&str, &[&str])]) -> Vec<u8> {
+    fn parts(parts: &[Part<'_>]) -> Vec<u8> {
         let channel = |(index, name): (usize, &&str)| match name.strip_prefix('#') {
             Some(name) => AnyChannel::new(name, FlatSamples::U32(vec![7, 8])),
             None => AnyChannel::new(*name, FlatSamples::F32(vec![1.0 + index as f32; 2])),
         };
-        let part = |(name, channels): &(&str, &[&str])| {
+        let part = |(name, channels): &Part<'_>| {
             let channels = channels.iter().enumerate().map(channel).collect();
-            let mut attributes = LayerAttributes::default();
-            attributes.layer_name = (!name.is_empty()).then(|| (*name).into());
+            let attributes = LayerAttributes {
+                layer_name: (!name.is_empty()).then(|| (*name).into()),
+                ..LayerAttributes::default()
+            };
             exr::prelude::Layer::new(
                 (2, 1),
                 attributes,
@@ -303,7 +308,7 @@ mod tests {
 
     #[test]
     fn light_is_chosen_and_never_alpha_depth_or_an_identifier() {
-        let cases: [(&[(&str, &[&str])], &str); 14] = [
+        let cases: [(&[Part<'_>], &str); 14] = [
             (&[("", &["A", "Y"])], "channel Y"),
             (&[("", &["A", "B", "G", "R", "Z"])], "mean of R, G and B"),
             (&[("", &["Y", "RY", "BY"])], "channel Y"),

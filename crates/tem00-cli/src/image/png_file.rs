@@ -201,8 +201,11 @@ mod tests {
         assert!(!said(0.4, Some("B")).contains("differ"), "one channel");
     }
 
+    /// The kind and the content of a chunk.
+    type Chunk<'a> = (&'a [u8; 4], &'a [u8]);
+
     /// A grey file of two pixels of 8 bits with chunks before its image.
-    fn with_chunks(chunks: &[(&[u8; 4], &[u8])]) -> Vec<u8> {
+    fn with_chunks(chunks: &[Chunk<'_>]) -> Vec<u8> {
         let mut file = Vec::new();
         let mut writer = Encoder::new(&mut file, 2, 1)
             .write_header()
@@ -226,7 +229,7 @@ mod tests {
         // 0.2 by each curve: x^2.2, IEC 61966-2-1, BT.709.
         let srgb = ((0.2_f32 + 0.055) / 1.055).powf(2.4);
         let television = ((0.2_f32 + 0.099) / 1.099).powf(1.0 / 0.45);
-        let cases: [(&[(&[u8; 4], &[u8])], f32, &str); 9] = [
+        let cases: [(&[Chunk<'_>], f32, &str); 9] = [
             (&[], 0.2, "taken as linear, the file does not say"),
             (
                 &[(b"gAMA", &gamma)],

@@ -74,6 +74,16 @@ mod tests {
         })
     }
 
+    #[track_caller]
+    fn assert_level(values: impl Iterator<Item = f32>, full: Option<f32>, expected: f32) {
+        let found = saturation_level(values, full);
+        assert_eq!(
+            found.to_bits(),
+            expected.to_bits(),
+            "{found} for {expected}"
+        );
+    }
+
     #[test]
     fn piles_are_found_wherever_they_lie() {
         let full = Some(65_535.0);
@@ -86,28 +96,23 @@ mod tests {
             (1.0, 3_931.0),
             (1.0, 235.0),
         ] {
-            let found = saturation_level(speckle(0.2 * f64::from(limit), step, limit), full);
-            assert_eq!(found, limit, "in steps of {step}");
+            assert_level(speckle(0.2 * f64::from(limit), step, limit), full, limit);
         }
         // One pixel at the largest value of a camera is enough.
         let one = speckle(50.0, 1.0, 900.0).chain([1_023.0]);
-        assert_eq!(saturation_level(one, full), 1_023.0);
+        assert_level(one, full, 1_023.0);
     }
 
     #[test]
     fn what_only_ends_is_no_pile() {
         let full = Some(65_535.0);
         for mean in [0.4, 3.0, 30.0, 777.0] {
-            let found = saturation_level(speckle(mean, 1.0, f32::INFINITY), full);
-            assert_eq!(found, 65_535.0, "mean {mean}");
-            let free = saturation_level(speckle(mean, 1.0, f32::INFINITY), None);
-            assert_eq!(free, f32::INFINITY, "mean {mean}");
+            let light = || speckle(mean, 1.0, f32::INFINITY);
+            assert_level(light(), full, 65_535.0);
+            assert_level(light(), None, f32::INFINITY);
         }
-        assert_eq!(saturation_level(core::iter::empty(), full), 65_535.0);
-        assert_eq!(
-            saturation_level([7.0; 100].into_iter(), None),
-            f32::INFINITY
-        );
+        assert_level(core::iter::empty(), full, 65_535.0);
+        assert_level([7.0; 100].into_iter(), None, f32::INFINITY);
         // Straight and curved lines without noise, of different widths.
         for (width, bend) in [
             (2.0, 0.0),
@@ -122,11 +127,7 @@ mod tests {
                     (200.0 * (-2.0 * d * d).exp()).round()
                 })
             });
-            assert_eq!(
-                saturation_level(line, Some(255.0)),
-                255.0,
-                "{width}, {bend}"
-            );
+            assert_level(line, Some(255.0), 255.0);
         }
     }
 }

@@ -37,11 +37,16 @@ impl StoredCurve {
     pub(super) const fn of_grey_values(self) -> &'static str {
         match self {
             Self::Unknown | Self::Light | Self::Linear => "",
-            Self::Gamma(gamma) if gamma == 1.0 => "",
+            Self::Gamma(gamma) if is_one(gamma) => "",
             Self::Profile => ", as they are: the colour profile of the file is not read",
             _ => ", as they are: the curve that the file names is not undone",
         }
     }
+}
+
+/// Returns whether a gamma is 1; files state it in steps of 1e-5.
+const fn is_one(gamma: f64) -> bool {
+    (gamma - 1.0).abs() < 5e-6
 }
 
 /// The relation of grey values to light, and its origin.
@@ -71,7 +76,7 @@ impl Curve {
     pub(super) fn is_linear(&self) -> bool {
         use StoredCurve::{Gamma, Light, Linear, Profile, Unknown};
         matches!(self.stored, Unknown | Light | Profile | Linear)
-            || matches!(self.stored, Gamma(gamma) if gamma == 1.0)
+            || matches!(self.stored, Gamma(gamma) if is_one(gamma))
     }
 
     /// Returns the light of a grey value, both in units of their largest.

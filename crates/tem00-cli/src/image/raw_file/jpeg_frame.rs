@@ -44,7 +44,8 @@ pub(super) fn read(mut reader: impl Read) -> Result<Samples, ImageError> {
     let (components, colours) = match decoder.input_colorspace() {
         Some(ColorSpace::Luma) => (Components::Grey, ColorSpace::Luma),
         Some(ColorSpace::YCbCr | ColorSpace::RGB) => (Components::Rgb, ColorSpace::RGB),
-        other => return Err(ImageError::Pixels(format!("pixels of the type {other:?}"))),
+        Some(other) => return Err(ImageError::Pixels(format!("pixels of the type {other:?}"))),
+        None => return Err(ImageError::Pixels("pixels of an unknown type".into())),
     };
     check_room(area, 5 * components.names().len() + BYTES_PER_PIXEL)?;
     decoder.set_options(options.jpeg_set_out_colorspace(colours));

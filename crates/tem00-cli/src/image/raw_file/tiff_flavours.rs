@@ -9,6 +9,19 @@ use crate::image::ImageError;
 /// An entry of a directory: its tag, and its numbers of 16 bits.
 type Entry = (u16, Vec<u16>);
 
+/// A name, the order of bytes, entries, a strip, the values of three pixels and their bits.
+type GreyCase = (
+    &'static str,
+    bool,
+    Vec<Entry>,
+    Vec<u8>,
+    [f32; 3],
+    Option<u32>,
+);
+
+/// A name, the order of bytes, entries, strips, and what is added to all values.
+type ColourCase<'a> = (&'static str, bool, Vec<Entry>, Vec<&'a [u8]>, f32);
+
 /// A file of one directory in either order of bytes, whose strips stand behind it.
 fn tiff(big: bool, size: [u16; 2], entries: &[Entry], strips: &[&[u8]]) -> Vec<u8> {
     let two = |value: u16| {
@@ -108,7 +121,7 @@ fn grey_values_of_all_kinds_are_read() {
         .iter()
         .flat_map(|_| (0..256).map(|v| 257 * (255 - v)))
         .collect();
-    let cases: [(&str, bool, Vec<Entry>, Vec<u8>, [f32; 3], Option<u32>); 18] = [
+    let cases: [GreyCase; 18] = [
         // Rows are whole bytes, the highest bits first.
         (
             "12 bits",
@@ -290,12 +303,13 @@ fn colours_stand_pixel_by_pixel_in_planes_or_in_a_palette() {
     let palette: Vec<u16> = [9, 80, 0, 0, 10, 90, 0, 0, 20, 100, 0, 0]
         .map(|v| 257 * v)
         .into();
+    let shifted: Vec<u16> = palette.iter().map(|value| value & 0xff00).collect();
     let deep: Vec<u16> = [9, 80, 0, 0, 10, 90, 0, 0, 20, 100, 0, 0]
         .map(|v| v + 1_000)
         .into();
     let plane: [&[u8]; 3] = [&[9, 80], &[10, 90], &[20, 100]];
     let deep_plane: [&[u8]; 3] = [&[0, 9, 0, 80], &[0, 10, 0, 90], &[0, 20, 0, 100]];
-    let cases: [(&str, bool, Vec<Entry>, Vec<&[u8]>, f32); 8] = [
+    let cases: [ColourCase<'_>; 9] = [
         (
             "pixels",
             false,
@@ -321,6 +335,13 @@ fn colours_stand_pixel_by_pixel_in_planes_or_in_a_palette() {
             "palette of 2 bits",
             false,
             with(kind(2, 3, 1), &[(320, &palette)]),
+            vec![&[0b0001_0000]],
+            0.0,
+        ),
+        (
+            "palette of 8 bits in the upper half",
+            true,
+            with(kind(2, 3, 1), &[(320, &shifted)]),
             vec![&[0b0001_0000]],
             0.0,
         ),

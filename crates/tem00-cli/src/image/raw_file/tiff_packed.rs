@@ -188,8 +188,14 @@ fn coloured(numbers: impl Iterator<Item = usize>, palette: &[u16]) -> Pixels {
     let count = palette.len() / 3;
     let colour = |index: usize| [0, 1, 2].map(|part| palette[part * count + index]);
     let is_grey = (0..count).map(colour).all(|[r, g, b]| r == g && g == b);
+    // Writers put 8 bits into the upper half of 16, and into the lower half the same or nothing.
     let is_doubled = palette.iter().all(|value| value >> 8 == value & 255);
-    let (shift, bits) = if is_doubled { (8, 8) } else { (0, 16) };
+    let is_shifted = palette.iter().all(|value| value & 255 == 0);
+    let (shift, bits) = if is_doubled || is_shifted {
+        (8, 8)
+    } else {
+        (0, 16)
+    };
     let parts = if is_grey { 1 } else { 3 };
     let of = |index| colour(index).into_iter().take(parts);
     Pixels {

@@ -36,7 +36,7 @@ fn reflect(a: &mut [Complex<f64>], n: usize, k: usize) -> f64 {
     let mut v: Vec<Complex<f64>> = (k + 1..n).map(|i| a[i * n + k]).collect();
     let size = v.iter().map(Complex::norm_sqr).sum::<f64>().sqrt();
     let norm = v[0].norm();
-    if size == norm {
+    if v[1..].iter().all(|x| x.norm_sqr() == 0.0) {
         return size;
     }
     let phase = if norm > 0.0 {

@@ -18,11 +18,11 @@ impl LagKernel {
 
     /// Returns the weight of a lag.
     pub(crate) fn at(self, lag: f64) -> f64 {
-        let tall = match 1.0 - self.contrast_like {
-            0.0 => 0.0,
-            tall => tall * image_of_point(lag),
-        };
-        tall + self.contrast_like * image_autocorrelation(lag)
+        let mut weight = self.contrast_like * image_autocorrelation(lag);
+        if self.contrast_like < 1.0 {
+            weight += (1.0 - self.contrast_like) * image_of_point(lag);
+        }
+        weight
     }
 
     /// Returns the transform at a displacement of the pupil, in its diameters.

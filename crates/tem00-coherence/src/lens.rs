@@ -49,14 +49,15 @@ pub(crate) fn linear_across(q: f64, c: f64) -> Complex<f64> {
 pub(crate) fn quadratic_across(b: f64, c: f64) -> Complex<f64> {
     let phase = b.abs() * c * c;
     let of_positive = if phase < 4.0 {
-        let step = Complex::new(0.0, -phase);
-        let (mut term, mut sum) = (Complex::ONE, Complex::ZERO);
-        for n in 0..28 {
-            let n = f64::from(n);
-            sum += term / (2.0 * n + 1.0);
-            term *= step / (n + 1.0);
+        // Powers of −i in turn.
+        let (mut term, mut parts, mut n) = (1.0, [0.0; 4], 0);
+        while term > 1e-18 {
+            let order = f64::from(n);
+            parts[n as usize % 4] += term / (2.0 * order + 1.0);
+            term *= phase / (order + 1.0);
+            n += 1_u32;
         }
-        2.0 * c * sum
+        2.0 * c * Complex::new(parts[0] - parts[2], parts[3] - parts[1])
     } else {
         // All of the axis less both tails: exp(−z²) / (z + ½/(z + 1/(z + 3/2/(z + …)))) for z = √i y √b.
         let z = Complex::from_polar(phase.sqrt(), 0.25 * PI);

@@ -250,19 +250,19 @@ fn a_mapped_file_can_be_looked_up() {
 
 #[test]
 fn a_file_appears_whole_or_not_at_all() {
-    let folder = std::env::temp_dir().join(format!("tem00-save-{}", std::process::id()));
-    std::fs::create_dir(&folder).unwrap();
+    let folder = std::env::temp_dir().join(format!("tem00-save-{}", process::id()));
+    fs::create_dir(&folder).unwrap();
     let names = || {
-        let entries = std::fs::read_dir(&folder).unwrap();
+        let entries = fs::read_dir(&folder).unwrap();
         let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
         names.collect::<Vec<_>>()
     };
     let stack = small();
     let bytes = bytes(&stack);
     let path = folder.join("stack");
-    std::fs::write(&path, "what was there").unwrap();
+    fs::write(&path, "what was there").unwrap();
     stack.save(&path).unwrap();
-    assert_eq!(std::fs::read(&path).unwrap(), bytes);
+    assert_eq!(fs::read(&path).unwrap(), bytes);
     assert_eq!(names(), ["stack"], "nothing else is left");
     // A folder takes no file, and no folder has none.
     assert!(stack.save(&folder).is_err());
@@ -271,19 +271,16 @@ fn a_file_appears_whole_or_not_at_all() {
     {
         let link = folder.join("link");
         std::os::unix::fs::symlink(&path, &link).unwrap();
-        std::fs::write(&path, "what was there").unwrap();
+        fs::write(&path, "what was there").unwrap();
         stack.save(&link).unwrap();
         assert_eq!(
-            std::fs::read(&path).unwrap(),
+            fs::read(&path).unwrap(),
             b"what was there",
             "not through a link"
         );
-        assert_eq!(std::fs::read(&link).unwrap(), bytes);
-        stack.save(std::path::Path::new("/dev/null")).unwrap();
-        assert!(
-            !std::path::Path::new("/dev/null").is_file(),
-            "a device stays one"
-        );
+        assert_eq!(fs::read(&link).unwrap(), bytes);
+        stack.save(Path::new("/dev/null")).unwrap();
+        assert!(!Path::new("/dev/null").is_file(), "a device stays one");
     }
-    std::fs::remove_dir_all(&folder).unwrap();
+    fs::remove_dir_all(&folder).unwrap();
 }

@@ -69,7 +69,7 @@ impl Parse for Record {
     }
 }
 
-/// One declaration; `made_by` declares nothing that a stub shows.
+/// One declaration; `made_by` and `unmade` declare nothing that a stub shows.
 fn member(input: ParseStream<'_>, class: &str) -> Result<Option<Member>> {
     Attribute::parse_outer(input)?;
     let kind = input.parse::<Ident>()?;
@@ -78,6 +78,11 @@ fn member(input: ParseStream<'_>, class: &str) -> Result<Option<Member>> {
     }
     if kind == "make" {
         return Ok(Some(constructor(query(input, "")?, class)));
+    }
+    if kind == "unmade" {
+        input.parse::<LitStr>()?;
+        input.parse::<Token![;]>()?;
+        return Ok(None);
     }
     let name = input.parse::<Ident>()?.to_string();
     if kind == "made_by" {

@@ -20,6 +20,9 @@ const MODULES: &[(&str, &str, &str)] = &[
     ("statistics", "statistics.rs", "statistics.pyi"),
 ];
 
+/// Classes written in Python: where they are shown, and the module that has them.
+const PYTHON: &[(&str, &str, &str)] = &[("beam", "_estimate", "Estimate")];
+
 /// Where the words of stubs come from.
 const WORDS: &[(&str, &[&str])] = &[
     ("collections.abc", &["Callable", "Iterable", "Sequence"]),
@@ -100,6 +103,8 @@ fn stub(source: &str, module: &str, declared: &Declared) -> String {
             }
         }
     }
+    let in_python = PYTHON.iter().filter(|(shown, ..)| *shown == module);
+    names.extend(in_python.clone().map(|(_, _, name)| (*name).to_owned()));
     names.sort();
     for name in &names {
         if let Some(function) = declared.functions.get(name) {
@@ -113,7 +118,9 @@ fn stub(source: &str, module: &str, declared: &Declared) -> String {
             body += &write_class(name, class);
         }
     }
-    let mut inner = String::new();
+    let mut inner: String = in_python
+        .map(|(_, own, name)| format!("from tem00.{own} import {name} as {name}\n"))
+        .collect();
     for name in &names {
         if !declared.functions.contains_key(name)
             && !declared.exceptions.contains_key(name)

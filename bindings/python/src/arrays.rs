@@ -17,7 +17,9 @@ use pyo3::prelude::*;
 pub(crate) use columns::{Column, columns, evaluate};
 pub(crate) use floats::{Floats, fill_in_kind};
 pub(crate) use images::{ComplexImage, Image, image_array};
-pub(crate) use numbers::{Components, Named, Numbers, Samples, Table, Vectors, length};
+pub(crate) use numbers::{
+    Components, Named, Numbers, Samples, Table, Vectors, length, wavelength_of_light,
+};
 pub(crate) use results::{Array, Matrix, Values, Vector, array, vector_array};
 pub(crate) use whole::Whole;
 

@@ -31,6 +31,8 @@ use pyo3::prelude::*;
 /// ±1e30, or not finite, are refused.
 #[pymodule(submodule)]
 pub(crate) mod beam {
+    use pyo3::prelude::*;
+
     #[pymodule_export]
     use super::{
         abcd::{AbcdMatrix, ThickLens},
@@ -40,7 +42,7 @@ pub(crate) mod beam {
         complex_parameter::ComplexBeamParameter,
         cross_section::CrossSection,
         emitter::Emitter,
-        fit::{CausticFit, Estimate, FitError, KnifeEdgeFit},
+        fit::{CausticFit, FitError, KnifeEdgeFit},
         gaussian::GaussianBeam,
         general::{GeneralAstigmaticBeam, SecondMoments},
         lights::{AstigmaticLight, SpotLight},
@@ -51,4 +53,10 @@ pub(crate) mod beam {
         profile::{AngularProfile, LineProfile},
         records::{ApertureHit, Bounds, NextEvent, RayPdf, RaySample, SampledEvent},
     };
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        // A subclass of float, which the stable interface cannot make.
+        module.add("Estimate", super::fit::estimate_class(module.py())?)
+    }
 }

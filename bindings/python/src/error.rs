@@ -1,6 +1,6 @@
 use pyo3::{
     PyErr,
-    exceptions::{PyMemoryError, PyValueError},
+    exceptions::{PyMemoryError, PyTypeError, PyValueError},
     prelude::*,
 };
 use tem00_beam::BeamError;
@@ -24,6 +24,11 @@ pub(crate) fn refused(parameter: &str, message: String) -> PyErr {
         Ok(()) => error.clone_ref(py),
         Err(other) => other,
     })
+}
+
+/// The exception for a class that is called, but made otherwise.
+pub(crate) fn unmade(class: &str, by: &str) -> PyErr {
+    PyTypeError::new_err(format!("{class}(…) makes nothing: it is made by {by}"))
 }
 
 /// The parameter that an exception refuses, if it does.

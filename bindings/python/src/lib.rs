@@ -18,7 +18,7 @@ mod statistics;
 
 use pyo3::prelude::*;
 
-/// Runs the program `tem00` with the arguments of this process; returns the exit code.
+/// Runs the program ``tem00`` with the arguments of this process; returns the exit code.
 #[cfg(not(target_family = "wasm"))]
 #[pyfunction]
 fn main(py: Python<'_>) -> PyResult<u8> {

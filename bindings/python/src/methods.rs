@@ -13,7 +13,8 @@
 ///   checked by this method of [`Numbers`](crate::arrays::Numbers) first. The module's own `map`
 ///   walks through the arrays.
 /// - `make name(x, y);` is a constructor from numbers, the library's function `name`, and `Class(x, y)`
-///   if the name is `new`;
+///   if the name is `new`; `x: wavelength_of_light` has the argument checked by this function first;
+/// - `unmade "from_x or from_y";` has `Class(…)` say how the class is made;
 /// - `made_by name(x, y);` declares `__repr__` and `__reduce__` of what `Class.name(x, y)` makes
 ///   again, where `x` and `y` are methods of the library's object; `Class(x, y)` if the name is `new`.
 ///
@@ -89,30 +90,49 @@ macro_rules! methods {
     };
     (
         @item [$class:ident $this:ident $inner:tt] [$($done:tt)*]
-        $(#[$($attribute:tt)*])* make new($($argument:ident),+); $($items:tt)*
+        $(#[$($attribute:tt)*])* make new($($argument:ident $(: $check:ident)?),+); $($items:tt)*
     ) => {
         methods! { @item [$class $this $inner] [$($done)*]
-            $(#[$($attribute)*])* #[new] make (new)($($argument),+); $($items)*
+            $(#[$($attribute)*])* #[new] make (new)($($argument $(: $check)?),+); $($items)*
         }
     };
     (
         @item [$class:ident $this:ident $inner:tt] [$($done:tt)*]
-        $(#[$($attribute:tt)*])* make $name:ident($($argument:ident),+); $($items:tt)*
+        $(#[$($attribute:tt)*])*
+        make $name:ident($($argument:ident $(: $check:ident)?),+); $($items:tt)*
     ) => {
         methods! { @item [$class $this $inner] [$($done)*]
-            $(#[$($attribute)*])* #[staticmethod] make ($name)($($argument),+); $($items)*
+            $(#[$($attribute)*])* #[staticmethod]
+            make ($name)($($argument $(: $check)?),+); $($items)*
         }
     };
     (
         @item [$class:ident $this:ident $inner:tt] [$($done:tt)*]
-        $(#[$($attribute:tt)*])* make ($name:ident)($($argument:ident),+);
+        $(#[$($attribute:tt)*])* make ($name:ident)($($argument:ident $(: $check:ident)?),+);
         $($items:tt)*
     ) => {
         methods! { @item [$class $this $inner] [
             $($done)*
             $(#[$($attribute)*])*
             fn $name($($argument: f64),+) -> pyo3::PyResult<Self> {
+                $($($crate::arrays::$check(stringify!($argument), $argument)?;)?)+
                 Ok(Self($crate::error::OrRaise::or_raise(physics::$class::$name($($argument),+))?))
+            }
+        ] $($items)* }
+    };
+    (
+        @item [$class:ident $this:ident $inner:tt] [$($done:tt)*]
+        unmade $by:literal; $($items:tt)*
+    ) => {
+        methods! { @item [$class $this $inner] [
+            $($done)*
+            #[new]
+            #[pyo3(signature = (*_arguments, **_keywords), text_signature = None)]
+            fn unmade(
+                _arguments: &pyo3::Bound<'_, pyo3::types::PyTuple>,
+                _keywords: Option<&pyo3::Bound<'_, pyo3::types::PyDict>>,
+            ) -> pyo3::PyResult<pyo3::PyClassInitializer<Self>> {
+                Err($crate::error::unmade(stringify!($class), $by))
             }
         ] $($items)* }
     };

@@ -72,6 +72,64 @@ def test_sizes_above_zero_are_taken(function: Callable[[float], object]) -> None
     function(3.0)
 
 
+BEAM = beam.GaussianBeam.from_waist(650e-9, 1e-4)
+MOMENTS = beam.GeneralAstigmaticBeam.from_astigmatic(
+    beam.AstigmaticBeam.stigmatic(beam.LocatedBeam(BEAM, 0.0))
+).moments_at(0.0)
+COMPLEX = beam.ComplexBeamParameter(0.0, 0.05)
+
+
+def lens(wavelength: float) -> dc.LensData:
+    """Return a lens for light of a wavelength."""
+    return dc.LensData(
+        wavelength=wavelength, focal_length=25e-3, f_number=8.0, surface_to_pupil=0.3, pixel_pitch=3.45e-6
+    )
+
+
+# What takes a wavelength, as a function of it.
+WAVELENGTHS: list[Callable[[float], object]] = [
+    lambda w: beam.GaussianBeam.from_waist(w, 1e-4),
+    lambda w: beam.GaussianBeam.from_divergence(w, 1e-3),
+    lambda w: beam.AstigmaticBeam.from_divergences(w, (1e-3, 2e-3)),
+    lambda w: beam.GeneralAstigmaticBeam.from_moments(w, MOMENTS),
+    lambda w: beam.GeneralAstigmaticBeam.from_complex_curvature(w, [[-20j, 0j], [0j, -20j]]),
+    lambda w: COMPLEX.to_located_beam(w, 1.0),
+    lambda w: beam.CausticFit(w, [0.0, 0.1, 0.2, 0.3], [1e-4, 2.3e-4, 4.3e-4, 6.3e-4]),
+    lens,
+    lambda w: dc.ThickLensData(
+        wavelength=w,
+        focal_length=25e-3,
+        f_number=8.0,
+        pupil_magnification=1.0,
+        focus=dc.Focus.surface_to_pupil(0.3),
+        pixel_pitch=3.45e-6,
+    ),
+    lambda w: dc.PupilDistances(
+        wavelength=w, surface_to_pupil=0.3, pupil_to_image=27e-3, pupil_diameter=3e-3, pixel_pitch=3.45e-6
+    ),
+    lambda w: dc.ImagingGeometry.from_lens(lens(650e-9)).with_wavelength(w),
+    lambda w: dc.Configuration(
+        wavelength=w,
+        point=[0.0, 0.0, 0.0],
+        normal=[0.0, 0.0, 1.0],
+        illumination=dc.Illumination.collimated([0.0, 0.0, 1.0]),
+        camera=dc.CameraFrame.look_at([0.0, 0.0, 0.3], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0]),
+        pupil=[0.0, 0.0, 0.3],
+    ),
+    lambda w: st.ObjectiveSpeckle(w, 1.0, st.LitArea.disc(1e-3)),
+]
+
+
+@pytest.mark.parametrize("function", WAVELENGTHS, ids=range(len(WAVELENGTHS)))
+# Nanometres, micrometres, a frequency, and what is none at all.
+@pytest.mark.parametrize("bad", [650, 0.65, 4.6e14, 1e-9, 0.0, -650e-9, np.nan, np.inf])
+def test_a_wavelength_is_that_of_light_in_metres(function: Callable[[float], object], bad: float) -> None:
+    with pytest.raises(tem00.ParameterError, match="from 10 nm to 1 mm, in metres, got") as caught:
+        function(bad)
+    assert caught.value.parameter == "wavelength"
+    function(633e-9)
+
+
 def test_one_bad_element_refuses_an_array() -> None:
     sizes = np.ones((3, 5))
     sizes[1, 2] = -0.25

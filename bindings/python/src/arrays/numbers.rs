@@ -155,6 +155,19 @@ pub(crate) fn length(name: &'static str, value: f64) -> PyResult<f64> {
     Err(refused(name, message))
 }
 
+/// Returns the wavelength of light in metres.
+///
+/// # Errors
+///
+/// Refuses the argument of this name if it is none, as one in nanometres or micrometres.
+pub(crate) fn wavelength_of_light(name: &'static str, value: f64) -> PyResult<f64> {
+    if (10e-9..=1e-3).contains(&value) {
+        return Ok(value);
+    }
+    let message = format!("{name} must be from 10 nm to 1 mm, in metres, got {value:?} m");
+    Err(refused(name, message))
+}
+
 /// Returns an array of `T` that is aligned and lies in memory row by row: the argument itself where it
 /// is one, else a copy. `kinds` are NumPy's letters for the kinds of numbers that are allowed.
 pub(super) fn row_by_row<'py, T: Element>(

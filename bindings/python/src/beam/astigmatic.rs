@@ -11,7 +11,7 @@ use super::{
     located::LocatedBeam,
 };
 use crate::{
-    arrays::{Array, Numbers},
+    arrays::{Array, Numbers, wavelength_of_light},
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
@@ -59,6 +59,7 @@ impl AstigmaticBeam {
     ///     Far-field half-angles (1/e²) along x and y, in radians, in (0, 0.5].
     #[staticmethod]
     fn from_divergences(wavelength: f64, divergences: [f64; 2]) -> PyResult<Self> {
+        let wavelength = wavelength_of_light("wavelength", wavelength)?;
         let beam = physics::AstigmaticBeam::from_divergences(wavelength, divergences);
         Ok(Self(beam.or_raise_as(&[("divergence", "divergences")])?))
     }

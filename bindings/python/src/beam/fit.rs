@@ -8,7 +8,7 @@ use super::{
     located::LocatedBeam,
 };
 use crate::{
-    arrays::{Components, Numbers},
+    arrays::{Components, Numbers, wavelength_of_light},
     error::{OrRaise, refused},
 };
 
@@ -19,40 +19,28 @@ pyo3::create_exception!(
     "Measured data that are valid each, but do not determine a beam together."
 );
 
-/// A fitted value and its standard error, in the same unit.
-#[pyclass(frozen, eq, get_all, module = "tem00.beam")]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Estimate {
-    /// The value that fits best.
-    value: f64,
-    /// The standard deviation of the value over repeated measurements, to first order.
-    standard_error: f64,
-}
-
-#[pymethods]
-impl Estimate {
-    #[new]
-    fn new(value: f64, standard_error: f64) -> Self {
-        Self {
-            value,
-            standard_error,
-        }
-    }
-
-    fn __repr__(&self) -> String {
-        let (value, error) = self.__getnewargs__();
-        format!("Estimate(value={value:?}, standard_error={error:?})")
-    }
-
-    fn __getnewargs__(&self) -> (f64, f64) {
-        (self.value, self.standard_error)
-    }
-}
+/// A fitted value and its standard error, in the same unit: `tem00._estimate.Estimate` in Python, a number.
+pub(crate) struct Estimate(physics::measurement::Estimate);
 
 impl From<physics::measurement::Estimate> for Estimate {
     fn from(estimate: physics::measurement::Estimate) -> Self {
-        Self::new(estimate.value, estimate.standard_error)
+        Self(estimate)
     }
+}
+
+impl<'py> IntoPyObject<'py> for Estimate {
+    type Target = PyAny;
+    type Output = Bound<'py, PyAny>;
+    type Error = PyErr;
+
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Self::Output> {
+        estimate_class(py)?.call1((self.0.value, self.0.standard_error))
+    }
+}
+
+/// The class of fitted values.
+pub(super) fn estimate_class(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+    py.import("tem00._estimate")?.getattr("Estimate")
 }
 
 /// A Gaussian beam fitted to its radius measured at several positions: its caustic.
@@ -110,6 +98,7 @@ impl CausticFit {
         radii: Components<'_>,
         errors: Errors<'_>,
     ) -> PyResult<Self> {
+        let wavelength = wavelength_of_light("wavelength", wavelength)?;
         let (positions, radii) = (list("positions", &positions)?, list("radii", &radii)?);
         let known = errors.known(radii.len())?;
         let errors = match (&errors, known) {
@@ -133,9 +122,12 @@ impl CausticFit {
     }
 
     fn __repr__(&self) -> String {
-        let [waist, position, m_squared] =
-            [self.waist_radius(), self.waist_position(), self.m_squared()]
-                .map(|estimate| format!("{:?} ± {:?}", estimate.value, estimate.standard_error));
+        let [waist, position, m_squared] = [
+            self.0.waist_radius(),
+            self.0.waist_position(),
+            self.0.m_squared(),
+        ]
+        .map(|estimate| format!("{:?} ± {:?}", estimate.value, estimate.standard_error));
         format!("<CausticFit: waist radius {waist} m, waist position {position} m, M² {m_squared}>")
     }
 }
@@ -223,7 +215,7 @@ impl KnifeEdgeFit {
     }
 
     fn __repr__(&self) -> String {
-        let [radius, centre, power] = [self.radius(), self.centre(), self.power()]
+        let [radius, centre, power] = [self.0.radius(), self.0.centre(), self.0.power()]
             .map(|estimate| format!("{:?} ± {:?}", estimate.value, estimate.standard_error));
         format!("<KnifeEdgeFit: radius {radius} m, centre {centre} m, power {power}>")
     }

@@ -10,6 +10,7 @@ use super::{
 };
 use crate::{
     arrays::{Array, Numbers, Values},
+    error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
 
@@ -118,15 +119,18 @@ impl GaussianBeam {
         by_constructor::<Self>(py, "_restored", fields)
     }
 
-    /// Constructor that pickle calls.
+    /// Constructor that pickle calls, and Mitsuba's plugin, whose scenes have units of their own.
     #[staticmethod]
     fn _restored(wavelength: f64, waist_radius: f64, m_squared: f64) -> PyResult<Self> {
-        Self::from_waist(wavelength, waist_radius)?.with_m_squared(m_squared)
+        let beam = physics::GaussianBeam::from_waist(wavelength, waist_radius).or_raise()?;
+        Self(beam).with_m_squared(m_squared)
     }
 }
 
 methods! {
     impl GaussianBeam as this: this.0;
+
+    unmade "from_waist or from_divergence";
 
     /// Return the diffraction-limited beam (M² = 1) of a wavelength and a waist radius.
     ///
@@ -136,7 +140,7 @@ methods! {
     ///     Wavelength in the medium the beam travels in, in metres.
     /// waist_radius : float
     ///     Radius of the waist (1/e²), in metres, at least ``2 λ / π``.
-    make from_waist(wavelength, waist_radius);
+    make from_waist(wavelength: wavelength_of_light, waist_radius);
 
     /// Return the diffraction-limited beam (M² = 1) of a wavelength and a divergence.
     ///
@@ -149,7 +153,7 @@ methods! {
     ///     Wavelength in the medium the beam travels in, in metres.
     /// divergence : float
     ///     Far-field half-angle (1/e²), in radians, in (0, 0.5].
-    make from_divergence(wavelength, divergence);
+    make from_divergence(wavelength: wavelength_of_light, divergence);
 
     /// Wavelength in the medium the beam travels in, in metres.
     get wavelength -> f64;

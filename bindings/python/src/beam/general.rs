@@ -17,7 +17,7 @@ use super::{
     rows::array_of,
 };
 use crate::{
-    arrays::{Array, Matrix, Numbers, Vector},
+    arrays::{Array, Matrix, Numbers, Vector, wavelength_of_light},
     error::OrRaise,
 };
 
@@ -110,6 +110,7 @@ impl GeneralAstigmaticBeam {
     ///     Moments that light of this wavelength can have: M² is at least 1 in both modes.
     #[staticmethod]
     fn from_moments(wavelength: f64, moments: &SecondMoments) -> PyResult<Self> {
+        let wavelength = wavelength_of_light("wavelength", wavelength)?;
         let beam = physics::GeneralAstigmaticBeam::from_moments(wavelength, &moments.0);
         Ok(Self(beam.or_raise()?))
     }
@@ -124,6 +125,7 @@ impl GeneralAstigmaticBeam {
     ///     Complex curvature, in 1/m; symmetric, with a negative definite imaginary part.
     #[staticmethod]
     fn from_complex_curvature(wavelength: f64, curvature: [[Complex; 2]; 2]) -> PyResult<Self> {
+        let wavelength = wavelength_of_light("wavelength", wavelength)?;
         let tensor = curvature.map(|row| row.map(|Complex(entry)| entry));
         let beam = physics::GeneralAstigmaticBeam::from_complex_curvature(wavelength, tensor);
         Ok(Self(beam.or_raise()?))
@@ -261,6 +263,8 @@ impl GeneralAstigmaticBeam {
 
 methods! {
     impl GeneralAstigmaticBeam as this: this.0;
+
+    unmade "from_astigmatic, from_moments or from_complex_curvature";
 
     /// Covariance of the positions of all rays of one slope, in m², shape (2, 2).
     get position_spread -> Matrix<2>;

@@ -102,6 +102,8 @@ impl SpotLight {
 methods! {
     impl SpotLight as this: this.0;
 
+    unmade "place or place_astigmatic";
+
     /// Squared beam radius along x; its ``z0`` is the distance from the aperture to the waist.
     get x -> Axis = Axis(this.0.x);
 
@@ -171,6 +173,8 @@ impl AstigmaticLight {
 
 methods! {
     impl AstigmaticLight as this: this.0;
+
+    unmade "place";
 
     /// K: mean position on the aperture plane per slope, in metres, shape (2, 2).
     field position_per_slope -> Matrix<2>;

@@ -81,6 +81,8 @@ impl LineLight {
 methods! {
     impl LineLight as this: this.0;
 
+    unmade "place";
+
     /// The variable of the profile: 0 for tan θ, 1 for θ, 2 for sin θ, 3 for a table kept elsewhere.
     get variable -> u8 = match this.0.variable {
         // One of four codes, as `Rows::check_fan` and placing make sure.
@@ -172,6 +174,8 @@ impl TabulatedLineLight {
 
 methods! {
     impl TabulatedLineLight as this: this.0;
+
+    unmade "place";
 
     /// The profile along the fan.
     get profile -> AngularProfile = AngularProfile(this.profile.clone());

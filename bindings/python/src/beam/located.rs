@@ -10,6 +10,7 @@ use super::{
     gaussian::GaussianBeam,
 };
 use crate::{
+    arrays::wavelength_of_light,
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
@@ -116,6 +117,7 @@ impl ComplexBeamParameter {
     /// m_squared : float
     ///     Beam quality factor, at least 1.
     fn to_located_beam(&self, wavelength: f64, m_squared: f64) -> PyResult<LocatedBeam> {
+        let wavelength = wavelength_of_light("wavelength", wavelength)?;
         let beam = self.0.to_located_beam(wavelength, m_squared);
         Ok(LocatedBeam(beam.or_raise()?))
     }

@@ -90,6 +90,8 @@ impl Axis {
 methods! {
     impl Axis as this: this.0;
 
+    unmade "SpotLight.x and SpotLight.y";
+
     /// Squared waist radius, in m².
     field w0_sq -> f64;
 
@@ -123,6 +125,8 @@ impl Ellipse {
 
 methods! {
     impl Ellipse as this: this.0;
+
+    unmade "AstigmaticLight.position and AstigmaticLight.slope";
 
     /// Element in the first row and column.
     field xx -> f64;

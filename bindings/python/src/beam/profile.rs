@@ -95,6 +95,12 @@ impl LineProfile {
     }
 }
 
+methods! {
+    impl LineProfile as this: this.0;
+
+    unmade "gaussian_tan, gaussian_angle, gaussian_sin, uniform_tan, uniform_angle, powell or tabulated";
+}
+
 impl LineProfile {
     /// The name of the static method that makes the profile, and its argument as text.
     fn constructor(&self) -> (&'static str, String) {

@@ -12,19 +12,19 @@ use crate::{
 ///
 /// Parameters
 /// ----------
-/// `to_source`, `to_pupil`, normal : `array_like`, shape (3,)
+/// to_source, to_pupil, normal : array_like, shape (3,)
 ///     Directions from the surface, of any length.
-/// `sin_aperture` : float
+/// sin_aperture : float
 ///     Half the diameter of the pupil over its distance.
 /// wavelength : float
 ///     Wavelength in metres.
-/// `rms_height` : float
+/// rms_height : float
 ///     Root mean square height of the relief that is finer than the cell, in metres.
-/// `correlation_length` : float
+/// correlation_length : float
 ///     Distance in metres at which the correlation of these heights falls to 1/e.
 /// defocus : float
 ///     Distance of the surface from the plane of focus, in metres.
-/// `source_half_angle` : float
+/// source_half_angle : float
 ///     Half-angle in radians, at most 0.3, of the disc from which the light reaches the surface, seen from there.
 #[pyclass(frozen, eq, module = "tem00.coherence")]
 #[derive(Clone, Debug, PartialEq)]
@@ -62,6 +62,14 @@ impl ResolutionCell {
         let extent = physics::SourceExtent::disc(source_half_angle);
         let cell = cell.with_defocus(defocus).or_raise()?;
         Ok(Self(cell.with_source_extent(extent.or_raise()?)))
+    }
+
+    fn __repr__(&self) -> String {
+        let (size, tilt, spread) = (self.0.speckle_size(), self.0.tilt(), self.0.path_spread());
+        format!(
+            "<ResolutionCell: speckle_size={size:?}, tilt={:?}, path_spread={spread:?}>",
+            tilt.to_array()
+        )
     }
 
     /// Path per length on the object by the tilt of the cell, across the line of sight, of shape (3,).

@@ -26,6 +26,11 @@ impl SpectralLine {
         Self::shaped(wavelength, linewidth, LineShape::Gaussian)
     }
 
+    fn __repr__(&self) -> String {
+        let (wavelength, length) = (self.0.wavelength(), self.0.coherence_length());
+        format!("<SpectralLine: wavelength={wavelength:?}, coherence_length={length:?}>")
+    }
+
     /// Return a Lorentzian line: long wings, as of a single mode of a diode.
     #[staticmethod]
     fn lorentzian(wavelength: f64, linewidth: f64) -> PyResult<Self> {
@@ -38,7 +43,7 @@ impl SpectralLine {
         Self::shaped(wavelength, linewidth, LineShape::Rectangular)
     }
 
-    /// Return so many equal peaks without a width, the first and the last `span` apart, in metres.
+    /// Return so many equal peaks without a width, the first and the last ``span`` apart, in metres.
     #[staticmethod]
     fn comb(wavelength: f64, span: f64, count: Whole<'_>) -> PyResult<Self> {
         let line = physics::SpectralLine::comb(wavelength, span, count.unsigned("count")?);
@@ -49,9 +54,9 @@ impl SpectralLine {
     ///
     /// Parameters
     /// ----------
-    /// wavelengths : `array_like`, shape (n,)
+    /// wavelengths : array_like, shape (n,)
     ///     Wavelengths in metres.
-    /// powers : `array_like`, shape (n,)
+    /// powers : array_like, shape (n,)
     ///     The power of each, in any unit.
     #[staticmethod]
     fn from_peaks(wavelengths: Components<'_>, powers: Components<'_>) -> PyResult<Self> {
@@ -95,7 +100,7 @@ methods! {
     ///
     /// Parameters
     /// ----------
-    /// path : float or array
+    /// path : float or array_like
     ///     Path difference in metres.
     map squared_coherence(path);
 
@@ -107,7 +112,7 @@ methods! {
     ///
     /// Parameters
     /// ----------
-    /// uniform : float or array
+    /// uniform : float or array_like
     ///     Random numbers from 0 to 1.
     map draw(uniform);
 }

@@ -11,13 +11,13 @@ use crate::error::OrRaise;
 /// ----------
 /// multiple : float
 ///     The fraction of the multiple light, from 0 to 1.
-/// `within_single` : float
+/// within_single : float
 ///     The squared contrast of the polarised single light alone, from 0 to 1.
-/// `with_single` : float
-///     What multiple light shares with single light, from 0 to 1: the mean of `SpectralLine.squared_coherence` over the
+/// with_single : float
+///     What multiple light shares with single light, from 0 to 1: the mean of ``SpectralLine.squared_coherence`` over the
 ///     delays of the multiple light, by its energy.
-/// `within_multiple` : float
-///     What multiple light shares with itself, from 0 to 1: the mean of `SpectralLine.squared_coherence` over the
+/// within_multiple : float
+///     What multiple light shares with itself, from 0 to 1: the mean of ``SpectralLine.squared_coherence`` over the
 ///     differences of two delays.
 /// polarisation : (float, float)
 ///     Degrees of polarisation of the single and of the multiple light, from 0 to 1.
@@ -48,7 +48,7 @@ pub(super) fn mixed_contrast(
 ///
 /// Parameters
 /// ----------
-/// `relative_aperture` : float
+/// relative_aperture : float
 ///     The sine of the half-angle of the lit part, seen from the cell, over that of the lens.
 #[pyfunction]
 pub(super) fn cascade_variance(relative_aperture: f64) -> PyResult<f64> {

@@ -8,27 +8,27 @@ use super::{
     vectors::{Array2, array2, shown, vec2, vec3},
 };
 use crate::{
-    arrays::{Components, Vector},
+    arrays::{Components, Vector, wavelength_of_light},
     error::OrRaise,
 };
 
 /// A point of a rough surface, its light and its camera, all in the world: one state of a scene.
 ///
-/// One state is made with `new`, the other from it, by moving the bodies or changing the light.
+/// One state is made with ``Configuration(…)``, the other from it, by moving the bodies or changing the light.
 ///
 /// Parameters
 /// ----------
 /// wavelength : float
 ///     Vacuum wavelength of the light in metres.
-/// point : array of shape (3,)
+/// point : array_like, shape (3,)
 ///     Position of the surface point in metres.
-/// normal : array of shape (3,)
+/// normal : array_like, shape (3,)
 ///     Normal of the surface, of any length and to either side.
 /// illumination : Illumination
 ///     The light on the surface.
 /// camera : CameraFrame
 ///     Orientation of the camera.
-/// pupil : array of shape (3,)
+/// pupil : array_like, shape (3,)
 ///     Position of the centre of the entrance pupil in metres.
 #[pyclass(frozen, eq, module = "tem00.decorrelation")]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +46,7 @@ impl Configuration {
         camera: PyRef<'_, CameraFrame>,
         pupil: Components<'_>,
     ) -> PyResult<Self> {
+        let wavelength = wavelength_of_light("wavelength", wavelength)?;
         let state = physics::Configuration::new(physics::ConfigurationData {
             wavelength,
             point: vec3("point", &point)?,
@@ -82,13 +83,13 @@ impl Configuration {
     /// ----------
     /// after : Configuration
     ///     The state after the change.
-    /// pupil_point : array of shape (2,)
+    /// pupil_point : array_like, shape (2,)
     ///     Components along b1 and b2 from the centre of the pupil, in metres.
     ///
     /// Returns
     /// -------
-    /// array of shape (2,) or None
-    ///     The same after the change; `None` where there is no such point.
+    /// ndarray, shape (2,) or None
+    ///     The same after the change; ``None`` where there is no such point.
     fn pupil_point_after<'py>(
         &self,
         py: Python<'py>,
@@ -107,7 +108,7 @@ impl Configuration {
     /// Returns
     /// -------
     /// float or None
-    ///     Radians per metre of height; `None` where `pupil_point_after` has no point.
+    ///     Radians per metre of height; ``None`` where ``pupil_point_after`` has no point.
     fn height_phase_change(&self, after: PyRef<'_, Self>) -> Option<f64> {
         self.0.height_phase_change(&after.0)
     }

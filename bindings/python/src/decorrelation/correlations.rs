@@ -54,13 +54,15 @@ impl CorrelationLaw {
 methods! {
     impl CorrelationLaw as this: this.0;
 
+    unmade "product, at_image_displacement or at_peak";
+
     /// Return the intensity correlation left, in [0, 1].
     ///
     /// Parameters
     /// ----------
-    /// pupil_shift : float or array
+    /// pupil_shift : float or array_like
     ///     Displacement across the pupil in pupil diameters.
-    /// axial_shift : float or array
+    /// axial_shift : float or array_like
     ///     Displacement along the axis in axial decorrelation lengths.
     map correlation(pupil_shift, axial_shift);
 }
@@ -70,7 +72,7 @@ functions! {
     ///
     /// Parameters
     /// ----------
-    /// shift : float or array
+    /// shift : float or array_like
     ///     Pupil displacement in pupil diameters.
     map pupil_overlap_correlation(shift);
 
@@ -78,7 +80,7 @@ functions! {
     ///
     /// Parameters
     /// ----------
-    /// shift : float or array
+    /// shift : float or array_like
     ///     Axial displacement in axial decorrelation lengths.
     map axial_correlation(shift);
 
@@ -86,9 +88,9 @@ functions! {
     ///
     /// Parameters
     /// ----------
-    /// pupil_shift : float or array
+    /// pupil_shift : float or array_like
     ///     Displacement across the pupil in pupil diameters.
-    /// axial_shift : float or array
+    /// axial_shift : float or array_like
     ///     Displacement along the axis in axial decorrelation lengths.
     map correlation(pupil_shift, axial_shift);
 }
@@ -97,7 +99,7 @@ functions! {
 ///
 /// Parameters
 /// ----------
-/// correlation : float or array
+/// correlation : float or array_like
 ///     Intensity correlation, from 0 to 1.
 #[pyfunction]
 pub(super) fn equivalent_pupil_shift<'py>(
@@ -117,7 +119,7 @@ pub(super) fn equivalent_pupil_shift<'py>(
 ///
 /// Parameters
 /// ----------
-/// correlation : float or array
+/// correlation : float or array_like
 ///     Intensity correlation, from 0 to 1.
 #[pyfunction]
 pub(super) fn equivalent_axial_shift<'py>(
@@ -147,7 +149,7 @@ pub(super) fn equivalent_axial_shift<'py>(
 /// Returns
 /// -------
 /// float or None
-///     `None` if the motion leaves the pattern as it is.
+///     ``None`` if the motion leaves the pattern as it is.
 #[pyfunction]
 pub(super) fn motion_multiple(
     correlation: f64,

@@ -20,7 +20,7 @@ use crate::{
 ///     The lens, its pupil and the sensor.
 /// camera : CameraFrame
 ///     The axes of the camera.
-/// pupil_centre : array of shape (3,)
+/// pupil_centre : array_like, shape (3,)
 ///     Centre of the pupil in world coordinates, in metres.
 /// orientation : {"screen_upright", "sensor_inverted"}
 ///     Which way up image displacements are counted.
@@ -119,7 +119,7 @@ impl FieldLight {
     ///
     /// Parameters
     /// ----------
-    /// curvature : six floats or arrays
+    /// curvature : six floats or array_like
     ///     The components xx, xy, xz, yy, yz, zz, which broadcast with the points.
     #[staticmethod]
     fn curvature(curvature: [Bound<'_, PyAny>; 6]) -> PyResult<Self> {
@@ -138,6 +138,12 @@ impl FieldLight {
             Light::Curvature(_) => "<FieldLight: curvature tensors>".to_owned(),
         }
     }
+}
+
+methods! {
+    impl FieldLight as this: this.0;
+
+    unmade "collimated, point_source or curvature";
 }
 
 /// Effect of motions on the speckle at many surface points.
@@ -173,7 +179,7 @@ impl FieldSlices {
     }
 
     /// Correlation of intensity with the pattern before, in [0, 1]; the slice to look up
-    /// is `SpeckleStack.coordinate_of` of it.
+    /// is ``SpeckleStack.coordinate_of`` of it.
     #[getter]
     fn correlation(&self, py: Python<'_>) -> Field {
         self.0[4].clone_ref(py)
@@ -193,11 +199,17 @@ impl FieldSlices {
     }
 }
 
+methods! {
+    impl FieldSlices as this: this.0;
+
+    unmade "MotionField";
+}
+
 /// Effect of motions on the speckle at many surface points, such as those behind the pixels.
 ///
 /// Parameters
 /// ----------
-/// setup : `FieldSetup`
+/// setup : FieldSetup
 ///     What all points share; the surface moves alone.
 #[pyclass(frozen, eq, module = "tem00.decorrelation")]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -229,11 +241,11 @@ impl MotionField {
     ///
     /// Parameters
     /// ----------
-    /// position : three floats or arrays
+    /// position : three floats or array_like
     ///     Positions x, y, z in the reference state, in metres.
-    /// normal : three floats or arrays
+    /// normal : three floats or array_like
     ///     Surface normals of any length, to either side.
-    /// motion : three floats or arrays
+    /// motion : three floats or array_like
     ///     Translations of the surface since the reference state, in metres.
     /// light : FieldLight
     ///     The light on the points.

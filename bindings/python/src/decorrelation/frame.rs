@@ -32,9 +32,9 @@ impl CameraFrame {
     ///
     /// Parameters
     /// ----------
-    /// position, target : array of shape (3,)
+    /// position, target : array_like, shape (3,)
     ///     Where the camera stands and where it looks, in metres.
-    /// up : array of shape (3,)
+    /// up : array_like, shape (3,)
     ///     Upward direction of any length, not along the view.
     #[staticmethod]
     fn look_at(
@@ -61,6 +61,8 @@ impl CameraFrame {
 methods! {
     impl CameraFrame as this: this.0;
 
+    unmade "look_at or from_axes";
+
     /// b1, the axis of the pupil plane to the right in the image, of shape (3,).
     get right -> Vector<3>;
 
@@ -77,7 +79,7 @@ methods! {
 /// ----------
 /// camera : CameraFrame
 ///     Orientation of the camera.
-/// to_pupil : array of shape (3,)
+/// to_pupil : array_like, shape (3,)
 ///     Vector from the surface point to the centre of the pupil, in metres.
 #[pyclass(frozen, eq, module = "tem00.decorrelation")]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,19 +97,19 @@ impl LineOfSight {
     ///
     /// Parameters
     /// ----------
-    /// vector : array of shape (3,)
+    /// vector : array_like, shape (3,)
     ///     Vector of the world.
     ///
     /// Returns
     /// -------
-    /// array of shape (2,)
+    /// ndarray, shape (2,)
     ///     Components in the unit of the vector.
     fn project<'py>(&self, py: Python<'py>, vector: Components<'py>) -> PyResult<Array2<'py>> {
         let projected = self.0.project(vec3("vector", &vector)?);
         array2(py, "vector", projected)
     }
 
-    fn __repr__(&self) -> String {
+    pub(super) fn __repr__(&self) -> String {
         let direction = shown(self.0.direction());
         format!(
             "<LineOfSight: direction={direction}, distance={:?}>",

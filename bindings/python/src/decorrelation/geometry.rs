@@ -3,7 +3,7 @@ use tem00_decorrelation::{self as physics, DVec2};
 
 use super::lens::{LensData, PupilDistances, ThickLensData};
 use crate::{
-    arrays::{Numbers, Values, map, map_many},
+    arrays::{Numbers, Values, map, map_many, wavelength_of_light},
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
@@ -78,6 +78,7 @@ impl ImagingGeometry {
 
     /// Return the geometry of the same camera in light of another wavelength, in metres.
     fn with_wavelength(&self, wavelength: f64) -> PyResult<Self> {
+        let wavelength = wavelength_of_light("wavelength", wavelength)?;
         let changed = self.geometry.with_wavelength(wavelength);
         let geometry = changed.or_raise_renamed(&["pupil_diameter"], "wavelength")?;
         let made = self.made.with_wavelength(wavelength);
@@ -88,9 +89,9 @@ impl ImagingGeometry {
     ///
     /// Parameters
     /// ----------
-    /// pixel : pair of floats or arrays
+    /// pixel : pair of float or array_like
     ///     Place in pixels, to the right and down as rows count, from any origin.
-    /// image_displacement : pair of floats or arrays
+    /// image_displacement : pair of float or array_like
     ///     Motion of the speckle since the reference state, in metres on the sensor to the right
     ///     and up.
     /// pattern_speckle_size : float
@@ -98,7 +99,7 @@ impl ImagingGeometry {
     ///
     /// Returns
     /// -------
-    /// pair of floats or arrays
+    /// (float, float) or (ndarray, ndarray)
     ///     Coordinate in samples, to the right and up, not wrapped, in the common shape.
     fn pattern_coordinate<'py>(
         &self,
@@ -138,6 +139,8 @@ impl ImagingGeometry {
 
 methods! {
     impl ImagingGeometry as this: this.geometry;
+
+    unmade "from_lens, from_thick_lens or from_distances";
 
     /// Vacuum wavelength in metres.
     get wavelength -> f64;
@@ -200,7 +203,7 @@ methods! {
     ///
     /// Parameters
     /// ----------
-    /// depth : float or array
+    /// depth : float or array_like
     ///     Depth in metres, positive.
     map defocus_at(depth: positive);
 }

@@ -1,9 +1,9 @@
 use pyo3::prelude::*;
-use tem00_decorrelation as physics;
+use tem00_decorrelation::{self as physics, DVec3};
 
 use super::{
     rigid::RigidMotion,
-    vectors::{Array3, array3, vec3},
+    vectors::{Array3, array3, shown, vec3},
     wavefront::Wavefront,
 };
 use crate::{arrays::Components, error::OrRaise};
@@ -40,7 +40,7 @@ impl Illumination {
 
     /// Return the unit vector of shape (3,) from a point, in metres, to the source.
     ///
-    /// `None` in a focus or at the source itself.
+    /// ``None`` in a focus or at the source itself.
     fn direction_from<'py>(
         &self,
         py: Python<'py>,
@@ -50,8 +50,24 @@ impl Illumination {
         Ok(direction.map(|direction| array3(py, direction)))
     }
 
+    fn __repr__(&self) -> String {
+        match self.0.direction_from(DVec3::ZERO) {
+            Some(direction) => format!(
+                "<Illumination: from {} as seen from the origin>",
+                shown(direction)
+            ),
+            None => "<Illumination: from the origin>".to_owned(),
+        }
+    }
+
     /// Return the light after its source has moved.
     fn moved(&self, motion: PyRef<'_, RigidMotion>) -> Self {
         Self(self.0.moved(&motion.0))
     }
+}
+
+methods! {
+    impl Illumination as this: this.0;
+
+    unmade "collimated, point_source or near";
 }

@@ -1,7 +1,10 @@
 use pyo3::{prelude::*, types::PyDict};
 use tem00_decorrelation as physics;
 
-use crate::pickling::{Recipe, by_constructor};
+use crate::{
+    arrays::wavelength_of_light,
+    pickling::{Recipe, by_constructor},
+};
 
 /// Result of `__getnewargs_ex__`: no positional arguments, and those with names.
 type Keywords<'py> = ((), Bound<'py, PyDict>);
@@ -52,14 +55,14 @@ impl LensData {
         f_number: f64,
         surface_to_pupil: f64,
         pixel_pitch: f64,
-    ) -> Self {
-        Self {
-            wavelength,
+    ) -> PyResult<Self> {
+        Ok(Self {
+            wavelength: wavelength_of_light("wavelength", wavelength)?,
             focal_length,
             f_number,
             surface_to_pupil,
             pixel_pitch,
-        }
+        })
     }
 
     pub(super) fn __repr__(&self) -> String {
@@ -138,6 +141,12 @@ impl Focus {
     }
 }
 
+methods! {
+    impl Focus as this: this.0;
+
+    unmade "magnification, surface_to_principal_plane or surface_to_pupil";
+}
+
 /// A lens of many elements in air; all lengths in metres.
 ///
 /// Parameters
@@ -191,15 +200,15 @@ impl ThickLensData {
         pupil_magnification: f64,
         focus: PyRef<'_, Focus>,
         pixel_pitch: f64,
-    ) -> Self {
-        Self {
-            wavelength,
+    ) -> PyResult<Self> {
+        Ok(Self {
+            wavelength: wavelength_of_light("wavelength", wavelength)?,
             focal_length,
             f_number,
             pupil_magnification,
             focus: *focus,
             pixel_pitch,
-        }
+        })
     }
 
     pub(super) fn __repr__(&self) -> String {
@@ -279,14 +288,14 @@ impl PupilDistances {
         pupil_to_image: f64,
         pupil_diameter: f64,
         pixel_pitch: f64,
-    ) -> Self {
-        Self {
-            wavelength,
+    ) -> PyResult<Self> {
+        Ok(Self {
+            wavelength: wavelength_of_light("wavelength", wavelength)?,
             surface_to_pupil,
             pupil_to_image,
             pupil_diameter,
             pixel_pitch,
-        }
+        })
     }
 
     pub(super) fn __repr__(&self) -> String {

@@ -16,7 +16,7 @@ use crate::{
 ///
 /// Parameters
 /// ----------
-/// surface, camera, source : array of shape (3,), optional
+/// surface, camera, source : array_like, shape (3,), optional
 ///     Translations of each; what is left out stands still.
 #[pyclass(frozen, eq, module = "tem00.decorrelation")]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,7 +80,7 @@ methods! {
 /// ----------
 /// sight : LineOfSight
 ///     Line of sight to the point.
-/// normal : array of shape (3,)
+/// normal : array_like, shape (3,)
 ///     Normal of the surface, of any length and to either side.
 /// wavefront : Wavefront
 ///     The light on the point.
@@ -101,6 +101,13 @@ impl SurfacePoint {
         Ok(Self(point.or_raise()?))
     }
 
+    fn __repr__(&self) -> String {
+        let sight = LineOfSight(*self.0.sight()).__repr__();
+        let normal = shown(self.0.normal());
+        let wavefront = Wavefront(*self.0.wavefront()).__repr__();
+        format!("<SurfacePoint: sight={sight}, normal={normal}, wavefront={wavefront}>")
+    }
+
     /// Return how far the speckle moves in the image, in metres on the sensor.
     ///
     /// Parameters
@@ -114,7 +121,7 @@ impl SurfacePoint {
     ///
     /// Returns
     /// -------
-    /// array of shape (2,)
+    /// ndarray, shape (2,)
     ///     Components along b1 and b2.
     fn image_displacement<'py>(
         &self,
@@ -134,8 +141,8 @@ impl SurfacePoint {
     ///
     /// Returns
     /// -------
-    /// array of shape (2,) or None
-    ///     Components along b1 and b2; `None` where the surface is seen edge-on under a curved wave,
+    /// ndarray, shape (2,) or None
+    ///     Components along b1 and b2; ``None`` where the surface is seen edge-on under a curved wave,
     ///     and the pattern counts as decorrelated.
     fn pupil_displacement<'py>(
         &self,

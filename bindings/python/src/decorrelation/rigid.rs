@@ -12,9 +12,9 @@ use crate::{
 ///
 /// Parameters
 /// ----------
-/// rotation : array of shape (3, 3)
+/// rotation : array_like, shape (3, 3)
 ///     Rotation matrix.
-/// translation : array of shape (3,)
+/// translation : array_like, shape (3,)
 ///     Translation in metres.
 #[pyclass(frozen, eq, module = "tem00.decorrelation")]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,9 +46,9 @@ impl RigidMotion {
     ///
     /// Parameters
     /// ----------
-    /// pivot : array of shape (3,)
+    /// pivot : array_like, shape (3,)
     ///     A point on the axis, in metres.
-    /// axis : array of shape (3,)
+    /// axis : array_like, shape (3,)
     ///     Direction of the axis, of any length.
     /// angle : float
     ///     Angle in radians, right-handed.

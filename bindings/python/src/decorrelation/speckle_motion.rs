@@ -83,7 +83,7 @@ impl SpeckleMotion {
 
     /// Motion of the speckle field across the pupil along b1 and b2, in metres.
     ///
-    /// `None` if it left the pupil in a grazing view.
+    /// ``None`` if it left the pupil in a grazing view.
     #[getter]
     fn pupil_displacement<'py>(&self, py: Python<'py>) -> PyResult<Option<Array2<'py>>> {
         self.0
@@ -109,8 +109,9 @@ methods! {
 
     /// Correlation of intensity with the pattern before, in [0, 1].
     ///
-    /// It is that of the pattern looked up at the `speckle_displacement`: by the law
-    /// `CorrelationLaw.at_image_displacement()` in `new`, `CorrelationLaw.at_peak()` in `between`.
+    /// It is that of the pattern looked up at the ``speckle_displacement``: by the law
+    /// ``CorrelationLaw.at_image_displacement()`` of ``SpeckleMotion(…)``,
+    /// ``CorrelationLaw.at_peak()`` of ``between``.
     field correlation -> f64;
 }
 

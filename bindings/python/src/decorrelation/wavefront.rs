@@ -28,7 +28,7 @@ impl Wavefront {
     ///
     /// Parameters
     /// ----------
-    /// direction_to_source : array of shape (3,)
+    /// direction_to_source : array_like, shape (3,)
     ///     Direction to the source, of any length.
     /// curvature : float
     ///     Curvature in 1/m.
@@ -43,9 +43,9 @@ impl Wavefront {
     ///
     /// Parameters
     /// ----------
-    /// direction_to_source : array of shape (3,)
+    /// direction_to_source : array_like, shape (3,)
     ///     Direction to the source, of any length.
-    /// axis : array of shape (3,)
+    /// axis : array_like, shape (3,)
     ///     Principal axis of any length; only its part across the direction counts.
     /// curvature_along, curvature_across : float
     ///     Curvatures along and across that axis, in 1/m.
@@ -69,9 +69,9 @@ impl Wavefront {
     ///
     /// Parameters
     /// ----------
-    /// direction_to_source : array of shape (3,)
+    /// direction_to_source : array_like, shape (3,)
     ///     Direction to the source, of any length.
-    /// curvature : array of shape (3, 3)
+    /// curvature : array_like, shape (3, 3)
     ///     Symmetric curvature tensor in 1/m; only its part across the direction counts.
     #[staticmethod]
     fn from_tensor(direction_to_source: Components<'_>, curvature: Table<'_>) -> PyResult<Self> {
@@ -84,11 +84,11 @@ impl Wavefront {
     ///
     /// Parameters
     /// ----------
-    /// direction_to_source : array of shape (3,)
+    /// direction_to_source : array_like, shape (3,)
     ///     Direction to the source, of any length.
-    /// dp : array of shape (2, 3)
+    /// dp : array_like, shape (2, 3)
     ///     Differentials of the surface point by two parameters, in metres.
-    /// dl : array of shape (2, 3)
+    /// dl : array_like, shape (2, 3)
     ///     Differentials of the unit vector to the source by the same parameters.
     #[staticmethod]
     fn from_differentials(
@@ -106,13 +106,13 @@ impl Wavefront {
     ///
     /// Parameters
     /// ----------
-    /// offset : array of shape (3,)
+    /// offset : array_like, shape (3,)
     ///     Distance from the point, in metres.
     ///
     /// Returns
     /// -------
-    /// array of shape (3,) or None
-    ///     `None` in a focus, where there is no direction.
+    /// ndarray, shape (3,) or None
+    ///     ``None`` in a focus, where there is no direction.
     fn direction_from<'py>(
         &self,
         py: Python<'py>,
@@ -122,7 +122,7 @@ impl Wavefront {
         Ok(direction.map(|direction| array3(py, direction)))
     }
 
-    fn __repr__(&self) -> String {
+    pub(super) fn __repr__(&self) -> String {
         let direction = shown(self.0.direction_to_source());
         format!(
             "Wavefront.from_tensor({direction}, {})",
@@ -140,6 +140,8 @@ impl Wavefront {
 
 methods! {
     impl Wavefront as this: this.0;
+
+    unmade "plane, spherical, astigmatic, from_tensor or from_differentials";
 
     /// Unit vector from the surface to the source, of shape (3,).
     get direction_to_source -> Vector<3>;

@@ -14,7 +14,7 @@ use crate::{
 
 /// An exposure during which the pattern moves, or changes, or both, at a constant rate.
 ///
-/// `Exposure()` is the one without motion.
+/// ``Exposure()`` is the one without motion.
 #[pyclass(frozen, eq, module = "tem00.speckle")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Exposure(physics::Exposure);
@@ -57,7 +57,7 @@ impl Exposure {
     ///
     /// Parameters
     /// ----------
-    /// field : `PupilField`
+    /// field : PupilField
     ///     Field behind the pupil.
     fn pattern(&self, py: Python<'_>, field: &PupilField) -> PyResult<SpecklePattern> {
         self.pattern_at(py, field, [0.0; 2], 0.0)
@@ -67,7 +67,7 @@ impl Exposure {
     ///
     /// Parameters
     /// ----------
-    /// field : `PupilField`
+    /// field : PupilField
     ///     Field behind the pupil.
     /// offset : (float, float)
     ///     Displacement of the pupil in its diameters.

@@ -57,13 +57,13 @@ impl PupilField {
     /// Return a field of unit phasors behind a circular pupil, for speckles of a given size.
     ///
     /// Without a lens a lit area takes the place of the pupil: of the width w it makes speckles of the wavelength
-    /// times the distance over w, and `with_pupil` gives its shape. The law is `tem00.statistics.ObjectiveSpeckle`.
+    /// times the distance over w, and ``with_pupil`` gives its shape. The law is ``tem00.statistics.ObjectiveSpeckle``.
     ///
     /// Parameters
     /// ----------
     /// size : (int, int)
     ///     Width and height of the pattern in samples.
-    /// `speckle_size` : float
+    /// speckle_size : float
     ///     Speckle size in samples, from 2 to an eighth of the shorter side.
     /// seed : int
     ///     Seed of the phasors, 0 to 2**64 - 1.
@@ -82,12 +82,12 @@ impl PupilField {
     ///
     /// Parameters
     /// ----------
-    /// samples : `array_like` of complex, shape (rows, columns)
+    /// samples : array_like of complex, shape (rows, columns)
     ///     Amplitude at the lattice points; sample [rows // 2, columns // 2] is the origin. They are
     ///     copied as complex64.
     /// size : (int, int)
     ///     Width and height of the pattern in samples.
-    /// `speckle_size` : float
+    /// speckle_size : float
     ///     Speckle size in samples: for a pupil of C samples in diameter, width / C.
     #[staticmethod]
     fn from_samples(
@@ -108,7 +108,7 @@ impl PupilField {
     ///     Number N of sources; the contrast is sqrt(1 - 1 / N).
     /// size : (int, int)
     ///     Width and height of the pattern in samples.
-    /// `speckle_size` : float
+    /// speckle_size : float
     ///     Speckle size in samples, from 2 to an eighth of the shorter side.
     /// seed : int
     ///     Seed of places and phases, 0 to 2**64 - 1.
@@ -135,7 +135,7 @@ impl PupilField {
     ///
     /// Parameters
     /// ----------
-    /// `speckle_size` : float
+    /// speckle_size : float
     ///     Speckle size in samples, from 2 to an eighth of the shorter side.
     fn with_speckle_size(&self, speckle_size: f64) -> PyResult<Self> {
         let field = self.0.clone().with_speckle_size(speckle_size);
@@ -191,12 +191,12 @@ impl PupilField {
     ///
     /// Parameters
     /// ----------
-    /// x, y : `array_like`
+    /// x, y : array_like
     ///     Distance of the samples along x and y, in samples.
     ///
     /// Returns
     /// -------
-    /// complex or numpy.ndarray of complex
+    /// complex or ndarray of complex
     ///     Correlation in the common shape of the arguments, 1 at no distance.
     fn amplitude_correlation<'py>(
         &self,

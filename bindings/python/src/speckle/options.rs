@@ -11,9 +11,9 @@ use crate::arrays::Whole;
 ///
 /// Parameters
 /// ----------
-/// interpolation : {`"cubic_spline"`, `"bilinear"`, `"nearest"`}
+/// interpolation : {"cubic_spline", "bilinear", "nearest"}
 ///     How look-ups interpolate in the plane.
-/// `memory_limit` : int
+/// memory_limit : int
 ///     Bytes that the slices may take; 2**64 - 1 by default.
 #[pyclass(frozen, eq, module = "tem00.speckle")]
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -32,7 +32,7 @@ impl SlicePath {
     ///
     /// Parameters
     /// ----------
-    /// `half_period` : int
+    /// half_period : int
     ///     Half the number of slices, M. Slices i and i + M just cease to overlap.
     #[staticmethod]
     fn circle(half_period: Whole<'_>) -> PyResult<Self> {
@@ -41,11 +41,11 @@ impl SlicePath {
         })
     }
 
-    /// Return a straight line along x that closes after `length` pupil diameters.
+    /// Return a straight line along x that closes after ``length`` pupil diameters.
     ///
     /// Parameters
     /// ----------
-    /// `half_period` : int
+    /// half_period : int
     ///     Half the number of slices, M. Slices are uncorrelated from 2 M / length slices on.
     /// length : int
     ///     Length of the path in pupil diameters, at least 2.
@@ -96,6 +96,8 @@ impl SlicePath {
 
 methods! {
     impl SlicePath as this: this.0;
+
+    unmade "still, circle or straight";
 
     /// "still", "circle" or "straight".
     get kind -> &'static str = match this.0 {

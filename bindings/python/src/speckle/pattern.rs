@@ -25,9 +25,9 @@ impl SpecklePattern {
     ///
     /// Parameters
     /// ----------
-    /// weights : `array_like`, shape (n,)
+    /// weights : array_like, shape (n,)
     ///     Mean intensities in any unit, 0 or more.
-    /// patterns : iterable of `SpecklePattern`
+    /// patterns : iterable of SpecklePattern
     ///     As many patterns, of one size. They are drawn one by one.
     #[staticmethod]
     fn weighted_mean(weights: Components<'_>, patterns: &Bound<'_, PyAny>) -> PyResult<Self> {
@@ -43,7 +43,7 @@ impl SpecklePattern {
         }
     }
 
-    /// Write the intensity as an NPY file of float32, to be read by `numpy.load`.
+    /// Write the intensity as an NPY file of float32, to be read by ``numpy.load``.
     ///
     /// Parameters
     /// ----------
@@ -62,6 +62,8 @@ impl SpecklePattern {
 
 methods! {
     impl SpecklePattern as this: this.0;
+
+    unmade "PupilField.pattern, SpeckleField.to_pattern or weighted_mean";
 
     /// Width and height, which are the periods, in samples.
     get size -> (usize, usize);
@@ -91,11 +93,11 @@ impl SpeckleField {
 
     /// Return the intensity on a uniform wave that interferes: partially developed speckle.
     ///
-    /// Its law is `tem00.statistics.CoherentBackground`.
+    /// Its law is ``tem00.statistics.CoherentBackground``.
     ///
     /// Parameters
     /// ----------
-    /// `beam_ratio` : float
+    /// beam_ratio : float
     ///     Intensity of the wave over the mean of the speckle, 0 to 1e12.
     /// phase : float
     ///     Phase in radians.
@@ -110,7 +112,7 @@ impl SpeckleField {
         Ok(SpecklePattern(pattern.or_raise()?))
     }
 
-    /// Write the amplitude as an NPY file of complex64, to be read by `numpy.load`.
+    /// Write the amplitude as an NPY file of complex64, to be read by ``numpy.load``.
     ///
     /// Parameters
     /// ----------
@@ -129,6 +131,8 @@ impl SpeckleField {
 
 methods! {
     impl SpeckleField as this: this.0;
+
+    unmade "PupilField.field or PupilField.speckle";
 
     /// Width and height, which are the periods, in samples.
     get size -> (usize, usize);

@@ -60,12 +60,12 @@ impl PixelArray {
     ///
     /// Parameters
     /// ----------
-    /// pattern : `SpecklePattern`
+    /// pattern : SpecklePattern
     ///     Pattern on the sensor, which repeats beyond its period.
     ///
     /// Returns
     /// -------
-    /// numpy.ndarray
+    /// ndarray
     ///     float32 of shape (rows, columns).
     fn image<'py>(
         &self,

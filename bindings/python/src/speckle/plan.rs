@@ -22,14 +22,14 @@ use crate::{
 ///     Width and height of the image in pixels.
 /// region : (float, float)
 ///     Width and height of all that is looked up in any frame, in pixels.
-/// `speckle_size` : float
+/// speckle_size : float
 ///     Speckle size on the sensor in pixels.
 /// motion : float or None
 ///     Largest motion of the pupil over the speckle, in its diameters; None if the speckle never
 ///     changes.
 /// frames : int
 ///     Number of frames among which the speckle is compared.
-/// `memory_limit` : int
+/// memory_limit : int
 ///     Bytes that the slices may take.
 #[pyclass(frozen, eq, module = "tem00.speckle")]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,14 +113,14 @@ methods! {
 ///
 /// Parameters
 /// ----------
-/// needs : `StackNeeds`
+/// needs : StackNeeds
 ///     What the stack is to be looked up for.
 ///
 /// Raises
 /// ------
-/// `ParameterError`
-///     If a value of `needs` is out of range.
-/// `MemoryError`
+/// ParameterError
+///     If a value of ``needs`` is out of range.
+/// MemoryError
 ///     If not even the smallest stack fits the memory limit.
 #[pyclass(frozen, eq, module = "tem00.speckle")]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -138,7 +138,7 @@ impl StackPlan {
 
     /// Return the plan of known sizes.
     ///
-    /// Whether a pattern can have them is seen by its `field`, as for the `candidates`.
+    /// Whether a pattern can have them is seen by its ``field``, as for the ``candidates``.
     ///
     /// Parameters
     /// ----------
@@ -146,7 +146,7 @@ impl StackPlan {
     ///     Width and height of the pattern in samples.
     /// diameter : (int, int)
     ///     Diameter of the pupil along each axis in lattice points.
-    /// path : `SlicePath`
+    /// path : SlicePath
     ///     Path of the slices.
     #[staticmethod]
     fn from_sizes(
@@ -158,11 +158,11 @@ impl StackPlan {
         Ok(Self(physics::StackPlan::from_sizes(size, diameter, path.0)))
     }
 
-    /// Return the plans for `needs` in the order of their worth, whatever memory they take.
+    /// Return the plans for ``needs`` in the order of their worth, whatever memory they take.
     ///
     /// Parameters
     /// ----------
-    /// needs : `StackNeeds`
+    /// needs : StackNeeds
     ///     What the stack is to be looked up for.
     #[staticmethod]
     fn candidates(needs: &StackNeeds) -> PyResult<Vec<Self>> {
@@ -170,13 +170,13 @@ impl StackPlan {
         Ok(plans.into_iter().map(Self).collect())
     }
 
-    /// Return the first of `plans` that takes at most `memory_limit` bytes.
+    /// Return the first of ``plans`` that takes at most ``memory_limit`` bytes.
     ///
     /// Parameters
     /// ----------
-    /// plans : sequence of `StackPlan`
+    /// plans : sequence of StackPlan
     ///     Plans in the order of their worth, at most 65,536.
-    /// `memory_limit` : int
+    /// memory_limit : int
     ///     Bytes that the slices may take.
     #[staticmethod]
     fn first_within(plans: &Bound<'_, PyAny>, memory_limit: Whole<'_>) -> PyResult<Self> {
@@ -208,11 +208,11 @@ impl StackPlan {
         Ok(Self(plan))
     }
 
-    /// Return the plan with 2 * `half_period` slices on its path.
+    /// Return the plan with 2 * ``half_period`` slices on its path.
     ///
     /// Parameters
     /// ----------
-    /// `half_period` : int
+    /// half_period : int
     ///     Half the number of slices.
     fn with_half_period(&self, half_period: Whole<'_>) -> PyResult<Self> {
         let plan = self
@@ -255,7 +255,7 @@ impl StackPlan {
     /// ----------
     /// seed : int
     ///     Seed of the phasors, 0 to 2**64 - 1.
-    /// options : `StackOptions`
+    /// options : StackOptions
     ///     Interpolation and memory limit.
     fn stack(
         &self,

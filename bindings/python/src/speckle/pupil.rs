@@ -102,6 +102,8 @@ impl Pupil {
 methods! {
     impl Pupil as this: this.0;
 
+    unmade "circle, annulus, rectangle, gaussian or sampled";
+
     /// "circle", "annulus", "rectangle", "gaussian" or "sampled".
     get kind -> &'static str = match this.0 {
         physics::Pupil::Circle => "circle",
@@ -117,7 +119,7 @@ methods! {
     ///
     /// Parameters
     /// ----------
-    /// x, y : `array_like`
+    /// x, y : array_like
     ///     Displacement in pupil diameters.
     map overlap(x, y) = this.0.overlap([x, y]);
 }
@@ -133,7 +135,7 @@ impl Pupil {
 ///
 /// Parameters
 /// ----------
-/// amplitude : `array_like`, shape (rows, columns)
+/// amplitude : array_like, shape (rows, columns)
 ///     0 where the pupil is opaque, 1 where it is open.
 #[pyclass(frozen, eq, module = "tem00.speckle")]
 #[derive(Clone, Debug, PartialEq)]
@@ -151,7 +153,7 @@ impl Transmission {
     ///
     /// Parameters
     /// ----------
-    /// amplitude : `array_like` of complex, shape (rows, columns)
+    /// amplitude : array_like of complex, shape (rows, columns)
     ///     Magnitudes between 0 and 1.
     #[staticmethod]
     fn from_complex(amplitude: ComplexImage<'_>) -> PyResult<Self> {

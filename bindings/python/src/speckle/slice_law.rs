@@ -6,15 +6,13 @@ use crate::arrays::Vector;
 
 /// The closed forms of a slice, for look-ups that run where no library can be called.
 ///
-/// With the fraction f of the way between the slices i and i + 1, and fx, fy between samples:
+/// With the fraction f of the way between the slices i and i + 1, and fx, fy between samples::
 ///
-/// ```text
-/// U = (1 - f) U_i + f U_{i+1} exp(2 pi i (turns[0] x + turns[1] y))
-/// I = |U|**2 / ((1 - f)**2 v_i + f**2 v_{i+1} + 2 f (1 - f) w_i)
-/// v = sum of mean_square[ny, nx] s[ny](fy) s[nx](fx)
-/// w = sum of covariance[ny, nx] s[ny](fy) s[nx](fx)
-/// s(f) = 1, p, p**2, p**3, o, o p        p = f (1 - f),  o = p (1 - 2 f)
-/// ```
+///     U = (1 - f) U_i + f U_{i+1} exp(2 pi i (turns[0] x + turns[1] y))
+///     I = |U|**2 / ((1 - f)**2 v_i + f**2 v_{i+1} + 2 f (1 - f) w_i)
+///     v = sum of mean_square[ny, nx] s[ny](fy) s[nx](fx)
+///     w = sum of covariance[ny, nx] s[ny](fy) s[nx](fx)
+///     s(f) = 1, p, p**2, p**3, o, o p        p = f (1 - f),  o = p (1 - 2 f)
 ///
 /// x and y lie in one period, from 0 to the size. For the nearest sample both are those of the sample,
 /// and fx and fy are 0.
@@ -44,6 +42,8 @@ impl SliceLaw {
 
 methods! {
     impl SliceLaw as this: this.0;
+
+    unmade "SpeckleStack.slice_law";
 
     /// Turns of phase per sample along x and y, from the frame of the next slice to that of this
     /// one, float64 of shape (2,).

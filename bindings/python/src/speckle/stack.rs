@@ -25,7 +25,7 @@ use crate::{
 /// Speckle that moves and decorrelates: slices of one random field behind a wandering pupil.
 ///
 /// A look-up takes a position (x, y) in samples and a coordinate u in slices. Along x and y the
-/// pattern repeats after its size, along u after `slice_count` slices.
+/// pattern repeats after its size, along u after ``slice_count`` slices.
 #[pyclass(frozen, eq, module = "tem00.speckle")]
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SpeckleStack(pub(super) physics::SpeckleStack);
@@ -36,16 +36,16 @@ impl SpeckleStack {
     ///
     /// Parameters
     /// ----------
-    /// field : `PupilField`
+    /// field : PupilField
     ///     Field that the slices are cut from.
-    /// path : `SlicePath`
+    /// path : SlicePath
     ///     Path of the pupil over the field.
-    /// options : `StackOptions`, optional
+    /// options : StackOptions, optional
     ///     Interpolation and memory limit; by default cubic splines and all that the machine has.
     ///
     /// Raises
     /// ------
-    /// `MemoryError`
+    /// MemoryError
     ///     If the slices take more than the limit, or than the machine has.
     #[staticmethod]
     #[pyo3(signature = (field, path, options = None))]
@@ -61,13 +61,13 @@ impl SpeckleStack {
         Ok(Self(stack.or_raise()?))
     }
 
-    /// Read a stack that `write_to` has written.
+    /// Read a stack that ``write_to`` has written.
     ///
     /// Parameters
     /// ----------
     /// file : str or os.PathLike
     ///     File to read.
-    /// `memory_limit` : int
+    /// memory_limit : int
     ///     Bytes that the slices may take.
     #[staticmethod]
     fn read_from(py: Python<'_>, file: PathBuf, memory_limit: Whole<'_>) -> PyResult<Self> {
@@ -129,14 +129,14 @@ impl SpeckleStack {
     ///
     /// Parameters
     /// ----------
-    /// x, y : `array_like`
+    /// x, y : array_like
     ///     Position in samples; the period is the size.
-    /// u : `array_like`
-    ///     Coordinate in slices; the period is `slice_count`.
+    /// u : array_like
+    ///     Coordinate in slices; the period is ``slice_count``.
     ///
     /// Returns
     /// -------
-    /// float or numpy.ndarray
+    /// float or ndarray
     ///     Intensity in the common shape of the arguments; in float32 where all arrays are, for their
     ///     rounded coordinates.
     fn intensity_at<'py>(
@@ -160,14 +160,14 @@ impl SpeckleStack {
     ///
     /// Parameters
     /// ----------
-    /// x, y : `array_like`
+    /// x, y : array_like
     ///     Position in samples; the period is the size.
-    /// u : `array_like`
-    ///     Coordinate in slices; the period is `slice_count`.
+    /// u : array_like
+    ///     Coordinate in slices; the period is ``slice_count``.
     ///
     /// Returns
     /// -------
-    /// complex or numpy.ndarray of complex
+    /// complex or ndarray of complex
     ///     Amplitude in the common shape of the arguments.
     fn amplitude_at<'py>(
         &self,
@@ -187,16 +187,16 @@ impl SpeckleStack {
     ///
     /// Parameters
     /// ----------
-    /// x, y : `array_like`
+    /// x, y : array_like
     ///     Centre of the box in samples.
     /// size : (float, float)
     ///     Width and height of the box in samples, 0 or more.
-    /// u : `array_like`
+    /// u : array_like
     ///     Coordinate in slices.
     ///
     /// Returns
     /// -------
-    /// float or numpy.ndarray
+    /// float or ndarray
     ///     Mean intensity in the common shape of x, y and u; in float32 where all their arrays are.
     fn average_over<'py>(
         &self,
@@ -256,6 +256,8 @@ impl SpeckleStack {
 methods! {
     impl SpeckleStack as this: this.0;
 
+    unmade "generate or read_from";
+
     /// Field the slices were cut from. That of a straight path closes on itself after the length of
     /// the path.
     get field -> PupilField = PupilField(this.0.field().clone());
@@ -282,7 +284,7 @@ methods! {
     ///
     /// Parameters
     /// ----------
-    /// u, v : `array_like`
+    /// u, v : array_like
     ///     Coordinates in slices, on slices or between.
     map correlation_between(u, v);
 
@@ -290,7 +292,7 @@ methods! {
     ///
     /// Parameters
     /// ----------
-    /// distance : `array_like`
+    /// distance : array_like
     ///     Distance in slices.
     map correlation_at(distance);
 
@@ -298,7 +300,7 @@ methods! {
     ///
     /// Parameters
     /// ----------
-    /// correlation : `array_like`
+    /// correlation : array_like
     ///     Correlation; 1 and more give 0, 0 and less the first slice of no correlation.
     map coordinate_of(correlation);
 }

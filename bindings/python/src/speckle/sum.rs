@@ -14,13 +14,13 @@ use crate::{
 ///     Number of equal patterns.
 /// polarisation : float
 ///     Degree of polarisation of the light that reaches the sensor, 0 to 1.
-/// weights : `array_like`, shape (n,)
+/// weights : array_like, shape (n,)
 ///     Mean intensities in any unit of the parts of each: of several lasers, or of the coherent modes of
 ///     a broad spectrum.
 ///
 /// Returns
 /// -------
-/// numpy.ndarray
+/// ndarray
 ///     Fractions of sum 1, float64, at most 1024 of them.
 #[pyfunction]
 pub(super) fn incoherent_fractions<'py>(

@@ -13,7 +13,7 @@ functions! {
     ///
     /// Parameters
     /// ----------
-    /// pixel_size : float or array
+    /// pixel_size : float or array_like
     ///     Side of the pixels in units of the speckle size, 0 or more.
     map pixel_contrast(pixel_size: not_negative);
 }
@@ -22,7 +22,7 @@ functions! {
 ///
 /// Parameters
 /// ----------
-/// pixel_size : pair of floats or arrays
+/// pixel_size : pair of float or array_like
 ///     Width and height in units of the speckle size, 0 or more, broadcast together.
 #[pyfunction]
 pub(super) fn rectangular_pixel_contrast<'py>(
@@ -41,7 +41,7 @@ functions! {
     ///
     /// Parameters
     /// ----------
-    /// spread : float or array
+    /// spread : float or array_like
     ///     Standard deviation of the filter along either axis, in units of the speckle size, 0 or more.
     map gaussian_filter_contrast(spread: not_negative);
 
@@ -49,7 +49,7 @@ functions! {
     ///
     /// Parameters
     /// ----------
-    /// drift : float or array
+    /// drift : float or array_like
     ///     Shift of the light across a circular pupil during the exposure, in pupil diameters, 0 or
     ///     more.
     map boiling_contrast(drift: not_negative);
@@ -58,7 +58,7 @@ functions! {
     ///
     /// Parameters
     /// ----------
-    /// drift : float or array
+    /// drift : float or array_like
     ///     Motion of the pattern during the exposure, in units of the speckle size, 0 or more.
     map translation_contrast(drift: not_negative);
 }
@@ -98,7 +98,7 @@ fn correlation_at(correlation: &Bound<'_, PyAny>, t: f64) -> PyResult<f64> {
 ///
 /// Parameters
 /// ----------
-/// speckles_across : float or array
+/// speckles_across : float or array_like
 ///     Width and height of the pattern in units of the speckle size, positive.
 #[pyfunction]
 pub(super) fn contrast_squared_spread<'py>(

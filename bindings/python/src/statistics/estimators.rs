@@ -18,7 +18,7 @@ impl Moments {
     ///
     /// Parameters
     /// ----------
-    /// samples : array
+    /// samples : array_like
     ///     At least two finite samples, in any shape.
     #[staticmethod]
     fn from_samples(py: Python<'_>, samples: Samples<'_>) -> PyResult<Self> {
@@ -38,6 +38,8 @@ impl Moments {
 
 methods! {
     impl Moments as this: this.0;
+
+    unmade "from_samples";
 
     /// Number of samples.
     get count -> usize;
@@ -63,7 +65,7 @@ impl Contrast {
     ///
     /// Parameters
     /// ----------
-    /// samples : array
+    /// samples : array_like
     ///     At least two finite samples of a positive mean, in any shape.
     #[staticmethod]
     fn from_samples(py: Python<'_>, samples: Samples<'_>) -> PyResult<Self> {
@@ -88,7 +90,7 @@ impl Contrast {
     ///
     /// Returns
     /// -------
-    /// pair of floats
+    /// (float, float)
     ///     Lower and upper end.
     fn confidence_interval(&self, level: f64) -> PyResult<(f64, f64)> {
         Ok(self.0.confidence_interval(level).or_raise()?.into())
@@ -102,6 +104,8 @@ impl Contrast {
 
 methods! {
     impl Contrast as this: this.0;
+
+    unmade "from_samples";
 
     /// Contrast.
     get value -> f64;
@@ -148,6 +152,8 @@ impl GammaFit {
 methods! {
     impl GammaFit as this: this.0;
 
+    unmade "by_moments or by_likelihood";
+
     /// Mean of the samples.
     get mean -> f64;
 
@@ -162,7 +168,7 @@ methods! {
 ///
 /// Parameters
 /// ----------
-/// first, second : array of shape (rows, columns)
+/// first, second : array_like, shape (rows, columns)
 ///     The images, in single precision.
 #[pyfunction]
 pub(super) fn pearson_correlation(

@@ -24,6 +24,8 @@ impl TestOutcome {
 methods! {
     impl TestOutcome as this: this.0;
 
+    unmade "kolmogorov_smirnov, chi_squared or t_test_mean";
+
     /// The test's statistic: the larger, the further from the hypothesis.
     field statistic -> f64;
 
@@ -35,7 +37,7 @@ methods! {
 ///
 /// Parameters
 /// ----------
-/// samples : array
+/// samples : array_like
 ///     Independent samples, in any shape.
 /// cumulative : callable
 ///     The distribution function, fixed beforehand. It is called once with an array of shape (n,)
@@ -56,9 +58,9 @@ pub(super) fn kolmogorov_smirnov(
 ///
 /// Parameters
 /// ----------
-/// observed : array of shape (n,)
+/// observed : array_like, shape (n,)
 ///     Counts, whole numbers.
-/// expected : array of shape (n,)
+/// expected : array_like, shape (n,)
 ///     Expected counts; bins are merged until each expects five.
 /// constraints : int
 ///     What the expected counts were fitted to: 1 for the total, 1 more for each parameter.
@@ -74,11 +76,11 @@ pub(super) fn chi_squared(
     Ok(TestOutcome(outcome.or_raise()?))
 }
 
-/// Test whether the expectation of independent samples is `mean`, after Student; two-sided.
+/// Test whether the expectation of independent samples is ``mean``, after Student; two-sided.
 ///
 /// Parameters
 /// ----------
-/// samples : array
+/// samples : array_like
 ///     At least two finite samples that differ, in any shape.
 /// mean : float
 ///     The expectation to be tested.

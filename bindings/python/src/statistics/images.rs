@@ -14,14 +14,14 @@ const VALUES: &[&str] = &["samples", "lags"];
 ///
 /// Parameters
 /// ----------
-/// image : array of shape (rows, columns)
+/// image : array_like, shape (rows, columns)
 ///     The image, in single precision.
 /// boundary : {"periodic", "finite"}
 ///     Whether the image repeats, as a computed pattern does, or nothing is known beyond its edges.
 ///
 /// Returns
 /// -------
-/// float32 array of shape (rows, columns) or (2 rows, 2 columns)
+/// float32 ndarray, shape (rows, columns) or (2 rows, 2 columns)
 ///     Lag (x, y) stands at [y, x], negative lags at the far end. Twice the shape for a finite image.
 #[pyfunction]
 pub(super) fn autocovariance<'py>(
@@ -38,12 +38,12 @@ pub(super) fn autocovariance<'py>(
 ///
 /// Parameters
 /// ----------
-/// image : array of shape (rows, columns)
+/// image : array_like, shape (rows, columns)
 ///     The image, in single precision.
 ///
 /// Returns
 /// -------
-/// float32 array of shape (rows, columns)
+/// float32 ndarray, shape (rows, columns)
 ///     Pixels² per unit variance. Frequency (kx / columns, ky / rows), in cycles per pixel, stands at
 ///     [ky, kx], negative ones at the far end.
 #[pyfunction]
@@ -76,6 +76,8 @@ impl Ring {
 methods! {
     impl Ring as this: this.0;
 
+    unmade "radial_average";
+
     /// Mean distance of the cells from the origin.
     field radius -> f64;
 
@@ -90,9 +92,9 @@ methods! {
 ///
 /// Parameters
 /// ----------
-/// grid : array of shape (rows, columns)
+/// grid : array_like, shape (rows, columns)
 ///     Lags or frequencies, with the origin at [0, 0] and negative ones at the far end.
-/// step : pair of floats
+/// step : (float, float)
 ///     Size of a cell along x and y: (1, 1) for lags in pixels, (1 / columns, 1 / rows) for
 ///     frequencies in cycles per pixel.
 ///
@@ -113,18 +115,18 @@ pub(super) fn radial_average(
     Ok(rings.into_iter().map(Ring).collect())
 }
 
-/// Return every `stride`-th pixel of every `stride`-th row.
+/// Return every ``stride``-th pixel of every ``stride``-th row.
 ///
 /// Parameters
 /// ----------
-/// grid : array of shape (rows, columns)
+/// grid : array_like, shape (rows, columns)
 ///     The image, in single precision.
 /// stride : int
 ///     Pixels from one sample to the next: 1.22 speckle sizes at least, for independent ones.
 ///
 /// Returns
 /// -------
-/// array of shape (n,)
+/// ndarray, shape (n,)
 ///     The samples, without those of an incomplete last stride.
 #[pyfunction]
 pub(super) fn decorrelated_samples<'py>(
@@ -141,14 +143,14 @@ pub(super) fn decorrelated_samples<'py>(
 ///
 /// Parameters
 /// ----------
-/// image : array of shape (rows, columns)
+/// image : array_like, shape (rows, columns)
 ///     The image, in single precision.
 /// window : int
 ///     Width and height of the window in pixels, at least 2.
 ///
 /// Returns
 /// -------
-/// float32 array of shape (rows − window + 1, columns − window + 1)
+/// float32 ndarray, shape (rows − window + 1, columns − window + 1)
 ///     The value at [y, x] is that of the window whose first pixel is there.
 #[pyfunction]
 pub(super) fn local_contrast<'py>(
@@ -172,7 +174,7 @@ impl SpeckleSize {
     ///
     /// Parameters
     /// ----------
-    /// image : array of shape (rows, columns)
+    /// image : array_like, shape (rows, columns)
     ///     The image, in single precision.
     /// boundary : {"periodic", "finite"}
     ///     Whether the image repeats, or nothing is known beyond its edges.
@@ -198,7 +200,7 @@ impl SpeckleSize {
     /// ----------
     /// axis : {"x", "y"}
     ///     Along the rows, or along the columns.
-    /// lags : array of shape (rows, columns)
+    /// lags : array_like, shape (rows, columns)
     ///     The autocovariance.
     ///
     /// Returns
@@ -225,6 +227,8 @@ impl SpeckleSize {
 
 methods! {
     impl SpeckleSize as this: this.0;
+
+    unmade "from_image, from_autocovariance or along";
 
     /// Speckle size along the rows, in pixels.
     get x -> f64;

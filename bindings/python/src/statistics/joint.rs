@@ -9,7 +9,7 @@ use crate::arrays::{Numbers, Values, Whole, map};
 ///
 /// Parameters
 /// ----------
-/// `amplitude_correlation` : float
+/// amplitude_correlation : float
 ///     Magnitude of the correlation of the two amplitudes, from 0 to below 1.
 #[pyclass(frozen, eq, module = "tem00.statistics")]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +21,7 @@ impl JointIntensity {
     ///
     /// Parameters
     /// ----------
-    /// intensities : pair of floats or arrays
+    /// intensities : pair of float or array_like
     ///     The intensities in units of their mean, broadcast together.
     fn density<'py>(
         &self,
@@ -52,26 +52,26 @@ methods! {
     /// Correlation of the intensities, the square of that of the amplitudes.
     get intensity_correlation -> f64;
 
-    /// Return the density of the intensity at one point where that at the other is `given`.
+    /// Return the density of the intensity at one point where that at the other is ``given``.
     ///
     /// Parameters
     /// ----------
-    /// intensity, given : float or array
+    /// intensity, given : float or array_like
     ///     Intensities in units of their mean, broadcast together.
     map conditional_density(intensity, given: not_negative);
 
-    /// Return the probability of at most `intensity` at one point where the other has `given`.
+    /// Return the probability of at most ``intensity`` at one point where the other has ``given``.
     ///
     /// Parameters
     /// ----------
-    /// intensity, given : float or array
+    /// intensity, given : float or array_like
     ///     Intensities in units of their mean, broadcast together.
     map conditional_cumulative(intensity, given: not_negative);
 
-    /// Return the mean of the intensity at one point where that at the other is `given`.
+    /// Return the mean of the intensity at one point where that at the other is ``given``.
     map conditional_mean(given: not_negative);
 
-    /// Return the variance of the intensity at one point where that at the other is `given`.
+    /// Return the variance of the intensity at one point where that at the other is ``given``.
     map conditional_variance(given: not_negative);
 
     made_by new(amplitude_correlation);

@@ -12,15 +12,15 @@ functions! {
     ///
     /// Parameters
     /// ----------
-    /// intensity : float or array
+    /// intensity : float or array_like
     ///     Intensity in units of its mean.
     map exponential_density(intensity);
 
-    /// Return the probability that the intensity of fully developed speckle is at most `intensity`.
+    /// Return the probability that the intensity of fully developed speckle is at most ``intensity``.
     ///
     /// Parameters
     /// ----------
-    /// intensity : float or array
+    /// intensity : float or array_like
     ///     Intensity in units of its mean.
     map exponential_cumulative(intensity);
 }
@@ -92,7 +92,7 @@ methods! {
 ///
 /// Parameters
 /// ----------
-/// weights : array of shape (n,)
+/// weights : array_like, shape (n,)
 ///     Mean intensities of the patterns, in any unit, none negative and not all zero, of at most
 ///     65,536 different values. Each of these takes some 10 µs of the time of a density.
 #[pyclass(frozen, eq, module = "tem00.statistics")]
@@ -137,7 +137,7 @@ methods! {
 ///
 /// Parameters
 /// ----------
-/// `beam_ratio` : float
+/// beam_ratio : float
 ///     Background over mean of the speckle, finite and not negative.
 #[pyclass(frozen, eq, module = "tem00.statistics")]
 #[derive(Clone, Copy, Debug, PartialEq)]

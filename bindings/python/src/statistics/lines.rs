@@ -10,7 +10,7 @@ functions! {
     ///
     /// Parameters
     /// ----------
-    /// row_height : float or array
+    /// row_height : float or array_like
     ///     Extent of a pixel along the line in units of the speckle size, 0 or more.
     map speckle_length(row_height: not_negative);
 
@@ -18,7 +18,7 @@ functions! {
     ///
     /// Parameters
     /// ----------
-    /// radius, row_height : float or array
+    /// radius, row_height : float or array_like
     ///     1/e² half-width of the line and extent of a pixel along it, in units of the speckle size as the
     ///     result, 0 or more. They are broadcast together.
     map line_centroid_deviation(radius: not_negative, row_height: not_negative);
@@ -29,7 +29,7 @@ functions! {
     ///
     /// Parameters
     /// ----------
-    /// radius, row_height : float or array
+    /// radius, row_height : float or array_like
     ///     1/e² half-width of the line and extent of a pixel along it, in units of the speckle size as the
     ///     result, 0 or more. They are broadcast together.
     map imaged_line_centroid_deviation(radius: not_negative, row_height: not_negative);
@@ -38,7 +38,7 @@ functions! {
     ///
     /// Parameters
     /// ----------
-    /// radius : float or array
+    /// radius : float or array_like
     ///     1/e² radius in units of the speckle size, as the result, 0 or more.
     map gaussian_spot_centroid_deviation(radius: not_negative);
 
@@ -46,7 +46,7 @@ functions! {
     ///
     /// Parameters
     /// ----------
-    /// radius : float or array
+    /// radius : float or array_like
     ///     Radius in units of the speckle size, as the result, 0 or more.
     map disc_spot_centroid_deviation(radius: not_negative);
 }

@@ -2,7 +2,7 @@ use pyo3::prelude::*;
 use tem00_statistics as physics;
 
 use crate::{
-    arrays::{Numbers, Values, length, map},
+    arrays::{Numbers, Values, length, map, wavelength_of_light},
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
@@ -60,6 +60,12 @@ impl LitArea {
     }
 }
 
+methods! {
+    impl LitArea as this: this.0;
+
+    unmade "disc, rectangle or gaussian_spot";
+}
+
 /// Speckle without a lens: the pattern that a lit area of a rough surface makes in a distant plane.
 ///
 /// Parameters
@@ -89,6 +95,7 @@ impl PartialEq for ObjectiveSpeckle {
 impl ObjectiveSpeckle {
     #[new]
     fn new(wavelength: f64, distance: f64, area: PyRef<'_, LitArea>) -> PyResult<Self> {
+        let wavelength = wavelength_of_light("wavelength", wavelength)?;
         Ok(Self {
             speckle: physics::ObjectiveSpeckle::new(wavelength, distance, area.0).or_raise()?,
             wavelength,
@@ -101,7 +108,7 @@ impl ObjectiveSpeckle {
     ///
     /// Parameters
     /// ----------
-    /// lag : pair of floats or arrays
+    /// lag : pair of float or array_like
     ///     Lag along x and y in metres, broadcast together.
     fn autocovariance<'py>(
         &self,

@@ -47,7 +47,7 @@ methods! {
     made_by new(count);
 }
 
-/// Return the contrast of the intensity of a sum of `count` phasors, √(1 − 1/count).
+/// Return the contrast of the intensity of a sum of ``count`` phasors, √(1 − 1/count).
 #[pyfunction]
 pub(super) fn contrast_of_phasor_sum(count: Whole<'_>) -> PyResult<f64> {
     let count = count.between("count", [1, usize::MAX])?;

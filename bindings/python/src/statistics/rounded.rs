@@ -21,7 +21,7 @@ impl GreyLevels {
     #[classattr]
     const CLIPPED_FRACTION: f64 = physics::GreyLevels::CLIPPED_FRACTION;
 
-    /// Find the levels of an image, in any shape; `None` if it is not rounded.
+    /// Find the levels of an image, in any shape; ``None`` if it is not rounded.
     #[staticmethod]
     fn from_values(py: Python<'_>, values: Samples<'_>) -> PyResult<Option<Self>> {
         let values = values.values()?;
@@ -71,6 +71,8 @@ impl GreyLevels {
 methods! {
     impl GreyLevels as this: this.0;
 
+    unmade "from_values";
+
     /// Fraction of the pixels at the largest level.
     get share_of_largest -> f64;
 
@@ -87,7 +89,7 @@ methods! {
     ///
     /// Parameters
     /// ----------
-    /// rounded : float or array
+    /// rounded : float or array_like
     ///     Mean of the rounded values, positive.
     map exponential_mean(rounded: positive);
 
@@ -95,7 +97,7 @@ methods! {
     ///
     /// Parameters
     /// ----------
-    /// rounded : float or array
+    /// rounded : float or array_like
     ///     Mean of the rounded values, positive.
     map exponential_contrast(rounded: positive);
 }
@@ -104,7 +106,7 @@ methods! {
 ///
 /// Parameters
 /// ----------
-/// samples : array
+/// samples : array_like
 ///     Independent samples, in any shape.
 /// cumulative : callable
 ///     The distribution function. It is called once with an array of shape (n,) and returns
@@ -126,7 +128,7 @@ impl GoodnessOfFit {
     ///
     /// Parameters
     /// ----------
-    /// samples : array
+    /// samples : array_like
     ///     Independent samples, in any shape.
     /// levels : GreyLevels
     ///     What they were rounded to.

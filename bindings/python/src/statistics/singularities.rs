@@ -20,6 +20,8 @@ impl Singularity {
 methods! {
     impl Singularity as this: this.0;
 
+    unmade "phase_singularities";
+
     /// Column of the cell: the singularity lies between this sample and the next.
     field x -> usize;
 
@@ -34,7 +36,7 @@ methods! {
 ///
 /// Parameters
 /// ----------
-/// field : complex array of shape (rows, columns)
+/// field : complex array_like, shape (rows, columns)
 ///     The field, in single precision.
 /// boundary : {"periodic", "finite"}
 ///     Whether the field repeats, or nothing is known beyond its edges.
@@ -61,7 +63,7 @@ impl VortexDensity {
     ///
     /// Parameters
     /// ----------
-    /// field : complex array of shape (rows, columns)
+    /// field : complex array_like, shape (rows, columns)
     ///     The field, in single precision.
     /// boundary : {"periodic", "finite"}
     ///     Whether the field repeats, or nothing is known beyond its edges.
@@ -82,6 +84,8 @@ impl VortexDensity {
 methods! {
     impl VortexDensity as this: this.0;
 
+    unmade "from_field";
+
     /// Number of singularities.
     get count -> usize;
 
@@ -91,6 +95,6 @@ methods! {
     /// Standard error of the density, per squared sample.
     get standard_error -> f64;
 
-    /// Speckle size that makes this density, in samples; `None` without singularities.
+    /// Speckle size that makes this density, in samples; ``None`` without singularities.
     get speckle_size -> Option<f64>;
 }

@@ -8,7 +8,7 @@ functions! {
     ///
     /// Parameters
     /// ----------
-    /// lag : float or array
+    /// lag : float or array_like
     ///     Lag in units of the speckle size.
     map airy_autocovariance(lag);
 
@@ -16,7 +16,7 @@ functions! {
     ///
     /// Parameters
     /// ----------
-    /// frequency : float or array
+    /// frequency : float or array_like
     ///     Cycles per speckle size.
     map airy_power_spectrum(frequency);
 
@@ -24,7 +24,7 @@ functions! {
     ///
     /// Parameters
     /// ----------
-    /// level : float or array
+    /// level : float or array_like
     ///     Level in units of the mean intensity.
     map level_crossings(level);
 
@@ -32,14 +32,14 @@ functions! {
     ///
     /// Parameters
     /// ----------
-    /// level : float or array
+    /// level : float or array_like
     ///     Level in units of the mean intensity.
     map area_fraction_above(level);
 }
 
-/// Return the speckle size before square pixels widened it to `measured`, both in pixels.
+/// Return the speckle size before square pixels widened it to ``measured``, both in pixels.
 ///
-/// `None` if it was below 0.95 pixels, where the pixels hide it.
+/// ``None`` if it was below 0.95 pixels, where the pixels hide it.
 #[pyfunction]
 pub(super) fn size_before_pixels(measured: f64) -> PyResult<Option<f64>> {
     if !(measured > 0.0 && measured.is_finite()) {

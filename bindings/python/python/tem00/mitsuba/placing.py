@@ -93,16 +93,21 @@ def _located(numbers: Mapping[str, float], suffix: str) -> beam.LocatedBeam:
         numbers.get(name + suffix, numbers[name]) for name in names
     )
     with _named({name: name + suffix for name in names}):
-        focus = beam.GaussianBeam.from_waist(numbers["wavelength"], waist_radius)
-        return beam.LocatedBeam(focus.with_m_squared(m_squared), waist_distance)
+        focus = _focus(numbers["wavelength"], waist_radius, m_squared)
+        return beam.LocatedBeam(focus, waist_distance)
+
+
+def _focus(wavelength: float, waist_radius: float, m_squared: float) -> beam.GaussianBeam:
+    """Return a beam whose lengths are in the unit of the scene, which need not be metres."""
+    focus: beam.GaussianBeam = beam.GaussianBeam._restored(wavelength, waist_radius, m_squared)  # type: ignore[attr-defined]
+    return focus
 
 
 def _line(description: Description) -> Line:
     numbers = description.numbers
     # The waist radius is half the thickness; messages say which value they speak of.
     with _named({"waist_radius": "thickness"}):
-        focus = beam.GaussianBeam.from_waist(numbers["wavelength"], 0.5 * numbers["thickness"])
-        focus = focus.with_m_squared(numbers["m_squared"])
+        focus = _focus(numbers["wavelength"], 0.5 * numbers["thickness"], numbers["m_squared"])
     fan = _fan(description, focus)
     with _named({"dtype": "thickness"}):
         line = beam.LaserLine(focus, fan, _profile(description))

@@ -50,12 +50,14 @@ function link(page, text, target) {
     return repository ? `${text}(${repository}/blob/HEAD/${aim})` : text.slice(1, -1);
 }
 
-// A span of code; the first that names a crate on a page leads to the reference of that crate.
+// A span of code; the first that names a crate or a module of Python on a page leads to its reference.
 function code(page, span, linked) {
     const crate = span.match(/^`(tem00-[a-z]+)`$/)?.[1].replace("-", "_");
-    if (!crate || linked.has(crate) || !existsSync(`${root}target/doc/${crate}/index.html`)) return span;
-    linked.add(crate);
-    const api = path.relative(path.dirname(places.get(page)), `api/${crate}/index.html`);
+    const module = span.match(/^`tem00\.([a-z]+)`$/)?.[1];
+    const file = crate ? `${crate}/index.html` : `python/tem00/${module}.html`;
+    if (!(crate || module) || linked.has(file) || !existsSync(`${root}target/doc/${file}`)) return span;
+    linked.add(file);
+    const api = path.relative(path.dirname(places.get(page)), `api/${file}`);
     return `[${span}](${api})`;
 }
 

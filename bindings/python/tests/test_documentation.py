@@ -43,8 +43,8 @@ def documented() -> Iterator[tuple[str, object]]:
                         yield f"{module.__name__}.{name}.{member}", inner
 
 
-# What numpydoc's own rules say of parameters, results and sections; how long a summary is, is left to the writer.
-RULES = {"GL06", "GL07", "GL08", "PR01", "PR02", "PR03", "PR05", "PR10", "RT02", "YD01"}
+# What numpydoc says of sections, and of parameters where they are listed: names, order, types, the space before a colon.
+RULES = {"GL06", "GL07", "PR02", "PR03", "PR05", "PR10"}
 
 
 @pytest.mark.parametrize("name", [name for name, _ in documented()])
@@ -56,7 +56,7 @@ def test_docstrings_are_those_of_numpydoc(name: str) -> None:
     assert not re.search(r"(?<!`)`(?!`)[^`]+(?<!`)`(?!`)", found["docstring"]), found["docstring"]
 
 
-CLASSES = [value for _, value in documented() if inspect.isclass(value)]
+CLASSES = [value for _, value in documented() if inspect.isclass(value) and not issubclass(value, Exception)]
 
 
 @pytest.mark.parametrize("cls", CLASSES, ids=lambda cls: cls.__name__)

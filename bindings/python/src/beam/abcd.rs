@@ -87,6 +87,11 @@ methods! {
 ///
 /// The static methods are the elements, ``then`` joins them in the order of travel.
 ///
+/// Parameters
+/// ----------
+/// a, b, c, d : float
+///     Entries of the matrix; ``b`` is in metres and ``c`` in 1/m.
+///
 /// Examples
 /// --------
 /// >>> from tem00.beam import AbcdMatrix
@@ -97,11 +102,6 @@ methods! {
 /// ... )
 /// >>> round(expander.a, 12)
 /// -4.0
-///
-/// Parameters
-/// ----------
-/// a, b, c, d : float
-///     Entries of the matrix; ``b`` is in metres and ``c`` in 1/m.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AbcdMatrix(pub(super) physics::AbcdMatrix);

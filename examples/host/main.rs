@@ -124,7 +124,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let scene = Scene {
             camera,
             laser: laser.clone(),
-            hierarchy: build_bvh2_from_tris(&triangles, settings, &mut Duration::ZERO),
+            hierarchy: build_bvh2_from_tris(&triangles, settings, &mut Duration::default()),
             triangles,
             sphere: (surface.point(DVec3::new(-4e-3, 0.0, 3e-3)), 3e-3),
             // Once per body and frame: the mesh stands still.

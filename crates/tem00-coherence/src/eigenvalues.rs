@@ -10,10 +10,8 @@ const MAX_STEPS: usize = 100;
 ///
 /// - G. H. Golub, C. F. Van Loan, *Matrix Computations*, 1996, §8.3.
 pub(crate) fn hermitian_eigenvalues(mut a: Vec<Complex<f64>>, n: usize) -> Vec<f64> {
-    let mut beside = vec![0.0; n];
-    for k in 0..n.saturating_sub(1) {
-        beside[k] = reflect(&mut a, n, k);
-    }
+    let mut beside: Vec<f64> = (1..n).map(|k| reflect(&mut a, n, k - 1)).collect();
+    beside.resize(n, 0.0);
     let mut diagonal: Vec<f64> = (0..n).map(|i| a[i * n + i].re).collect();
     for first in 0..n {
         for _ in 0..MAX_STEPS {

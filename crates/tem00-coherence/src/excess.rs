@@ -6,7 +6,10 @@ use tem00_numerics::quadrature::integrate;
 
 use crate::kernel::LagKernel;
 
+mod reach;
 mod table;
+
+use reach::{STEEP, is_beyond};
 
 /// What a correlation length of heights adds to a mean of `exp(−x² (1 − ρ) + 2πi s·η)` over lags η, in speckles, with
 /// x the phase by heights and s the displacement of the pupil in its diameters.
@@ -72,15 +75,6 @@ fn by_lags(kernel: LagKernel, length: f64, [phase, shift]: [f64; 2]) -> f64 {
     let step = |width: f64| width.min(1.0).min(1.0 / turns.max(1e-3));
     let inner = integrate(excess, [0.0, near], step(width));
     inner + integrate(excess, [near, reach], step(length))
-}
-
-/// Squared phases above which heights that differ by more than the width no longer matter.
-const STEEP: f64 = 50.0;
-
-/// Returns whether kernels, which have no frequency above 1 per speckle, and an excess that has hardly any above 1 per
-/// `width` leave nothing at a displacement.
-fn is_beyond(shift: f64, width: f64) -> bool {
-    TAU * (shift - 1.0) * width > 12.0
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ mod joint;
 #[cfg(test)]
 mod tests;
 
-pub use axial_loss::{AxialLoss, add_axial_shifts};
+pub use axial_loss::add_axial_shifts;
 pub use inverse::{equivalent_axial_shift, equivalent_pupil_shift, motion_multiple};
 pub use joint::CorrelationLaw;
 

@@ -76,8 +76,8 @@ mod wavefront;
 
 pub use configuration::{Configuration, ConfigurationData};
 pub use correlation::{
-    AxialLoss, CorrelationLaw, add_axial_shifts, axial_correlation, correlation,
-    equivalent_axial_shift, equivalent_pupil_shift, motion_multiple, pupil_overlap_correlation,
+    CorrelationLaw, add_axial_shifts, axial_correlation, correlation, equivalent_axial_shift,
+    equivalent_pupil_shift, motion_multiple, pupil_overlap_correlation,
 };
 pub use error::DecorrelationError;
 pub use field::{FieldLight, FieldPoints, FieldSetup, FieldSlices, MotionField};

@@ -192,6 +192,7 @@ mod tests {
     }
 
     #[test]
+    #[expect(clippy::float_cmp, reason = "exact by definition")]
     fn a_place_that_is_none_has_the_mean() {
         let stack = stack(16, 8, 1, 0);
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {

@@ -22,6 +22,7 @@
 
 mod error;
 mod laser;
+mod motion;
 mod perspective;
 mod prepared;
 mod shift;
@@ -39,10 +40,11 @@ pub use laser::{
     BeamShape, EmittedRay, Laser, LaserBuilder, LaserDescription, LaserEvent, LaserEventBatch,
     PlacedLight, SampledEvent,
 };
+pub use motion::Motion;
 pub use perspective::Perspective;
 pub use prepared::{PreparedSpeckle, SpeckleFrame};
 pub use shift::{BLOCK, LightPath, SeenPoint, SpeckleLaw, SpeckleShift};
-pub use speckle::{Motion, Speckle};
+pub use speckle::Speckle;
 pub use tem00_camera::{Camera, CameraDescription};
 /// The place of a rigid body, relative to the reference state: a rotation and a translation.
 pub use tem00_decorrelation::RigidMotion as Pose;

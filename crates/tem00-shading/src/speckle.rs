@@ -6,36 +6,10 @@ use tem00_decorrelation::ImagingGeometry;
 use tem00_speckle::{SpeckleStack, StackNeeds, StackPlan, incoherent_fractions};
 
 use crate::{
-    Laser, Perspective, Pose, PreparedSpeckle, ShadingError,
+    Laser, Motion, Perspective, Pose, PreparedSpeckle, ShadingError,
     prepared::{Part, Patterns},
     state::{ReferencePoint, State},
 };
-
-/// The motion of a body, the camera and the laser from the reference state to now.
-///
-/// Only differences count: if all three move as one, nothing changes.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Motion {
-    /// The number of the body. Bodies that move apart have numbers of their own, and speckle of their own: what one of
-    /// them uncovers does not show the speckle that it took with it.
-    pub body: usize,
-    /// The pose of the body whose surface is looked at.
-    pub surface: Pose,
-    /// The pose of the camera.
-    pub camera: Pose,
-    /// The pose of the laser.
-    pub laser: Pose,
-}
-
-impl From<Pose> for Motion {
-    /// The motion of body 0 alone.
-    fn from(surface: Pose) -> Self {
-        Self {
-            surface,
-            ..Self::default()
-        }
-    }
-}
 
 /// What speckle is wanted: of a laser, in the image of a camera, for the motions of some frames.
 ///

@@ -135,10 +135,6 @@ impl Trajectory {
             // Motions without rotation are the same whatever their pivot.
             return Self::steady(displacement);
         }
-        if rotation.angle == 0.0 {
-            // Motions without rotation are the same whatever their pivot.
-            return Self::steady(displacement);
-        }
         check_steps(displacement)?;
         Ok(Self {
             pivot,

@@ -19,8 +19,37 @@ pub struct LaserBuilder {
     line: Option<(f64, LineProfile)>,
 }
 
+impl Laser {
+    /// Begins the description of a round spot: a Gaussian beam of a vacuum wavelength and a waist radius, both in metres.
+    ///
+    /// # Examples
+    ///
+    /// A spot that is 0.4 mm wide half a metre in front of the laser:
+    ///
+    /// ```
+    /// use tem00_shading::{DVec3, Laser};
+    ///
+    /// let laser = Laser::spot(650e-9, 0.2e-3)
+    ///     .focused_at(0.5)
+    ///     .power(5e-3)
+    ///     .placed(DVec3::new(0.0, 0.0, 0.5), DVec3::ZERO, DVec3::X)?;
+    /// let event = laser.next_event(DVec3::ZERO).expect("the spot is lit");
+    /// assert!((event.wi - DVec3::Z).length() < 1e-12);
+    /// # Ok::<(), tem00_shading::ShadingError>(())
+    /// ```
+    pub fn spot(wavelength: f64, waist_radius: f64) -> LaserBuilder {
+        LaserBuilder::of_spot(wavelength, waist_radius)
+    }
+
+    /// Begins the description of a laser line of a vacuum wavelength and a thickness in focus (1/e², full width), in
+    /// metres, that opens by an angle, in radians.
+    pub fn line(wavelength: f64, thickness: f64, fan_angle: f64) -> LaserBuilder {
+        LaserBuilder::of_line(wavelength, thickness, fan_angle)
+    }
+}
+
 impl LaserBuilder {
-    pub(super) fn spot(wavelength: f64, waist_radius: f64) -> Self {
+    fn of_spot(wavelength: f64, waist_radius: f64) -> Self {
         Self {
             wavelength,
             spectrum: None,
@@ -33,10 +62,10 @@ impl LaserBuilder {
         }
     }
 
-    pub(super) fn line(wavelength: f64, thickness: f64, fan_angle: f64) -> Self {
+    fn of_line(wavelength: f64, thickness: f64, fan_angle: f64) -> Self {
         Self {
             line: Some((fan_angle, LineProfile::GaussianTan)),
-            ..Self::spot(wavelength, 0.5 * thickness)
+            ..Self::of_spot(wavelength, 0.5 * thickness)
         }
     }
 

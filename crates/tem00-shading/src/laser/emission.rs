@@ -79,7 +79,7 @@ impl Laser {
         })
     }
 
-    /// Returns the density, per steradian, with which [`sampled_event`](Self::sampled_event) draws
+    /// Returns the density, per steradian, with which [`next_event_sampled`](Self::next_event_sampled) draws
     /// the unit `direction` at `point`.
     pub fn next_event_pdf(&self, point: DVec3, direction: DVec3) -> f64 {
         self.with_emitter(|light| light.next_event_pdf(point.to_array(), direction.to_array()))

@@ -3,9 +3,8 @@
 use std::{
     fs::{self, File},
     io::{self, BufWriter, Read, Write},
-    path::Path,
+    path::{Path, PathBuf},
     process,
-    sync::atomic::{AtomicU64, Ordering},
 };
 
 use num_complex::Complex;
@@ -77,12 +76,7 @@ impl SpeckleStack {
         if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
             return self.write_to(BufWriter::new(File::create(path)?));
         }
-        static PARTS: AtomicU64 = AtomicU64::new(0);
-        let number = PARTS.fetch_add(1, Ordering::Relaxed);
-        let mut name = path.file_name().unwrap_or_default().to_os_string();
-        name.push(format!(".{}-{number}.part", process::id()));
-        let part = path.with_file_name(name);
-        let file = File::create_new(&part)?;
+        let (part, file) = new_part(path)?;
         let written = self
             .write_to(BufWriter::new(&file))
             .and_then(|()| file.sync_all())
@@ -119,6 +113,20 @@ impl SpeckleStack {
         }
         Ok(Self::assemble(field, path, header.interpolation(), slices))
     }
+}
+
+/// Creates a file beside `path` that no other writer of it has, in this process or another.
+fn new_part(path: &Path) -> io::Result<(PathBuf, File)> {
+    for number in 0_u64.. {
+        let mut name = path.file_name().unwrap_or_default().to_os_string();
+        name.push(format!(".{}-{number}.part", process::id()));
+        let part = path.with_file_name(name);
+        match File::create_new(&part) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            created => return created.map(|file| (part, file)),
+        }
+    }
+    Err(io::ErrorKind::AlreadyExists.into())
 }
 
 /// Reads one slice; its memory grows with what has been read.

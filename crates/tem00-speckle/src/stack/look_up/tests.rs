@@ -2,7 +2,7 @@ use std::f64::consts::PI;
 
 use num_complex::Complex;
 use proptest::prelude::*;
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, cast::to_f32};
 use tem00_statistics::rectangular_pixel_contrast;
 
 use super::*;
@@ -263,6 +263,7 @@ fn averages_over_pixels_have_the_contrast_of_pixels() {
 
 /// Among places of the pattern, which keep their bits.
 #[test]
+#[expect(clippy::float_cmp, reason = "exact by definition")]
 fn a_place_that_is_none_has_the_mean_and_correlates_with_nothing() {
     let field = PupilField::from_speckle_size([20, 24], 2.0, 9).unwrap();
     let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
@@ -299,18 +300,14 @@ fn a_place_that_is_none_has_the_mean_and_correlates_with_nothing() {
         let mut batch = [f64::NAN; LANES + 3];
         let [x, y, u] = &places;
         stack.intensity_batch(x, y, u, &mut batch);
-        let single = places.map(|places| places.map(|place| place as f32));
+        let single = places.map(|places| places.map(to_f32));
         let mut rounded = [f32::NAN; LANES + 3];
         let [x, y, u] = &single;
         stack.intensity_batch_f32(x, y, u, &mut rounded);
         for (i, (found, rounded)) in batch.into_iter().zip(rounded).enumerate() {
             let expected = if i == 7 { 1.0 } else { there };
             assert_eq!(found.to_bits(), expected.to_bits(), "{case}, {i}");
-            assert_eq!(
-                rounded.to_bits(),
-                (expected as f32).to_bits(),
-                "{case}, {i}"
-            );
+            assert_eq!(rounded.to_bits(), to_f32(expected).to_bits(), "{case}, {i}");
         }
     }
 }

@@ -222,6 +222,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "tem00-beam",
             "tem00-coherence",
             "tem00-decorrelation",
+            "tem00-shading",
             "tem00-speckle",
         ],
         &["rayon"],

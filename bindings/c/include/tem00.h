@@ -8,14 +8,16 @@
  * failure tem00_last_error() says what is wrong, with the name of the parameter, its value and what is
  * allowed, and tem00_last_error_parameter() names the parameter. Each thread has one place for both, which
  * stays where it is as long as the thread lives and is overwritten by the next failure on that thread: copy
- * what is to be kept. NaN, infinite and senseless numbers are refused: no NaN comes out.
+ * what is to be kept. NaN, infinite and senseless numbers are refused, except in the points and normals at
+ * which speckle is asked for, where the factor is 1 or that of new speckle: no NaN comes out.
  *
  * POINTERS must be valid and aligned. Null is refused with a status, as are results that overlap with
  * what is read; columns of no numbers may be null. What is written is never read before.
  *
- * HANDLES (tem00_light, tem00_stack, tem00_bandwidth, tem00_imaging) come from a function named create or
- * read, which leaves null where it fails, and go to the one named destroy, once; null may be destroyed.
- * They never change, so that threads may use one at the same time.
+ * HANDLES (tem00_light, tem00_camera, tem00_speckle, tem00_speckle_frame; tem00_stack, tem00_bandwidth,
+ * tem00_imaging) come from a function named create or read, which leaves null where it fails, and go to the
+ * one named destroy, once; null may be destroyed. They never change, so that threads may use one at the same
+ * time.
  *
  * ENUMERATIONS in what the caller writes are uint32_t, so that any number may be refused.
  */
@@ -258,6 +260,12 @@ typedef enum {
 typedef struct tem00_bandwidth tem00_bandwidth;
 
 /**
+ * A perspective camera with a thin lens, whose image the speckle is in. It never changes: any
+ * number of threads may ask it at once.
+ */
+typedef struct tem00_camera tem00_camera;
+
+/**
  * A camera focused on a surface: a lens, its pupils and the sensor behind it. It never changes: any
  * number of threads may ask it at once.
  */
@@ -267,6 +275,18 @@ typedef struct tem00_imaging tem00_imaging;
  * A laser in a scene. It never changes: any number of threads may ask it at once.
  */
 typedef struct tem00_light tem00_light;
+
+/**
+ * The speckle of a light in the image of a camera, prepared for the motions of some frames. It
+ * never changes: any number of threads may ask it at once.
+ */
+typedef struct tem00_speckle tem00_speckle;
+
+/**
+ * The speckle of one body in one frame; it outlives the speckle that it came from. It never
+ * changes: any number of threads may ask it at once.
+ */
+typedef struct tem00_speckle_frame tem00_speckle_frame;
 
 /**
  * Speckle that moves and decorrelates. It never changes: any number of threads may look it up at
@@ -710,6 +730,184 @@ typedef struct {
      */
     float fields[28];
 } tem00_light_data;
+
+/**
+ * Parameters of a camera: a thin lens, and a sensor behind it. With 0 in the last three fields the
+ * axis of the lens meets the middle of the image, without tilt or distortion.
+ */
+typedef struct {
+    /**
+     * Centre of the lens, which is its entrance pupil, in metres.
+     */
+    double position[3];
+    /**
+     * A point on the axis of the lens, in metres.
+     */
+    double look_at[3];
+    /**
+     * A direction that points up in the image.
+     */
+    double up[3];
+    /**
+     * Focal length of the lens, in metres.
+     */
+    double focal_length;
+    /**
+     * F-number, at least 0.5: focal length over the diameter of the entrance pupil.
+     */
+    double f_number;
+    /**
+     * Distance along the axis from the lens to what is in focus there, in metres.
+     */
+    double focus_distance;
+    /**
+     * Distance between the centres of neighbouring pixels on the sensor, in metres.
+     */
+    double pixel_pitch;
+    /**
+     * Numbers of pixel columns and rows.
+     */
+    size_t resolution[2];
+    /**
+     * Image point on the axis of the lens, from the middle of the image, in pixels with y down.
+     */
+    double principal_offset[2];
+    /**
+     * Angle by which the sensor is tilted, right-handed about a line in it, and the azimuth of that
+     * line, from the right of the image towards its top; both in radians.
+     */
+    double tilt[2];
+    /**
+     * Coefficients k1, k2 and k3 of the radial distortion, with the signs of `OpenCV`.
+     */
+    double distortion[3];
+} tem00_camera_description;
+
+/**
+ * Motion of a rigid body from the reference state to now: x' = R x + t. All 0 is no motion.
+ */
+typedef struct {
+    /**
+     * Rows of the rotation matrix R, right-handed and orthonormal within 1e-6; all 0 for no
+     * rotation.
+     */
+    double rotation[3][3];
+    /**
+     * Translation t, in metres.
+     */
+    double translation[3];
+} tem00_pose;
+
+/**
+ * Motion of a body, the camera and the light from the reference state to now. Only differences
+ * count: if all three move as one, nothing changes. All 0 is the reference state of body 0.
+ */
+typedef struct {
+    /**
+     * Number of the body. Bodies that move apart have numbers of their own, and speckle of their
+     * own.
+     */
+    size_t body;
+    /**
+     * Pose of the body whose surface is looked at.
+     */
+    tem00_pose surface;
+    /**
+     * Pose of the camera.
+     */
+    tem00_pose camera;
+    /**
+     * Pose of the light.
+     */
+    tem00_pose light;
+} tem00_body_motion;
+
+/**
+ * Parameters of speckle.
+ */
+typedef struct {
+    /**
+     * Seed of the patterns. Two lights want two seeds.
+     */
+    uint64_t seed;
+    /**
+     * Motions of the frames, beside the reference state; null if nothing moves.
+     */
+    const tem00_body_motion *motions;
+    /**
+     * Number of motions.
+     */
+    size_t motion_count;
+    /**
+     * Points x, y, z in the reference state, in metres, one after the other, from which the
+     * largest shift of the speckle is found; null for where the light crosses the plane in focus.
+     */
+    const double *points;
+    /**
+     * Unit normals of the surface at these points; null if there are none.
+     */
+    const double *normals;
+    /**
+     * Number of points.
+     */
+    size_t point_count;
+    /**
+     * Bytes that the patterns may take.
+     */
+    uint64_t memory_limit;
+    /**
+     * Number of equal independent patterns that add up, from 1 on: contrast falls to 1/√looks.
+     */
+    size_t looks;
+    /**
+     * Degree of polarisation of the light that reaches the sensor, from 0 to 1: 1 behind a
+     * polariser.
+     */
+    double polarisation;
+    /**
+     * Number of threads that generate the patterns, at most 1024; 0 for all the cores of the
+     * machine. The patterns are the same, to the last bit, for any number.
+     */
+    uint32_t threads;
+} tem00_speckle_description;
+
+/**
+ * Properties of speckle.
+ */
+typedef struct {
+    /**
+     * What was chosen and why, in UTF-8. The text belongs to the speckle.
+     */
+    const char *summary;
+    /**
+     * Speckle size on the sensor, in pixels.
+     */
+    double speckle_size;
+    /**
+     * Bytes that the patterns take.
+     */
+    uint64_t memory_bytes;
+} tem00_speckle_info;
+
+/**
+ * What has become of the speckle at a point since the reference state.
+ */
+typedef struct {
+    /**
+     * Displacement of the speckle in the image, in pixels with y down.
+     */
+    double displacement[2];
+    /**
+     * Displacement of the pupil over the speckle, in pupil diameters. A motion along the axis counts
+     * by the displacement that leaves the same correlation. Infinite where the speckle is new.
+     */
+    double pupil_shift;
+    /**
+     * Correlation of intensity with the speckle in the reference state, in [0, 1], where it is
+     * looked up at the displacement.
+     */
+    double correlation;
+} tem00_speckle_shift;
 
 /**
  * Parameters of a stack.
@@ -1591,6 +1789,153 @@ tem00_status tem00_light_sample_ray_batch(const tem00_light *light,
  * The pointers are null or valid.
  */
 tem00_status tem00_light_plain_data(const tem00_light *light, tem00_light_data *data);
+
+/**
+ * Frees a camera; null is allowed. No thread may be using it, and it must not be used again.
+ *
+ * `camera` is null, or came from `tem00_camera_create` and was not destroyed.
+ */
+void tem00_camera_destroy(tem00_camera *camera);
+
+/**
+ * Frees speckle, whose frames live on; null is allowed. No thread may be using it, and it must not
+ * be used again.
+ *
+ * `speckle` is null, or came from `tem00_speckle_create` and was not destroyed.
+ */
+void tem00_speckle_destroy(tem00_speckle *speckle);
+
+/**
+ * Frees a frame; null is allowed. No thread may be using it, and it must not be used again.
+ *
+ * `frame` is null, or came from `tem00_speckle_frame_create` and was not destroyed.
+ */
+void tem00_speckle_frame_destroy(tem00_speckle_frame *frame);
+
+/**
+ * Creates a camera.
+ *
+ * On failure `*camera` is null.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_camera_create(const tem00_camera_description *description,
+                                 tem00_camera **camera);
+
+/**
+ * Computes where in the image a point is seen, to be compared with where the renderer's own camera
+ * sees it.
+ *
+ * `point` holds x, y, z in metres; it is refused where the camera cannot see it. `pixel` receives
+ * x and y in pixels, y down, from the upper left corner of the image; it may lie outside.
+ *
+ * The pointers are null or valid, `point` for three numbers and `pixel` for two.
+ */
+tem00_status tem00_camera_project(const tem00_camera *camera, const double *point, double *pixel);
+
+/**
+ * Generates the speckle of a light in the image of a camera, both as they stand in the reference
+ * state: chooses sizes, slices and seeds for the motions and the memory. `tem00_speckle_describe`
+ * says what it chose.
+ *
+ * The light must be a spot or a line; its wavelength counts as that in vacuum. Speckle does not need
+ * camera and light any more once it is created. On failure `*speckle` is null.
+ *
+ * The pointers are null or valid, those to points and normals for three numbers each.
+ */
+tem00_status tem00_speckle_create(const tem00_camera *camera,
+                                  const tem00_light *light,
+                                  const tem00_speckle_description *description,
+                                  tem00_speckle **speckle);
+
+/**
+ * Tells what was chosen for speckle.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_speckle_describe(const tem00_speckle *speckle, tem00_speckle_info *info);
+
+/**
+ * Computes the factors at `count` points that stood elsewhere in the reference state, for a
+ * renderer that knows no bodies but has buffers of an image.
+ *
+ * `previous`, `points` and `normals` hold x, y, z of one point after the other: where the points
+ * were, where they are, and their unit normals. A point counts as carried along without a turn.
+ * Points whose motion is the same, one after the other, are fastest. Those that are not finite
+ * have the factor 1. `factors` must not overlap with what is read.
+ *
+ * The pointers are null or valid, for `3 * count` numbers and for `count` factors.
+ */
+tem00_status tem00_speckle_factors_since(const tem00_speckle *speckle,
+                                         const double *previous,
+                                         const double *points,
+                                         const double *normals,
+                                         size_t count,
+                                         double *factors);
+
+/**
+ * Finds the speckle of a body in a frame: once per body and frame.
+ *
+ * A motion that shifts the speckle farther than those that it was prepared for is refused. On
+ * failure `*frame` is null.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_speckle_frame_create(const tem00_speckle *speckle,
+                                        const tem00_body_motion *motion,
+                                        tem00_speckle_frame **frame);
+
+/**
+ * Computes the factor, with mean 1, by which speckle multiplies the radiance that a point of a
+ * surface sends from the light to the camera.
+ *
+ * `point` and the unit vector `normal` hold x, y, z, both as they are now. The factor is 1 where
+ * the camera does not see the point, NaN included; where the law has no value, as edge-on, the
+ * speckle is new.
+ *
+ * The pointers are null or valid, `point` and `normal` for three numbers.
+ */
+tem00_status tem00_speckle_frame_factor(const tem00_speckle_frame *frame,
+                                        const double *point,
+                                        const double *normal,
+                                        double *factor);
+
+/**
+ * Computes the factors at `count` points: the bits of `tem00_speckle_frame_factor`. Neighbours in
+ * the image, one after the other, are fastest.
+ *
+ * `points` and `normals` hold x, y, z of one point after the other; `factors` must not overlap
+ * with them.
+ *
+ * The pointers are null or valid, for `3 * count` numbers and for `count` factors.
+ */
+tem00_status tem00_speckle_frame_factors(const tem00_speckle_frame *frame,
+                                         const double *points,
+                                         const double *normals,
+                                         size_t count,
+                                         double *factors);
+
+/**
+ * Computes the mean factor over the pixel about the image of a point, for a renderer with one
+ * sample per pixel: 1 where the camera does not see it.
+ *
+ * The pointers are null or valid, `point` and `normal` for three numbers.
+ */
+tem00_status tem00_speckle_frame_average(const tem00_speckle_frame *frame,
+                                         const double *point,
+                                         const double *normal,
+                                         double *average);
+
+/**
+ * Tells what has become of the speckle at a point since the reference state; it is new where the
+ * law has no value or the camera does not see the point.
+ *
+ * The pointers are null or valid, `point` and `normal` for three numbers.
+ */
+tem00_status tem00_speckle_frame_shift(const tem00_speckle_frame *frame,
+                                       const double *point,
+                                       const double *normal,
+                                       tem00_speckle_shift *shift);
 
 /**
  * Frees a stack; null is allowed. No thread may be using it, and it must not be used again.

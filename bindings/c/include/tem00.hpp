@@ -221,6 +221,121 @@ private:
     std::unique_ptr<tem00_light, destroy> handle_;
 };
 
+/** A camera, whose image the speckle is in. Any number of threads may ask it at once. */
+class camera {
+public:
+    explicit camera(const tem00_camera_description &description) {
+        tem00_camera *handle = nullptr;
+        check(tem00_camera_create(&description, &handle));
+        handle_.reset(handle);
+    }
+
+    /** Where in the image `point` is seen, in pixels with y down. */
+    vec2 project(const vec3 &point) const {
+        vec2 pixel{};
+        check(tem00_camera_project(get(), point.data(), pixel.data()));
+        return pixel;
+    }
+
+    /** The handle, for what is called in C. */
+    const tem00_camera *get() const noexcept { return handle_.get(); }
+
+private:
+    struct destroy {
+        void operator()(tem00_camera *handle) const noexcept { tem00_camera_destroy(handle); }
+    };
+
+    std::unique_ptr<tem00_camera, destroy> handle_;
+};
+
+/** The speckle of one body in one frame. Any number of threads may ask it at once. */
+class speckle_frame {
+public:
+    /** Factor, with mean 1, of the radiance that a point sends to the camera. */
+    double factor(const vec3 &point, const vec3 &normal) const {
+        double factor = 0;
+        check(tem00_speckle_frame_factor(get(), point.data(), normal.data(), &factor));
+        return factor;
+    }
+
+    /** Factors at `count` points of x, y, z, with their normals. */
+    void factors(const double *points, const double *normals, std::size_t count,
+                 double *factors) const {
+        check(tem00_speckle_frame_factors(get(), points, normals, count, factors));
+    }
+
+    /** Mean factor over the pixel about the image of a point. */
+    double average(const vec3 &point, const vec3 &normal) const {
+        double average = 0;
+        check(tem00_speckle_frame_average(get(), point.data(), normal.data(), &average));
+        return average;
+    }
+
+    /** What has become of the speckle at a point since the reference state. */
+    tem00_speckle_shift shift(const vec3 &point, const vec3 &normal) const {
+        tem00_speckle_shift shift;
+        check(tem00_speckle_frame_shift(get(), point.data(), normal.data(), &shift));
+        return shift;
+    }
+
+    /** The handle, for what is called in C. */
+    const tem00_speckle_frame *get() const noexcept { return handle_.get(); }
+
+private:
+    friend class speckle;
+
+    struct destroy {
+        void operator()(tem00_speckle_frame *handle) const noexcept {
+            tem00_speckle_frame_destroy(handle);
+        }
+    };
+
+    explicit speckle_frame(tem00_speckle_frame *handle) noexcept : handle_(handle) {}
+
+    std::unique_ptr<tem00_speckle_frame, destroy> handle_;
+};
+
+/** The speckle of a light in the image of a camera. Any number of threads may ask it at once. */
+class speckle {
+public:
+    speckle(const camera &camera, const light &light,
+            const tem00_speckle_description &description) {
+        tem00_speckle *handle = nullptr;
+        check(tem00_speckle_create(camera.get(), light.get(), &description, &handle));
+        handle_.reset(handle);
+    }
+
+    /** What was chosen; its text belongs to this object. */
+    tem00_speckle_info info() const {
+        tem00_speckle_info info;
+        check(tem00_speckle_describe(get(), &info));
+        return info;
+    }
+
+    /** The speckle of a body in a frame, which outlives this; without a motion that of the reference state. */
+    speckle_frame frame(const tem00_body_motion &motion = {}) const {
+        tem00_speckle_frame *handle = nullptr;
+        check(tem00_speckle_frame_create(get(), &motion, &handle));
+        return speckle_frame(handle);
+    }
+
+    /** Factors at `count` points that stood at `previous` in the reference state, from buffers of an image. */
+    void factors_since(const double *previous, const double *points, const double *normals,
+                       std::size_t count, double *factors) const {
+        check(tem00_speckle_factors_since(get(), previous, points, normals, count, factors));
+    }
+
+    /** The handle, for what is called in C. */
+    const tem00_speckle *get() const noexcept { return handle_.get(); }
+
+private:
+    struct destroy {
+        void operator()(tem00_speckle *handle) const noexcept { tem00_speckle_destroy(handle); }
+    };
+
+    std::unique_ptr<tem00_speckle, destroy> handle_;
+};
+
 /** Chooses a stack that repeats nothing in the region, with the seed 0. */
 inline tem00_stack_description plan(const tem00_stack_needs &needs) {
     tem00_stack_description description;

@@ -28,6 +28,8 @@ mod status;
 
 mod light;
 
+mod shading;
+
 mod stack;
 
 mod bandwidth;
@@ -37,6 +39,7 @@ mod imaging;
 pub use bandwidth::*;
 pub use imaging::*;
 pub use light::*;
+pub use shading::*;
 pub use stack::*;
 pub use status::{Status, tem00_last_error, tem00_last_error_parameter};
 

@@ -24,6 +24,8 @@ use tem00_beam::{
     AngularKnot, AngularProfile, AstigmaticLight, BeamError, Emitter, LineLight, Real, SpotLight,
     TabulatedLineLight,
 };
+use tem00_coherence::SpectralLine;
+use tem00_shading::{BeamShape, DVec3, LaserDescription, ShadingError};
 
 use crate::{pointers, status::Failure};
 
@@ -32,6 +34,8 @@ use crate::{pointers, status::Failure};
 pub struct Light {
     double: Laser<f64>,
     single: Result<Laser<f32>, BeamError>,
+    /// As speckle needs it.
+    laser: Result<tem00_shading::Laser, Failure>,
 }
 
 /// The lights of the library, in one precision.
@@ -62,15 +66,18 @@ impl Light {
         to_single: impl Fn(&D) -> Result<S, BeamError>,
         double: impl Fn(D) -> Laser<f64>,
         single: impl Fn(S) -> Laser<f32>,
+        laser: Result<tem00_shading::Laser, Failure>,
     ) -> Self {
         Self {
             single: to_single(&light).map(single),
             double: double(light),
+            laser,
         }
     }
 
-    fn spot(light: SpotLight<f64>) -> Self {
-        Self::plain(light, SpotLight::to_f32, Laser::Spot, Laser::Spot)
+    fn spot(light: SpotLight<f64>, shape: BeamShape) -> Self {
+        let laser = laser(&light, light.ex, shape);
+        Self::plain(light, SpotLight::to_f32, Laser::Spot, Laser::Spot, laser)
     }
 
     fn astigmatic(light: AstigmaticLight<f64>) -> Self {
@@ -79,14 +86,23 @@ impl Light {
             AstigmaticLight::to_f32,
             Laser::Astigmatic,
             Laser::Astigmatic,
+            Err(Failure::argument(
+                "light",
+                "light must be a spot or a line for speckle, got a beam with general astigmatism",
+            )),
         )
     }
 
-    fn line(light: LineLight<f64>) -> Self {
-        Self::plain(light, LineLight::to_f32, Laser::Line, Laser::Line)
+    fn line(light: LineLight<f64>, shape: BeamShape) -> Self {
+        let laser = laser(&light, light.ex, shape);
+        Self::plain(light, LineLight::to_f32, Laser::Line, Laser::Line, laser)
     }
 
-    fn tabulated(light: TabulatedLineLight<'_, f64>, profile: &AngularProfile) -> Self {
+    fn tabulated(
+        light: TabulatedLineLight<'_, f64>,
+        profile: &AngularProfile,
+        shape: BeamShape,
+    ) -> Self {
         let single = profile.to_f32().and_then(|knots| {
             let line = light.to_f32(&knots)?.line;
             Ok(Laser::Tabulated(line, knots))
@@ -94,6 +110,7 @@ impl Light {
         Self {
             double: Laser::Tabulated(light.line, light.knots.to_vec()),
             single,
+            laser: laser(&light, light.line.ex, shape),
         }
     }
 
@@ -101,6 +118,32 @@ impl Light {
     fn single(&self) -> Result<&Laser<f32>, Failure> {
         self.single.as_ref().map_err(|error| (*error).into())
     }
+
+    /// The light as speckle needs it, if it can.
+    pub(crate) fn laser(&self) -> Result<&tem00_shading::Laser, Failure> {
+        self.laser.as_ref().map_err(Clone::clone)
+    }
+}
+
+/// Makes of a placed light, whose first axis is `ex`, what speckle needs.
+fn laser(
+    light: &impl Emitter<f64>,
+    ex: [f64; 3],
+    shape: BeamShape,
+) -> Result<tem00_shading::Laser, Failure> {
+    let position = DVec3::from_array(light.origin());
+    let line = SpectralLine::monochromatic(light.wavelength()).map_err(ShadingError::from);
+    let laser = line.and_then(|line| {
+        tem00_shading::Laser::new(LaserDescription {
+            line,
+            power: light.power(),
+            position,
+            look_at: position + DVec3::from_array(light.axis()),
+            line_direction: DVec3::from_array(ex),
+            shape,
+        })
+    });
+    laser.map_err(|error| Failure::argument("light", format!("light: {error}")))
 }
 
 /// Frees a light; null is allowed. No thread may be using it, and it must not be used again.

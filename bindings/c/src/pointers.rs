@@ -151,21 +151,21 @@ pub(crate) unsafe fn rows<'a, const N: usize>(
     Ok(unsafe { slice::from_raw_parts(pointer, count) })
 }
 
-/// Borrows `count` records to write, which overlap with none of the numbers that are `read`.
+/// Borrows `count` records to write, which overlap with none of those that are `read`.
 ///
 /// # Safety
 ///
 /// The pointer is null, or points to `count` records that nobody else touches during `'a`.
-pub(crate) unsafe fn records<'a, T, const N: usize>(
+pub(crate) unsafe fn records<'a, T, R, const N: usize>(
     count: usize,
     (name, pointer): Named<*mut T>,
-    read: [Named<&[f64]>; N],
+    read: [Named<&[R]>; N],
 ) -> Result<&'a mut [T], Failure> {
     if count == 0 {
         return Ok(&mut []);
     }
     check(name, pointer, count)?;
-    let read = read.map(|(name, numbers)| (name, bytes(numbers.as_ptr(), numbers.len())));
+    let read = read.map(|(name, column)| (name, bytes(column.as_ptr(), column.len())));
     check_apart(name, &bytes(pointer, count), &read)?;
     // SAFETY: not null, aligned, valid for `count` reads and writes by the contract of this
     // function, and disjoint from all that is read.

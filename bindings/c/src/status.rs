@@ -9,6 +9,7 @@ use std::{
 use tem00_beam::BeamError;
 use tem00_coherence::CoherenceError;
 use tem00_decorrelation::DecorrelationError;
+use tem00_shading::ShadingError;
 use tem00_speckle::{SpeckleError, StackFileError};
 
 /// Success of a call, or the kind of its failure. The message is that of `tem00_last_error`.
@@ -85,6 +86,30 @@ impl From<SpeckleError> for Failure {
             _ => Status::InvalidArgument,
         };
         Self::new(status, error.parameter(), error)
+    }
+}
+
+impl From<ShadingError> for Failure {
+    fn from(error: ShadingError) -> Self {
+        match error {
+            ShadingError::Speckle(error) => error.into(),
+            ShadingError::OutOfRange {
+                parameter: "memory",
+                value,
+                allowed,
+            } => {
+                let message = format!("memory_limit must be {allowed}, got {value}");
+                Self::new(Status::Memory, "memory_limit", message)
+            }
+            ShadingError::BeyondPoses { shift, held } => {
+                let message = format!(
+                    "motion moves the pupil over the speckle by {shift:.3} of its diameters, and the \
+                     speckle holds {held:.3}: add it to the motions of the description"
+                );
+                Self::argument("motion", message)
+            }
+            _ => Self::argument(error.parameter().unwrap_or_default(), error),
+        }
     }
 }
 

@@ -3,6 +3,7 @@ use tem00_beam::{
     GeneralAstigmaticBeam, LaserLine, LineLight, LocatedBeam, SecondMoments, SpotLight,
     TabulatedLineLight,
 };
+use tem00_shading::BeamShape;
 
 use super::Light;
 use crate::{
@@ -164,7 +165,12 @@ impl SpotDescription {
         let beam = beam.with_m_squared(self.m_squared)?;
         let placement = self.placement.placed();
         let light = SpotLight::place(&beam, self.waist_distance, &placement, self.power)?;
-        Ok(Light::spot(light))
+        let shape = BeamShape::Spot {
+            waist_radius: [self.waist_radius; 2],
+            waist_distance: [self.waist_distance; 2],
+            m_squared: [self.m_squared; 2],
+        };
+        Ok(Light::spot(light, shape))
     }
 }
 
@@ -173,7 +179,12 @@ impl EllipticDescription {
         let beam = AstigmaticBeam::new(self.axis(0)?, self.axis(1)?)?;
         let beam = beam.with_rotation(self.rotation)?;
         let light = SpotLight::place_astigmatic(&beam, &self.placement.placed(), self.power)?;
-        Ok(Light::spot(light))
+        let shape = BeamShape::Spot {
+            waist_radius: self.waist_radius,
+            waist_distance: self.waist_distance,
+            m_squared: self.m_squared,
+        };
+        Ok(Light::spot(light, shape))
     }
 
     /// One axis of the beam; a refusal says which.
@@ -217,13 +228,18 @@ impl LineDescription {
         let beam = beam.with_m_squared(self.m_squared)?;
         let line = LaserLine::new(beam, self.fan()?, profile)?;
         let placement = self.placement.placed();
+        let shape = BeamShape::Line {
+            waist_radius: self.waist_radius,
+            m_squared: self.m_squared,
+            fan: *line.fan(),
+            profile: line.profile().clone(),
+        };
         if let tem00_beam::LineProfile::Tabulated(profile) = line.profile() {
             let light = TabulatedLineLight::place(&line, &placement, self.power)?;
-            return Ok(Light::tabulated(light, profile));
+            return Ok(Light::tabulated(light, profile, shape));
         }
-        Ok(Light::line(LineLight::place(
-            &line, &placement, self.power,
-        )?))
+        let light = LineLight::place(&line, &placement, self.power)?;
+        Ok(Light::line(light, shape))
     }
 
     fn fan(&self) -> Result<FanGeometry, Failure> {

@@ -21,7 +21,7 @@ macro_rules! structs {
     };
 }
 
-const STRUCTS: [(&str, usize, &str, usize); 33] = structs![
+const STRUCTS: [(&str, usize, &str, usize); 39] = structs![
     Placement "placement" fan_axis,
     SpotDescription "spot_description" m_squared,
     EllipticDescription "elliptic_description" rotation,
@@ -38,6 +38,12 @@ const STRUCTS: [(&str, usize, &str, usize); 33] = structs![
     NextEventColumns "next_event_columns" e_perp,
     NextEventColumnsF32 "next_event_columns_f32" e_perp,
     LightData "light_data" fields,
+    CameraDescription "camera_description" distortion,
+    Pose "pose" translation,
+    BodyMotion "body_motion" light,
+    SpeckleDescription "speckle_description" threads,
+    SpeckleInfo "speckle_info" memory_bytes,
+    SpeckleShift "speckle_shift" correlation,
     StackDescription "stack_description" threads,
     StackNeeds "stack_needs" memory_limit,
     StackInfo "stack_info" memory_bytes,

@@ -115,7 +115,8 @@ fn the_documentation_names_functions_that_the_header_or_the_shaders_have() {
         .map(|name| read(format!("crates/tem00-{name}/shaders/tem00_{name}.wgsl")));
     let texts = [read("bindings/c/include/tem00.h"), shaders.concat()].concat();
     let names = page.split('`').filter(|word| {
-        let kinds = ["tem00_light_", "tem00_stack_", "tem00_imaging_"];
+        let kinds = ["camera", "imaging", "light", "speckle", "stack"];
+        let kinds = kinds.map(|kind| format!("tem00_{kind}_"));
         kinds.iter().any(|kind| word.starts_with(kind))
     });
     let missing: Vec<_> = names
@@ -125,6 +126,9 @@ fn the_documentation_names_functions_that_the_header_or_the_shaders_have() {
         missing.is_empty(),
         "neither in tem00.h nor in WGSL: {missing:?}"
     );
+    let program = read("integrations/cpp/moved_spot.cpp");
+    let shown = format!("```cpp\n{program}```\n");
+    assert!(page.contains(&shown), "the program in C++ is another");
 }
 
 const fn crosses_threads<T: Send + Sync>() {}

@@ -196,6 +196,55 @@ void cameras() {
            "the differentials of a point source have its curvature");
 }
 
+tem00::speckle_frame moved_frame(const tem00_camera_description &lens, const tem00_body_motion &motion) {
+    auto wide = spot();
+    wide.waist_radius = 5e-3;
+    tem00_speckle_description wanted = {};
+    wanted.motions = &motion;
+    wanted.motion_count = 1;
+    wanted.memory_limit = 64 << 20;
+    wanted.looks = 1;
+    wanted.polarisation = 1;
+    const tem00::speckle speckle(tem00::camera(lens), tem00::light(wide), wanted);
+    expect(std::string(speckle.info().summary).find("in 2 frames") != std::string::npos,
+           "speckle says what was chosen");
+    const std::array<double, 3> point = {1e-4, 0, 0}, before = {0, 0, 0}, normal = {0, 0, 1};
+    std::array<double, 1> factor;
+    speckle.factors_since(before.data(), point.data(), normal.data(), 1, factor.data());
+    expect(factor[0] == speckle.frame(motion).factor(point, normal), "a buffer has the bits of a hit");
+    return speckle.frame(motion);
+}
+
+void speckles() {
+    tem00_camera_description lens = {};
+    lens.position[2] = lens.focus_distance = 0.3;
+    lens.up[1] = 1;
+    lens.focal_length = 25e-3;
+    lens.f_number = 8;
+    lens.pixel_pitch = 3.45e-6;
+    lens.resolution[0] = lens.resolution[1] = 64;
+    const auto middle = tem00::camera(lens).project({0, 0, 0});
+    expect(middle == tem00::vec2{32, 32}, "a camera sees what it looks at in the middle");
+
+    tem00_body_motion motion = {};
+    motion.surface.translation[0] = 1e-4;
+    const auto frame = moved_frame(lens, motion);  // the speckle is gone, its frame is not
+    // 0.1 mm over a pupil of 25 mm / 8.
+    const auto shift = frame.shift({1e-4, 0, 0}, {0, 0, 1});
+    expect(std::abs(shift.pupil_shift / 0.032 - 1) < 1e-4, "speckle moves over the pupil with a plane");
+    expect(shift.correlation == tem00::correlation(shift.pupil_shift, 0), "what is left is the overlap");
+    const std::array<double, 6> points = {0, 0, 0, NAN, 0, 0}, normals = {0, 0, 1, 0, 0, 1};
+    std::array<double, 2> factors;
+    frame.factors(points.data(), normals.data(), 2, factors.data());
+    expect(factors[0] == frame.factor({0, 0, 0}, {0, 0, 1}) && factors[1] == 1,
+           "factors in batches are those of hits, and 1 out of sight");
+    expect(frame.average({0, 0, 0}, {0, 0, 1}) > 0, "a pixel has a mean");
+    motion.surface.rotation[0][0] = 2;
+    expect(thrown([&] { moved_frame(lens, motion); }) ==
+               refusal(TEM00_STATUS_INVALID_ARGUMENT, "motions[0].surface.rotation"),
+           "a matrix that is no rotation is refused by name");
+}
+
 // Threads ask one light at once, and each has its own message.
 void threads() {
     const tem00::light light(spot());
@@ -233,6 +282,7 @@ int main(int count, char **arguments) {
         stacks(arguments[1]);
         linewidths();
         cameras();
+        speckles();
         threads();
     } catch (const std::exception &error) {
         std::fprintf(stderr, "%s\n", error.what());

@@ -505,14 +505,14 @@ fn speckle_is_refused_by_the_name_of_what_is_wrong() {
     each_is_refused(
         [motion().0; 3],
         [
-            ("motions[2].surface.rotation", |d| {
-                d[2].surface.rotation[1][1] = 0.9
+            ("motions[2].surface.rotation", |[.., d]| {
+                d.surface.rotation[1][1] = 0.9;
             }),
-            ("motions[0].camera.translation", |d| {
-                d[0].camera.translation[1] = f64::NAN
+            ("motions[0].camera.translation", |[d, ..]| {
+                d.camera.translation[1] = f64::NAN;
             }),
-            ("motions[1].light.rotation", |d| {
-                d[1].light.rotation[0][0] = f64::NAN
+            ("motions[1].light.rotation", |[_, d, _]| {
+                d.light.rotation[0][0] = f64::NAN;
             }),
         ],
         |motions| {

@@ -101,12 +101,8 @@ impl From<ShadingError> for Failure {
                 let message = format!("memory_limit must be {allowed}, got {value}");
                 Self::new(Status::Memory, "memory_limit", message)
             }
-            ShadingError::BeyondPoses { shift, held } => {
-                let message = format!(
-                    "motion moves the pupil over the speckle by {shift:.3} of its diameters, and the \
-                     speckle holds {held:.3}: add it to the motions of the description"
-                );
-                Self::argument("motion", message)
+            ShadingError::BeyondPoses { .. } => {
+                Self::argument("motion", format!("motion: {error}"))
             }
             _ => Self::argument(error.parameter().unwrap_or_default(), error),
         }

@@ -84,7 +84,7 @@ impl fmt::Display for ShadingError {
             Self::BeyondPoses { shift, held } => write!(
                 f,
                 "this frame moves the pupil over the speckle by {shift:.3} of its diameters, and the speckle holds \
-                 {held:.3}: pass its motion to `for_poses`"
+                 {held:.3}: prepare it for this motion, too"
             ),
             Self::Camera(source) => source.fmt(f),
             Self::Spectrum(source) => source.fmt(f),

@@ -235,6 +235,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "tem00-coherence",
             "tem00-decorrelation",
             "tem00-numerics",
+            "tem00-shading",
             "tem00-speckle",
             "tem00-statistics",
         ],

@@ -173,7 +173,7 @@ fn method(attributes: &[Attribute], signature: &syn::Signature, class: &str) -> 
         return Some(Member::Method(function, ""));
     }
     match function.name.as_str() {
-        "__repr__" | "__reduce__" => return None,
+        "__repr__" | "__str__" | "__reduce__" => return None,
         "__getnewargs__" => function.returns = Python::One("tuple[object, ...]".to_owned()),
         "__getnewargs_ex__" => {
             function.returns = Python::One("tuple[tuple[()], dict[str, object]]".to_owned());

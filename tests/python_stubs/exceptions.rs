@@ -56,6 +56,10 @@ const METHODS: &[(&str, &str)] = &[
 ",
     ),
     (
+        "SpeckleFrame.amplitude",
+        "    def amplitude(self, points: Vectors, normals: Vectors) -> complex | NDArray[np.complex128]: ...\n",
+    ),
+    (
         "SpeckleStack.amplitude_at",
         "    @overload
     def amplitude_at(self, x: float, y: float, u: float) -> complex: ...

@@ -16,6 +16,7 @@ const MODULES: &[(&str, &str, &str)] = &[
     ("closed_form", "beam/closed_form.rs", "beam/closed_form.pyi"),
     ("coherence", "coherence.rs", "coherence.pyi"),
     ("decorrelation", "decorrelation.rs", "decorrelation.pyi"),
+    ("shading", "shading.rs", "shading.pyi"),
     ("speckle", "speckle.rs", "speckle.pyi"),
     ("statistics", "statistics.rs", "statistics.pyi"),
 ];
@@ -39,6 +40,8 @@ const WORDS: &[(&str, &[&str])] = &[
     ),
     ("numpy.typing", &["NDArray"]),
     ("typing_extensions", &["disjoint_base"]),
+    ("tem00.beam", &["Emitter", "LineProfile", "NextEvent"]),
+    ("tem00.decorrelation", &["RigidMotion"]),
     (
         "tem00._typing",
         &[
@@ -130,7 +133,7 @@ fn stub(source: &str, module: &str, declared: &Declared) -> String {
             inner += &format!("from tem00.{module} import {name} as {name}\n");
         }
     }
-    let imports = imports(&body) + &inner;
+    let imports = imports(&body, &names) + &inner;
     let all: String = names
         .iter()
         .map(|name| format!("    \"{name}\",\n"))
@@ -138,8 +141,8 @@ fn stub(source: &str, module: &str, declared: &Declared) -> String {
     format!("{imports}\n__all__ = [\n{all}]\n\n{body}")
 }
 
-/// The imports of the words that a stub uses.
-fn imports(body: &str) -> String {
+/// The imports of the words that a stub uses, but for its own.
+fn imports(body: &str, own: &[String]) -> String {
     let used: BTreeSet<_> = body
         .split(|c: char| !c.is_alphanumeric() && c != '_')
         .collect();
@@ -148,7 +151,7 @@ fn imports(body: &str) -> String {
         let words: Vec<_> = words
             .iter()
             .copied()
-            .filter(|word| used.contains(word))
+            .filter(|word| used.contains(word) && own.iter().all(|own| own != word))
             .collect();
         if *module == "numpy.typing" && used.contains("np") {
             text += "import numpy as np\n";

@@ -78,6 +78,7 @@ pub(crate) fn argument(ty: &Type, class: &str) -> Python {
                 "Numbers" | "Floats" => Python::Either("float", "Numbers"),
                 "Self" => Python::One(class.to_owned()),
                 "Option" => Python::One(format!("{} | None", text_of(inner()))),
+                "Vec" => Python::One(format!("Sequence[{}]", text_of(inner()))),
                 "PyRef" | "Bound" => inner().unwrap_or(Python::Hidden),
                 name => Python::One(named(name, ARGUMENTS)),
             }

@@ -11,6 +11,7 @@ mod emitter;
 mod fit;
 mod gaussian;
 mod general;
+mod laser;
 mod light;
 mod lights;
 mod line;
@@ -19,10 +20,14 @@ mod located;
 mod matrices;
 mod placement;
 mod profile;
-mod records;
+pub(crate) mod records;
 mod rows;
 
 use pyo3::prelude::*;
+
+pub(crate) use self::{
+    emitter::Emitter, laser::light_of, profile::LineProfile, records::NextEvent,
+};
 
 /// Gaussian beams, laser lines, and the lights that a renderer places.
 ///

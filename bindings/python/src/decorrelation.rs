@@ -13,6 +13,8 @@ mod wavefront;
 
 use pyo3::prelude::*;
 
+pub(crate) use self::rigid::RigidMotion;
+
 /// Imaging geometry, and how speckle moves and changes.
 ///
 /// Vectors are arrays of shape (3,) in world coordinates or of shape (2,) along b1 (to the right)

@@ -13,6 +13,7 @@ mod coherence;
 mod decorrelation;
 mod error;
 mod pickling;
+mod shading;
 mod speckle;
 mod statistics;
 
@@ -31,7 +32,7 @@ mod _tem00 {
     #[pymodule_export]
     use super::{
         beam::beam, coherence::coherence, decorrelation::decorrelation, error::ParameterError,
-        speckle::speckle, statistics::statistics,
+        shading::shading, speckle::speckle, statistics::statistics,
     };
 
     #[cfg(not(target_family = "wasm"))]

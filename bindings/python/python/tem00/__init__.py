@@ -14,6 +14,7 @@ from tem00._tem00 import (
     beam,
     coherence,
     decorrelation,
+    shading,
     speckle,
     statistics,
 )
@@ -30,15 +31,25 @@ def _register(module: ModuleType, name: str) -> None:
             inner.__module__ = name
 
 
-for _short in ("beam", "coherence", "decorrelation", "speckle", "statistics"):
+for _short in ("beam", "coherence", "decorrelation", "shading", "speckle", "statistics"):
     _register(getattr(_tem00, _short), f"tem00.{_short}")
 
+Camera = shading.Camera
+Laser = shading.Laser
+Pose = decorrelation.RigidMotion
+Speckle = shading.Speckle
+
 __all__ = [
+    "Camera",
+    "Laser",
     "ParameterError",
+    "Pose",
+    "Speckle",
     "__version__",
     "beam",
     "coherence",
     "decorrelation",
+    "shading",
     "speckle",
     "statistics",
 ]

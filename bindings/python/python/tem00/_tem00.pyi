@@ -1,6 +1,7 @@
 from tem00 import beam as beam
 from tem00 import coherence as coherence
 from tem00 import decorrelation as decorrelation
+from tem00 import shading as shading
 from tem00 import speckle as speckle
 from tem00 import statistics as statistics
 
@@ -11,6 +12,7 @@ __all__ = [
     "coherence",
     "decorrelation",
     "main",
+    "shading",
     "speckle",
     "statistics",
 ]

@@ -9,7 +9,7 @@ use super::{
     records::{ApertureHit, Bounds, NextEvent, RayPdf, RaySample, SampledEvent},
     rows::{Precision, array_of},
 };
-use crate::arrays::{Array, Numbers, Values, Vector, Vectors, evaluate};
+use crate::arrays::{Array, Column, Numbers, Values, Vector, Vectors, evaluate};
 
 /// A light that a renderer can evaluate and sample: what all placed lights have in common.
 ///
@@ -137,18 +137,8 @@ impl Emitter {
         y: Numbers<'py>,
         z: Numbers<'py>,
     ) -> PyResult<Option<NextEvent>> {
-        let points = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
-        let inner: [&[usize]; 4] = [&[3], &[], &[3], &[]];
-        let [point, distance, wi, e_perp] = evaluate(py, points, inner, |points, out| {
-            self.0.next_events(points, out);
-        })?;
-        let event = NextEvent {
-            point: point.unbind(),
-            distance: distance.unbind(),
-            wi: wi.unbind(),
-            e_perp: e_perp.clone().unbind(),
-        };
-        Ok((!is_dark_number(&e_perp)).then_some(event))
+        let event = self.event_at(py, coordinates([("x", &x), ("y", &y), ("z", &z)])?)?;
+        Ok((!is_dark_number(event.e_perp.bind(py))).then_some(event))
     }
 
     /// Return the light at points as one direction each, drawn from the phase-space density there.
@@ -438,6 +428,22 @@ impl Emitter {
     fn vector(&self, row: usize) -> Vector<3> {
         let [x, y, z, _] = self.0.frame_rows()[row];
         [x, y, z].into()
+    }
+}
+
+impl Emitter {
+    /// Returns the light at points, all members 0 where there is none.
+    pub(crate) fn event_at(&self, py: Python<'_>, points: [Column<'_>; 3]) -> PyResult<NextEvent> {
+        let inner: [&[usize]; 4] = [&[3], &[], &[3], &[]];
+        let [point, distance, wi, e_perp] = evaluate(py, points, inner, |points, out| {
+            self.0.next_events(points, out);
+        })?;
+        Ok(NextEvent {
+            point: point.unbind(),
+            distance: distance.unbind(),
+            wi: wi.unbind(),
+            e_perp: e_perp.unbind(),
+        })
     }
 }
 

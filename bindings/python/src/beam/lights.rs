@@ -112,7 +112,7 @@ methods! {
 }
 
 impl SpotLight {
-    fn of(py: Python<'_>, light: physics::SpotLight<f64>) -> PyResult<Py<Self>> {
+    pub(super) fn of(py: Python<'_>, light: physics::SpotLight<f64>) -> PyResult<Py<Self>> {
         let base = PyClassInitializer::from(Emitter(Light::Spot(light)));
         Py::new(py, base.add_subclass(Self(light)))
     }

@@ -159,10 +159,7 @@ impl TabulatedLineLight {
         let physics::LineProfile::Tabulated(profile) = line.0.profile() else {
             return Err(physics::BeamError::NotTabulated).or_raise();
         };
-        let (line, profile) = (light.line, profile.clone());
-        let base = Emitter(Light::Tabulated(line, profile.clone()));
-        let light = PyClassInitializer::from(base).add_subclass(Self { line, profile });
-        Py::new(py, light)
+        Self::of(py, light.line, profile.clone())
     }
 
     /// The line but for its profile. By itself it is dark.
@@ -179,4 +176,15 @@ methods! {
 
     /// The profile along the fan.
     get profile -> AngularProfile = AngularProfile(this.profile.clone());
+}
+
+impl TabulatedLineLight {
+    pub(super) fn of(
+        py: Python<'_>,
+        line: physics::LineLight<f64>,
+        profile: physics::AngularProfile,
+    ) -> PyResult<Py<Self>> {
+        let base = PyClassInitializer::from(Emitter(Light::Tabulated(line, profile.clone())));
+        Py::new(py, base.add_subclass(Self { line, profile }))
+    }
 }

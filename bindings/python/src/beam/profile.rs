@@ -21,7 +21,7 @@ use crate::{
 /// Powell profile.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct LineProfile(pub(super) physics::LineProfile);
+pub(crate) struct LineProfile(pub(crate) physics::LineProfile);
 
 #[pymethods]
 impl LineProfile {

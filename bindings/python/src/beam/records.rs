@@ -37,6 +37,8 @@ macro_rules! record {
     };
 }
 
+pub(crate) use record;
+
 record! {
     "tem00.beam",
     /// The light that arrives at a point, as one direction and one irradiance.
@@ -163,7 +165,7 @@ impl RayPdf {
 }
 
 /// The values of a record as Python would write its constructor.
-pub(super) fn shown(py: Python<'_>, name: &str, fields: &[(&str, &Py<PyAny>)]) -> PyResult<String> {
+pub(crate) fn shown(py: Python<'_>, name: &str, fields: &[(&str, &Py<PyAny>)]) -> PyResult<String> {
     let mut text = Vec::new();
     for (field, value) in fields {
         text.push(format!("{field}={}", value.bind(py).repr()?));

@@ -18,7 +18,7 @@ use crate::{
 ///     Translation in metres.
 #[pyclass(frozen, eq, module = "tem00.decorrelation")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct RigidMotion(pub(super) physics::RigidMotion);
+pub(crate) struct RigidMotion(pub(crate) physics::RigidMotion);
 
 #[pymethods]
 impl RigidMotion {
@@ -85,7 +85,7 @@ impl RigidMotion {
         Ok(array3(py, self.0.direction(vec3("direction", &direction)?)))
     }
 
-    fn __repr__(&self) -> String {
+    pub(crate) fn __repr__(&self) -> String {
         let (rotation, translation) = (self.0.rotation(), self.0.translation());
         format!("RigidMotion({}, {})", shown33(rotation), shown(translation))
     }

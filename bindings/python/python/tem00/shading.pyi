@@ -1,0 +1,136 @@
+from collections.abc import Sequence
+from typing import ClassVar, SupportsIndex, final
+import numpy as np
+from numpy.typing import NDArray
+from tem00.beam import Emitter, LineProfile, NextEvent
+from tem00.decorrelation import RigidMotion
+from tem00._typing import Counts, FloatArray, Numbers, Values, Vector, Vectors
+
+__all__ = [
+    "Camera",
+    "Laser",
+    "Speckle",
+    "SpeckleFrame",
+    "SpeckleShift",
+]
+
+
+@final
+class Camera:
+    def __new__(
+        cls,
+        *,
+        position: Vector | None = None,
+        look_at: Vector | None = None,
+        up: Vector | None = None,
+        focal_length: float = ...,
+        f_number: float = ...,
+        focus_distance: float = ...,
+        pixel_pitch: float = ...,
+        resolution: Counts | None = None,
+        principal_point: Vector | None = None,
+        tilt: Vector | None = None,
+        distortion: Vector | None = None,
+        depth_of_field: bool = ...,
+    ) -> Camera: ...
+    def ray(self, pixels: Vectors) -> tuple[FloatArray, FloatArray]: ...
+    @property
+    def position(self) -> FloatArray: ...
+    @property
+    def resolution(self) -> tuple[int, int]: ...
+    def __eq__(self, value: object, /) -> bool: ...
+    def __ne__(self, value: object, /) -> bool: ...
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+
+@final
+class Laser:
+    @staticmethod
+    def spot(
+        wavelength: float,
+        waist_radius: Numbers,
+        *,
+        origin: Vector,
+        target: Vector,
+        line_direction: Vector | None = None,
+        power: float = ...,
+        focused_at: float | None = None,
+        m_squared: float = ...,
+    ) -> Laser: ...
+    @staticmethod
+    def line(
+        wavelength: float,
+        thickness: float,
+        fan_angle: float,
+        *,
+        origin: Vector,
+        target: Vector,
+        line_direction: Vector | None = None,
+        profile: LineProfile | None = None,
+        power: float = ...,
+        focused_at: float | None = None,
+        m_squared: float = ...,
+    ) -> Laser: ...
+    def next_event(self, points: Vectors) -> NextEvent: ...
+    @property
+    def light(self) -> Emitter: ...
+    def __eq__(self, value: object, /) -> bool: ...
+    def __ne__(self, value: object, /) -> bool: ...
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+
+@final
+class Speckle:
+    def __new__(
+        cls,
+        camera: Camera,
+        laser: Laser,
+        seed: SupportsIndex,
+        *,
+        poses: Sequence[RigidMotion] | None = None,
+        camera_poses: Sequence[RigidMotion] | None = None,
+        laser_poses: Sequence[RigidMotion] | None = None,
+        at_points: tuple[Vectors, Vectors] | Sequence[Vectors] | None = None,
+        memory: SupportsIndex | None = None,
+        looks: SupportsIndex | None = None,
+        polarisation: float = ...,
+    ) -> Speckle: ...
+    def frame(
+        self,
+        surface: RigidMotion | None = None,
+        camera: RigidMotion | None = None,
+        laser: RigidMotion | None = None,
+        body: SupportsIndex | None = None,
+    ) -> SpeckleFrame: ...
+    def factors_since(self, previous: Vectors, points: Vectors, normals: Vectors) -> Values: ...
+    @property
+    def memory_bytes(self) -> int: ...
+    @property
+    def speckle_size(self) -> float: ...
+
+@final
+class SpeckleFrame:
+    def factor(self, points: Vectors, normals: Vectors) -> Values: ...
+    def average(self, points: Vectors, normals: Vectors) -> Values: ...
+    def amplitude(self, points: Vectors, normals: Vectors) -> complex | NDArray[np.complex128]: ...
+    def shift(self, points: Vectors, normals: Vectors) -> SpeckleShift: ...
+
+@final
+class SpeckleShift:
+    def __new__(
+        cls,
+        displacement: FloatArray,
+        pupil: Values,
+        across: FloatArray,
+        axial: Values,
+        correlation: Values,
+    ) -> SpeckleShift: ...
+    def __getnewargs__(self) -> tuple[object, ...]: ...
+    @property
+    def displacement(self) -> FloatArray: ...
+    @property
+    def pupil(self) -> Values: ...
+    @property
+    def across(self) -> FloatArray: ...
+    @property
+    def axial(self) -> Values: ...
+    @property
+    def correlation(self) -> Values: ...

@@ -1,0 +1,157 @@
+use pyo3::prelude::*;
+use tem00_shading::{self as physics, CameraDescription, DVec2, ShadingError};
+
+use super::arguments::vector;
+use crate::{
+    arrays::{Array, Column, Components, Vector, Vectors, Whole, evaluate},
+    error::OrRaise,
+};
+
+/// A camera: a thin lens, and a sensor that may be tilted.
+///
+/// What is left out is that of a lens of 25 mm at f/8 and 640 × 480 pixels of 3.45 µm, 0.3 m above the origin, which it
+/// looks at and has in focus.
+///
+/// Parameters
+/// ----------
+/// position : array_like, shape (3,), optional
+///     Centre of the lens, in metres.
+/// look_at : array_like, shape (3,), optional
+///     A point on the axis of the lens, in metres.
+/// up : array_like, shape (3,), optional
+///     A direction that points up in the image.
+/// focal_length : float, optional
+///     Focal length of the lens, in metres.
+/// f_number : float, optional
+///     Focal length by diameter of the entrance pupil.
+/// focus_distance : float, optional
+///     Distance from the lens along its axis to what is in focus there, in metres.
+/// pixel_pitch : float, optional
+///     Distance between the centres of neighbouring pixels, in metres.
+/// resolution : (int, int), optional
+///     Numbers of pixel columns and rows.
+/// principal_point : array_like, shape (2,), optional
+///     Image point on the axis of the lens, in pixels; the middle of the image if left out.
+/// tilt : array_like, shape (2,), optional
+///     Angle between the normal of the sensor and the axis of the lens, and the direction of the line about which the
+///     sensor turns, from the right of the image towards its top; in radians.
+/// distortion : array_like, shape (3,), optional
+///     Coefficients k₁, k₂ and k₃ of the radial distortion, with the signs of OpenCV.
+/// depth_of_field : bool, optional
+///     Whether what is out of focus is blurred.
+#[pyclass(frozen, eq, module = "tem00.shading")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Camera(pub(super) physics::Camera);
+
+fn plain() -> CameraDescription {
+    CameraDescription::default()
+}
+
+#[pymethods]
+impl Camera {
+    #[new]
+    #[pyo3(signature = (
+        *,
+        position = None,
+        look_at = None,
+        up = None,
+        focal_length = plain().focal_length,
+        f_number = plain().f_number,
+        focus_distance = plain().focus_distance,
+        pixel_pitch = plain().pixel_pitch,
+        resolution = None,
+        principal_point = None,
+        tilt = None,
+        distortion = None,
+        depth_of_field = true,
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "each goes by its name")]
+    fn new(
+        position: Option<Components<'_>>,
+        look_at: Option<Components<'_>>,
+        up: Option<Components<'_>>,
+        focal_length: f64,
+        f_number: f64,
+        focus_distance: f64,
+        pixel_pitch: f64,
+        resolution: Option<[Whole<'_>; 2]>,
+        principal_point: Option<Components<'_>>,
+        tilt: Option<Components<'_>>,
+        distortion: Option<Components<'_>>,
+        depth_of_field: bool,
+    ) -> PyResult<Self> {
+        let plain = plain();
+        let mut description = CameraDescription {
+            position: vector("position", position.as_ref(), plain.position.into())?.into(),
+            look_at: vector("look_at", look_at.as_ref(), plain.look_at.into())?.into(),
+            up: vector("up", up.as_ref(), plain.up.into())?.into(),
+            focal_length,
+            f_number,
+            focus_distance,
+            pixel_pitch,
+            depth_of_field,
+            ..plain
+        };
+        if let Some([width, height]) = resolution {
+            let name = "resolution";
+            description.resolution = [width.unsigned(name)?, height.unsigned(name)?];
+        }
+        if let Some(point) = principal_point {
+            description.principal_point = Some(point.vector("principal_point")?.into());
+        }
+        [description.tilt.angle, description.tilt.azimuth] =
+            vector("tilt", tilt.as_ref(), [0.0; 2])?;
+        let coefficients = &mut description.distortion;
+        [coefficients.k1, coefficients.k2, coefficients.k3] =
+            vector("distortion", distortion.as_ref(), [0.0; 3])?;
+        let camera = physics::Camera::new(description).map_err(ShadingError::from);
+        Ok(Self(camera.or_raise()?))
+    }
+
+    /// Return the rays that arrive at image points through the centre of the lens.
+    ///
+    /// Parameters
+    /// ----------
+    /// pixels : array_like, shape (..., 2)
+    ///     Image points, in pixels with y down; the centre of the first pixel is (0.5, 0.5).
+    ///
+    /// Returns
+    /// -------
+    /// origin : ndarray, shape (3,)
+    ///     The centre of the lens, in metres.
+    /// direction : ndarray, shape (..., 3)
+    ///     Unit vectors into the scene.
+    fn ray<'py>(&self, py: Python<'py>, pixels: Vectors<'py>) -> PyResult<(Vector<3>, Array<'py>)> {
+        let pixels = Column::components(("pixels", &pixels), &[2], f64::MAX)?;
+        let [direction] = evaluate(py, pixels, [&[3]], |[x, y], [out]| {
+            let (directions, _) = out.as_chunks_mut();
+            for (i, direction) in directions.iter_mut().enumerate() {
+                *direction = self.0.ray(DVec2::new(x[i], y[i])).direction.to_array();
+            }
+        })?;
+        Ok((self.0.position().into(), direction))
+    }
+
+    fn __repr__(&self) -> String {
+        let [x, y, z] = self.0.position().to_array();
+        let CameraDescription {
+            focal_length,
+            f_number,
+            resolution: [width, height],
+            ..
+        } = self.0.description();
+        format!(
+            "<Camera: {width} x {height} pixels at ({x}, {y}, {z}), {focal_length} m at f/{f_number}>"
+        )
+    }
+}
+
+methods! {
+    impl Camera as this: this.0;
+
+    /// Centre of the lens, in metres, shape (3,).
+    get position -> Vector<3>;
+
+    /// Numbers of pixel columns and rows.
+    get resolution -> (usize, usize) = this.0.description().resolution.into();
+}

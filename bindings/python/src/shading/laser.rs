@@ -1,0 +1,187 @@
+use pyo3::prelude::*;
+use tem00_shading::{self as physics, DVec3, LaserBuilder};
+
+use super::arguments::vector;
+use crate::{
+    arrays::{Column, Components, Numbers, Vectors},
+    beam::{Emitter, LineProfile, NextEvent, light_of},
+    error::{IntoPython, refused},
+};
+
+/// A laser in the scene: a spot or a line, placed, with its power, in light of one wavelength.
+///
+/// Made by ``spot`` or ``line``.
+#[pyclass(frozen, eq, module = "tem00.shading")]
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Laser(pub(super) physics::Laser);
+
+#[pymethods]
+impl Laser {
+    /// Return a spot: a Gaussian beam, round or elliptic.
+    ///
+    /// Parameters
+    /// ----------
+    /// wavelength : float
+    ///     Vacuum wavelength, in metres.
+    /// waist_radius : float or array_like, shape (2,)
+    ///     Waist radius, in metres: of an elliptic spot that along ``line_direction`` and that across it.
+    /// origin : array_like, shape (3,)
+    ///     Centre of the aperture, in metres.
+    /// target : array_like, shape (3,)
+    ///     A point on the axis, in metres.
+    /// line_direction : array_like, shape (3,), optional
+    ///     Across the axis: the first axis of an elliptic spot. Its part along the axis is ignored; (1, 0, 0) if left out.
+    /// power : float, optional
+    ///     Power, in watts.
+    /// focused_at : float, optional
+    ///     Distance of the waist from the aperture, in metres, negative behind it; that of the target if left out.
+    /// m_squared : float, optional
+    ///     Beam quality factor M².
+    #[staticmethod]
+    #[pyo3(signature = (
+        wavelength, waist_radius, *, origin, target, line_direction = None, power = 1e-3,
+        focused_at = None, m_squared = 1.0,
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "most go by their names")]
+    fn spot(
+        wavelength: f64,
+        waist_radius: Numbers<'_>,
+        origin: Components<'_>,
+        target: Components<'_>,
+        line_direction: Option<Components<'_>>,
+        power: f64,
+        focused_at: Option<f64>,
+        m_squared: f64,
+    ) -> PyResult<Self> {
+        let radii = match waist_radius {
+            Numbers::One(radius) => [radius; 2],
+            radii => radii.vector("waist_radius")?,
+        };
+        let builder = physics::Laser::spot(wavelength, radii[0]).waist_radii(radii);
+        let builder = builder.power(power).m_squared(m_squared);
+        Self::placed(builder, [origin, target], line_direction, focused_at, &[])
+    }
+
+    /// Return a laser line.
+    ///
+    /// Parameters
+    /// ----------
+    /// wavelength : float
+    ///     Vacuum wavelength, in metres.
+    /// thickness : float
+    ///     Thickness in focus (1/e², full width), in metres.
+    /// fan_angle : float
+    ///     Full angle between the ends of the line, in radians.
+    /// origin : array_like, shape (3,)
+    ///     Centre of the aperture, in metres.
+    /// target : array_like, shape (3,)
+    ///     A point on the axis, in metres.
+    /// line_direction : array_like, shape (3,), optional
+    ///     Across the axis: where the line opens. Its part along the axis is ignored; (1, 0, 0) if left out.
+    /// profile : LineProfile, optional
+    ///     Distribution of the power along the line; Gaussian along the line on a plane if left out.
+    /// power : float, optional
+    ///     Power, in watts.
+    /// focused_at : float, optional
+    ///     Distance along the axis at which the line is thinnest, in metres; that of the target if left out.
+    /// m_squared : float, optional
+    ///     Beam quality factor M² across the line.
+    #[staticmethod]
+    #[pyo3(signature = (
+        wavelength, thickness, fan_angle, *, origin, target, line_direction = None, profile = None,
+        power = 1e-3, focused_at = None, m_squared = 1.0,
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "most go by their names")]
+    fn line(
+        wavelength: f64,
+        thickness: f64,
+        fan_angle: f64,
+        origin: Components<'_>,
+        target: Components<'_>,
+        line_direction: Option<Components<'_>>,
+        profile: Option<&LineProfile>,
+        power: f64,
+        focused_at: Option<f64>,
+        m_squared: f64,
+    ) -> PyResult<Self> {
+        let mut builder = physics::Laser::line(wavelength, thickness, fan_angle);
+        builder = builder.power(power).m_squared(m_squared);
+        if let Some(profile) = profile {
+            builder = builder.profile(profile.0.clone());
+        }
+        let names = [("waist_radius", "thickness"), ("apex_offset", "fan_angle")];
+        Self::placed(
+            builder,
+            [origin, target],
+            line_direction,
+            focused_at,
+            &names,
+        )
+    }
+
+    /// Return the light at points as one direction each, that of the mean energy flow.
+    ///
+    /// Parameters
+    /// ----------
+    /// points : array_like, shape (..., 3)
+    ///     Points, in metres.
+    ///
+    /// Returns
+    /// -------
+    /// NextEvent
+    ///     All members are 0 where no light arrives, and no shadow ray is needed.
+    fn next_event<'py>(&self, py: Python<'py>, points: Vectors<'py>) -> PyResult<NextEvent> {
+        let points = Column::components(("points", &points), &[3], 1e30)?;
+        self.light(py)?.get().event_at(py, points)
+    }
+
+    /// The placed light, a ``SpotLight``, ``LineLight`` or ``TabulatedLineLight``, for all else there is to ask.
+    #[getter]
+    fn light<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, Emitter>> {
+        light_of(py, &self.0)
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let wavelength = self.0.wavelength();
+        Ok(format!(
+            "<Laser: {wavelength:?} m, {}>",
+            self.light(py)?.repr()?
+        ))
+    }
+}
+
+impl Laser {
+    fn placed(
+        builder: LaserBuilder,
+        [origin, target]: [Components<'_>; 2],
+        line_direction: Option<Components<'_>>,
+        focused_at: Option<f64>,
+        names: &[(&str, &str)],
+    ) -> PyResult<Self> {
+        let builder = match focused_at {
+            Some(distance) => builder.focused_at(distance),
+            None => builder,
+        };
+        let laser = builder.placed(
+            origin.vector("origin")?.into(),
+            target.vector("target")?.into(),
+            vector("line_direction", line_direction.as_ref(), DVec3::X.into())?.into(),
+        );
+        let own = |name: &str| match name {
+            "position" => "origin",
+            "line_direction" => "line_direction",
+            "look_at" => "target",
+            "waist_distance" | "focus_distance" => "focused_at",
+            _ => names
+                .iter()
+                .find(|(from, _)| *from == name)
+                .map_or("", |(_, to)| to),
+        };
+        laser
+            .map(Self)
+            .map_err(|error| match error.parameter().map(own) {
+                None | Some("") => error.into_python(),
+                Some(name) => refused(name, format!("{name}: {error}")),
+            })
+    }
+}

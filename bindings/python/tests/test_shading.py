@@ -1,0 +1,373 @@
+"""One call per hit: against the Rust crate, the law of motion, the lights of `tem00.beam`, and itself."""
+
+import math
+import pickle
+import runpy
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tem00
+from numpy.typing import NDArray
+from tem00 import beam
+from tem00._typing import FloatArray
+
+ROOT = Path(__file__).parents[3]
+ORIGIN, TARGET = [0.05, 0.02, 0.4], [0.0, 0.0, 0.0]
+CAMERA = tem00.Camera(position=[-0.05, 0.01, 0.3], resolution=(96, 64))
+LASER = tem00.Laser.spot(650e-9, 5e-3, origin=ORIGIN, target=TARGET, power=2e-3)
+UP = np.array([0.0, 0.0, 1.0])
+SLIDE, AWAY = tem00.Pose.along([4e-4, -2e-4, 0.0]), tem00.Pose.along([2e-3, 0.0, 0.0])
+MOVED = tem00.Speckle(CAMERA, LASER, 7, poses=[SLIDE], memory=64 << 20)
+FAR = tem00.Speckle(CAMERA, LASER, 1, poses=[SLIDE] * 3, memory=64 << 20)
+
+
+def seen(pixels: NDArray[np.float64]) -> FloatArray:
+    """Return the points of the plane z = 0 that the camera sees."""
+    origin, direction = CAMERA.ray(pixels)
+    return np.asarray(origin - origin[2] / direction[..., 2:] * direction, dtype=np.float64)
+
+
+def image() -> FloatArray:
+    """Return the image points of all pixels."""
+    width, height = CAMERA.resolution
+    x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
+    return np.stack([x, y], axis=-1).astype(np.float64)
+
+
+def carried(pose: tem00.Pose, points: FloatArray) -> FloatArray:
+    """Return where a pose takes points."""
+    return np.asarray(points @ pose.rotation.T + pose.translation, dtype=np.float64)
+
+
+def test_a_fixed_case_has_the_values_of_the_rust_crate() -> None:
+    # Printed by tem00-shading for the same arguments.
+    surface = tem00.Pose.about(TARGET, [0, 1, 0], 1e-3).then(tem00.Pose.along([2e-4, -1e-4, 5e-4]))
+    camera = tem00.Pose.along([0, 1e-4, 0])
+    laser = tem00.Pose.about(ORIGIN, [0, 1, 0], 5e-4)
+    speckle = tem00.Speckle(
+        CAMERA,
+        LASER,
+        7,
+        poses=[surface],
+        camera_poses=[camera],
+        laser_poses=[laser],
+        looks=2,
+        polarisation=0.6,
+        memory=32 << 20,
+    )
+    frame = speckle.frame(surface, camera, laser, body=2)
+    points = np.array([[0, 0, 5e-4], [3e-4, 2e-4, 5e-4], [-4e-4, 1e-4, 6e-4], [0, 0, 1]])
+    normal = np.array([1e-3, 0, 1]) / math.hypot(1e-3, 1)
+    shift = frame.shift(points, normal)
+    # In single precision, of phases that another processor rounds otherwise.
+    close = 1e-5
+    factors = [1.2511141300, 0.6039828420, 1.2801106550, 1]
+    averages = [1.2885719781, 0.6445605528, 1.1441881709, 1]
+    real = [0.3677154727, -0.4272049792, -1.3207450795, 0]
+    imaginary = [-0.7312891685, -0.1033782781, 0.2347691051, 0]
+    np.testing.assert_allclose(frame.factor(points, normal), factors, rtol=0, atol=close)
+    np.testing.assert_allclose(frame.average(points, normal), averages, rtol=0, atol=close)
+    amplitudes = np.asarray(frame.amplitude(points, normal))
+    np.testing.assert_allclose(amplitudes.real, real, rtol=0, atol=close)
+    np.testing.assert_allclose(amplitudes.imag, imaginary, rtol=0, atol=close)
+    shifts = [
+        (shift.displacement[:, 0], [7.522644010289848, 7.534671111038488, 7.505450554697517, 0]),
+        (shift.displacement[:, 1], [5.666295421084302, 5.658126370363691, 5.662896966244203, 0]),
+        (shift.across[:, 0], [0.23535250670433813, 0.235508265216536, 0.23513533897892405, 0]),
+        (shift.across[:, 1], [-0.06875430707920618, -0.06865982499315146, -0.06870725289236154, 0]),
+        (shift.pupil, [0.24523301918840543, 0.24535597014234217, 0.24501157549314792, math.inf]),
+        (shift.axial, [0.009217195300193153, 0.009208607163777022, 0.009235041659411797, 0]),
+    ]
+    for got, expected in shifts:
+        np.testing.assert_allclose(got, expected, rtol=1e-9)
+    overlaps = tem00.decorrelation.pupil_overlap_correlation(np.minimum(shift.pupil, 1))
+    np.testing.assert_array_equal(shift.correlation, overlaps)
+    chosen = "4 patterns of 128 × 80 samples, 64 slices each (20 MiB): speckle of 1.64 px, "
+    assert str(speckle).startswith(chosen)
+    assert repr(speckle) == f"<Speckle: {speckle}>"
+    assert speckle.memory_bytes >> 20 == 20
+    assert f"{speckle.speckle_size:.2f}" == "1.64"
+
+
+@pytest.mark.parametrize(
+    ("surface", "laser"),
+    [
+        (SLIDE, None),
+        (tem00.Pose.along([-3e-4, 3e-4, 0.0]), None),
+        (None, tem00.Pose.about(ORIGIN, [0, 1, 0], 1.5e-3)),
+        (tem00.Pose.along([2e-4, 0, 0]), tem00.Pose.along([0, 4e-4, 0])),
+    ],
+)
+def test_frames_correlate_by_the_law(
+    surface: tem00.Pose | None, laser: tem00.Pose | None
+) -> None:
+    still = tem00.Pose.identity()
+    speckle = tem00.Speckle(CAMERA, LASER, 3, poses=[surface or still], laser_poses=[laser or still])
+    before, after = speckle.frame(), speckle.frame(surface, laser=laser)
+    shift = after.shift(TARGET, UP)
+    gone = after.factor(seen(image() + shift.displacement), UP)
+    found = np.corrcoef(np.ravel(before.factor(seen(image()), UP)), np.ravel(gone))[0, 1]
+    law = np.asarray(shift.correlation).item()
+    assert 0.05 < law < 0.95
+    # Three standard errors of so many speckles, and what the blend of slices adds.
+    speckles = image().size / 2 / speckle.speckle_size**2
+    assert abs(found - law) < 3 * (1 + law) / math.sqrt(speckles) + 0.02
+
+
+def test_only_differences_of_motions_count() -> None:
+    # Camera and laser moved as one are the body moved back.
+    pose = tem00.Pose.about([0, 0, 0.1], [1, 2, 0], 4e-4)
+    back = pose.inverse()
+    speckle = tem00.Speckle(CAMERA, LASER, 5, poses=[back])
+    points = seen(image())
+    by_others = speckle.frame(camera=pose, laser=pose).factor(points, UP)
+    by_body = speckle.frame(back).factor(carried(back, points), back.direction(UP))
+    # The same look-ups but for rounding, which the edge-free patterns hardly tell.
+    np.testing.assert_allclose(by_others, by_body, rtol=0, atol=1e-6)
+    assert np.std(np.subtract(by_others, speckle.frame().factor(points, UP))) > 0.1
+
+
+def test_batches_have_the_bits_of_single_calls_and_shapes_broadcast() -> None:
+    frame = MOVED.frame(SLIDE)
+    # More than one block of 4096.
+    points = carried(SLIDE, seen(image()))[:50]
+    points[7, 9] = np.nan
+    normals = np.broadcast_to(UP, points.shape)
+    for query in (frame.factor, frame.average, frame.amplitude):
+        whole = np.asarray(query(points, UP))
+        assert whole.shape == points.shape[:-1]
+        np.testing.assert_array_equal(whole, query(points, normals))
+        for place in ((0, 0), (7, 9), (44, 63), (49, 95)):
+            assert whole[place] == query(points[place], UP)
+    assert type(frame.factor(points[0, 0], UP)) is float
+    assert type(frame.amplitude(points[0, 0], UP)) is complex
+    assert np.shape(frame.factor(points[0, 0], np.tile(UP, (2, 5, 1)))) == (2, 5)
+    assert frame.shift(points, UP).displacement.shape == (*points.shape[:-1], 2)
+    assert np.shape(frame.shift(points[0, 0], UP).pupil) == ()
+
+
+def test_what_is_out_of_sight_has_the_factor_one_and_no_nan() -> None:
+    frame = MOVED.frame(SLIDE)
+    points = np.array([[np.nan, 0, 0], [np.inf, 0, 0], [0, 0, 1.0], [0, 0, 0]])
+    factors = frame.factor(points, UP)
+    np.testing.assert_array_equal(np.asarray(factors)[:3], 1)
+    np.testing.assert_array_equal(np.asarray(frame.average(points, UP))[:3], 1)
+    np.testing.assert_array_equal(np.asarray(frame.amplitude(points, UP))[:3], 0)
+    shift = frame.shift(points, UP)
+    np.testing.assert_array_equal(np.asarray(shift.pupil)[:3], np.inf)
+    np.testing.assert_array_equal(np.asarray(shift.correlation)[:3], 0)
+    assert np.isfinite(frame.factor(TARGET, [np.nan, 0, 0]))
+
+
+def test_buffers_of_positions_have_the_bits_of_hits() -> None:
+    # Steps that the sums of the points have exactly.
+    steps = np.array([[0, 0, 0], [2.0**-12, -(2.0**-13), 2.0**-11]])
+    poses = [tem00.Pose.along(step) for step in steps]
+    speckle = tem00.Speckle(CAMERA, LASER, 17, poses=poses)
+    x, y = np.meshgrid(np.arange(16.0) - 8, np.arange(12.0) - 6)
+    previous = np.stack([x, y, 0 * x], axis=-1) * 2.0**-13
+    moved = (x + y > 0)[..., None]
+    points = previous + moved * steps[1]
+    still, away = (np.asarray(speckle.frame(pose).factor(points, UP)) for pose in poses)
+    expected = np.where(moved[..., 0], away, still)
+    np.testing.assert_array_equal(speckle.factors_since(previous, points, UP), expected)
+    assert np.any(away != still)
+
+
+def test_looks_and_polarisation_lower_the_contrast() -> None:
+    points = seen(image()[::4, ::4])
+    for looks, polarisation in ((4, 1.0), (1, 0.0), (2, 0.6)):
+        speckle = tem00.Speckle(CAMERA, LASER, 11, looks=looks, polarisation=polarisation)
+        factors = speckle.frame().factor(points, UP)
+        contrast = np.std(factors) / np.mean(factors)
+        law = math.sqrt((1 + polarisation**2) / 2 / looks)
+        # Three standard errors of the contrast of independent points: 65 µm to a speckle, 166 µm apart.
+        assert abs(contrast - law) < 3 * law / math.sqrt(points.size / 3) * 1.2
+
+
+LASERS: list[tuple[tem00.Laser, Callable[[beam.Placement], beam.Emitter]]] = [
+    (
+        tem00.Laser.spot(650e-9, 5e-3, origin=ORIGIN, target=TARGET, power=2e-3, focused_at=0.3),
+        lambda placement: beam.SpotLight.place(
+            beam.GaussianBeam.from_waist(650e-9, 5e-3), 0.3, placement, 2e-3
+        ),
+    ),
+    (
+        tem00.Laser.spot(
+            650e-9, [2e-4, 3e-4], origin=ORIGIN, target=TARGET, focused_at=-0.1, m_squared=1.5
+        ),
+        lambda placement: beam.SpotLight.place_astigmatic(
+            beam.AstigmaticBeam(*(located(radius) for radius in (2e-4, 3e-4))), placement, 1e-3
+        ),
+    ),
+    *(
+        (
+            tem00.Laser.line(
+                *(650e-9, 2e-4, 0.1),
+                origin=ORIGIN,
+                target=TARGET,
+                profile=profile,
+                power=5e-3,
+                focused_at=0.3,
+            ),
+            lambda placement, kind=kind, profile=profile: kind.place(fan(profile), placement, 5e-3),
+        )
+        for kind, profile in (
+            (beam.LineLight, beam.LineProfile.gaussian_tan()),
+            (beam.LineLight, beam.LineProfile.powell(0.1)),
+            (
+                beam.TabulatedLineLight,
+                beam.LineProfile.tabulated(beam.AngularProfile([-0.05, 0.0, 0.05], [1.0, 2.0, 1.0])),
+            ),
+        )
+    ),
+]
+
+
+def located(radius: float) -> beam.LocatedBeam:
+    return beam.LocatedBeam(beam.GaussianBeam.from_waist(650e-9, radius).with_m_squared(1.5), -0.1)
+
+
+def fan(profile: beam.LineProfile) -> beam.LaserLine:
+    focus = beam.GaussianBeam.from_waist(650e-9, 1e-4)
+    offset = focus.radius_at(0.3) / math.tan(0.05)
+    return beam.LaserLine(focus, beam.FanGeometry(0.1, offset, 0.3, "equal_plane"), profile)
+
+
+def test_a_laser_is_focused_at_its_target() -> None:
+    light = LASER.light
+    assert isinstance(light, beam.SpotLight)
+    assert math.isclose(light.x.z0, math.dist(ORIGIN, TARGET), rel_tol=1e-15)
+
+
+@pytest.mark.parametrize(("laser", "place"), LASERS)
+def test_lasers_are_the_lights_of_beam(
+    laser: tem00.Laser, place: Callable[[beam.Placement], beam.Emitter]
+) -> None:
+    light = place(beam.Placement(ORIGIN, np.subtract(TARGET, ORIGIN), [1, 0, 0]))
+    assert type(laser.light) is type(light)
+    assert laser.light == light
+    points = np.random.default_rng(1).uniform(-0.01, 0.01, (5, 40, 3))
+    points[0, 0] = [0, 0, 1]  # behind the aperture
+    event, expected = laser.next_event(points), light.next_event(*np.moveaxis(points, -1, 0))
+    for member in ("point", "distance", "wi", "e_perp"):
+        np.testing.assert_array_equal(getattr(event, member), getattr(expected, member))
+    assert laser.next_event(points[0, 0]).e_perp == 0
+    assert laser.next_event(TARGET).e_perp > 0
+    assert repr(laser).startswith("<Laser: 6.5e-7 m, ")
+
+
+@pytest.mark.parametrize(
+    ("make", "parameter"),
+    [
+        (lambda: tem00.Camera(focal_length=-1.0), "focal_length"),
+        (lambda: tem00.Camera(f_number=math.nan), "f_number"),
+        (lambda: tem00.Camera(position=[0, 0]), "position"),
+        (lambda: tem00.Camera(look_at=[0, 0, 0.3]), "look_at"),
+        (lambda: tem00.Camera(up=[0, 0, 1]), "up"),
+        (lambda: tem00.Camera(resolution=(0, 5)), "resolution"),
+        (lambda: tem00.Camera(resolution=(-1, 5)), "resolution"),
+        (lambda: tem00.Camera(tilt=[2.0, 0.0]), "tilt"),
+        (lambda: tem00.Camera(distortion=[1, 2]), "distortion"),
+        (lambda: tem00.Camera(principal_point=[math.inf, 0]), "principal_point"),
+        (lambda: CAMERA.ray([1.0, math.nan]), "pixels"),
+        (lambda: CAMERA.ray([1.0, 2.0, 3.0]), "pixels"),
+        (lambda: spot(wavelength=-1.0), "wavelength"),
+        (lambda: spot(waist_radius=1e-9), "waist_radius"),
+        (lambda: spot(waist_radius=[1e-3, 1e-3, 1e-3]), "waist_radius"),
+        (lambda: spot(origin=[0, math.nan, 0]), "origin"),
+        (lambda: spot(target=ORIGIN), "target"),
+        (lambda: spot(line_direction=[0, 0, 0]), "line_direction"),
+        (lambda: spot(power=-1.0), "power"),
+        (lambda: spot(focused_at=math.inf), "focused_at"),
+        (lambda: spot(m_squared=0.5), "m_squared"),
+        (lambda: line(thickness=1e-9), "thickness"),
+        (lambda: line(fan_angle=4.0), "fan_angle"),
+        (lambda: line(fan_angle=-0.1), "fan_angle"),
+        (lambda: line(focused_at=math.nan), "focused_at"),
+        (lambda: LASER.next_event([0, 0, math.nan]), "points"),
+        (lambda: tem00.Speckle(CAMERA, LASER, -1), "seed"),
+        (lambda: tem00.Speckle(CAMERA, LASER, 1, looks=0), "looks"),
+        (lambda: tem00.Speckle(CAMERA, LASER, 1, polarisation=1.5), "polarisation"),
+        (lambda: tem00.Speckle(CAMERA, LASER, 1, poses=[AWAY] * 9, memory=700_000), "memory"),
+        (lambda: tem00.Speckle(CAMERA, LASER, 1, poses=[SLIDE] * 2, camera_poses=[SLIDE]), "camera_poses"),
+        (lambda: tem00.Speckle(CAMERA, LASER, 1, at_points=([[0, 0]], UP)), "at_points"),
+        (lambda: FAR.frame(tem00.Pose.about(TARGET, [0, 1, 0], 0.05)), "surface"),
+        (lambda: MOVED.frame(body=-1), "body"),
+        (lambda: MOVED.frame().factor([0, 0], UP), "points"),
+        (lambda: MOVED.frame().factor(np.zeros((2, 3)), np.zeros((5, 3))), "normals"),
+    ],
+)
+def test_each_refused_argument_is_named(make: Callable[[], object], parameter: str) -> None:
+    with pytest.raises(tem00.ParameterError) as caught:
+        make()
+    assert caught.value.parameter == parameter
+
+
+def test_patterns_that_no_memory_holds_are_a_memory_error() -> None:
+    with pytest.raises(MemoryError, match="at most 1000 bytes"):
+        tem00.Speckle(CAMERA, LASER, 1, memory=1000)
+
+
+
+def spot(wavelength: float = 650e-9, waist_radius: object = 1e-3, **given: object) -> tem00.Laser:
+    arguments = {"origin": ORIGIN, "target": TARGET, **given}
+    return tem00.Laser.spot(wavelength, waist_radius, **arguments)  # type: ignore[arg-type]
+
+
+def line(thickness: float = 1e-4, fan_angle: float = 0.1, **given: object) -> tem00.Laser:
+    arguments = {"origin": ORIGIN, "target": TARGET, **given}
+    return tem00.Laser.line(650e-9, thickness, fan_angle, **arguments)  # type: ignore[arg-type]
+
+
+def test_given_points_decide_how_far_the_speckle_moves() -> None:
+    turn = tem00.Pose.about(TARGET, [0, 1, 0], 5e-4)
+    shown = []
+    # In the plane in focus, and twice as far away.
+    for point in (TARGET, [0.05, -0.01, -0.3]):
+        speckle = tem00.Speckle(CAMERA, LASER, 1, poses=[turn], at_points=([point], UP))
+        shown.append(float(str(speckle).split("moves by ")[1].split()[0]))
+        shift = speckle.frame(turn).shift(turn.point(point), turn.direction(UP))
+        assert abs(np.asarray(shift.pupil).item() - shown[-1]) <= 0.005
+    assert abs(shown[0] - shown[1]) > 0.02
+
+
+def test_the_interpreter_is_free_while_patterns_are_made() -> None:
+    counts: list[int] = []
+    done = threading.Event()
+
+    def work() -> None:
+        tem00.Speckle(CAMERA, LASER, 1, poses=[SLIDE], memory=64 << 20)
+        done.set()
+
+    worker = threading.Thread(target=work)
+    worker.start()
+    while not done.wait(1e-4):
+        counts.append(len(counts))
+    worker.join()
+    assert len(counts) > 10
+
+
+def test_shifts_survive_pickling_and_frames_hold_their_patterns() -> None:
+    frame = tem00.Speckle(CAMERA, LASER, 7, poses=[SLIDE], memory=64 << 20).frame(SLIDE)
+    point = SLIDE.point(TARGET)
+    shift = frame.shift(point, UP)
+    assert repr(pickle.loads(pickle.dumps(shift))) == repr(shift)
+    assert repr(frame).startswith(f"<SpeckleFrame: surface={SLIDE!r}, camera=")
+    assert frame.factor(point, UP) == MOVED.frame(SLIDE).factor(point, UP)
+
+
+def test_the_example_of_the_guide_finds_the_law() -> None:
+    example = ROOT / "integrations" / "python" / "moved_spot.py"
+    assert example.read_text(encoding="utf-8") in (ROOT / "docs" / "integration.md").read_text(encoding="utf-8")
+    names = runpy.run_path(str(example))
+    law = names["shift"].correlation
+    # Some 40 000 speckles, and what the blend of slices adds.
+    assert abs(names["found"] - law) < 0.03
+    before, after = names["frames"]
+    assert before.shape == (480, 640)
+    # The mean of so many speckles, weighted by the light: 5 mW at an angle of 27°.
+    assert abs(before.sum() / after.sum() - 1) < 0.02

@@ -92,6 +92,36 @@ def test_a_fixed_case_has_the_values_of_the_rust_crate() -> None:
     assert f"{speckle.speckle_size:.2f}" == "1.64"
 
 
+def test_rays_are_those_of_a_pinhole() -> None:
+    # The camera looks down from 0.3 m, with y up in its image; d is the image distance in pixels.
+    d = 25e-3 * 0.3 / (0.3 - 25e-3) / 3.45e-6
+    x, y = 1500.0, 900.0
+    pixel = [2000 + x, 1500 - y]
+
+    def tangents(**given: object) -> FloatArray:
+        camera = tem00.Camera(resolution=(4000, 3000), **given)  # type: ignore[arg-type]
+        origin, direction = camera.ray(pixel)
+        np.testing.assert_array_equal(origin, [0, 0, 0.3])
+        return np.asarray(direction[:2] / -direction[2], dtype=np.float64)
+
+    np.testing.assert_allclose(tangents(), [x / d, y / d], rtol=1e-12)
+    moved = tangents(principal_point=[1980, 1460])
+    np.testing.assert_allclose(moved, [(x + 20) / d, (y - 40) / d], rtol=1e-12)
+    # Brown: the image point is the tangent times 1 + k₁ r² + k₂ r⁴ + k₃ r⁶.
+    bent = tangents(distortion=[-0.2, 0.3, -0.4])
+    r2 = bent @ bent
+    stretch = 1 - 0.2 * r2 + 0.3 * r2**2 - 0.4 * r2**3
+    np.testing.assert_allclose(bent * stretch, [x / d, y / d], rtol=1e-9)
+    # The upper half of the sensor, upright, turns towards the lens.
+    tilt = 0.1
+    depth = d - y * math.sin(tilt)
+    tilted = [x / depth, y * math.cos(tilt) / depth]
+    np.testing.assert_allclose(tangents(tilt=[tilt, 0]), tilted, rtol=1e-12)
+    depth = d + x * math.sin(tilt)
+    turned = [x * math.cos(tilt) / depth, y / depth]
+    np.testing.assert_allclose(tangents(tilt=[tilt, math.pi / 2]), turned, rtol=1e-12)
+
+
 @pytest.mark.parametrize(
     ("surface", "laser"),
     [

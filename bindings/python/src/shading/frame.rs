@@ -22,8 +22,7 @@ record! {
         pupil: Values,
         /// The part of it across the line of sight, to the right and up, in pupil diameters, shape (..., 2).
         across: Array,
-        /// Displacement along the axis, in axial decorrelation lengths, shape (...): positive where the point has come
-        /// nearer.
+        /// Displacement along the axis, in axial decorrelation lengths, shape (...): positive towards the camera.
         axial: Values,
         /// Correlation of intensity that is left where the speckle has gone, in [0, 1], shape (...).
         correlation: Values,
@@ -71,7 +70,15 @@ impl SpeckleFrame {
 
     /// Return the means of the factors over the pixels about the images of points, for a host with one sample per pixel.
     ///
-    /// Parameters and result are those of ``factor``.
+    /// Parameters
+    /// ----------
+    /// points, normals : array_like, shape (..., 3)
+    ///     As for ``factor``.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Means, in the common shape; 1 where the camera does not see the point.
     fn average<'py>(
         &self,
         py: Python<'py>,
@@ -88,7 +95,15 @@ impl SpeckleFrame {
 
     /// Return the complex amplitudes of the first pattern, of mean square 1, for a host that adds fields.
     ///
-    /// Parameters are those of ``factor``; where the camera does not see the point the amplitude is 0.
+    /// Parameters
+    /// ----------
+    /// points, normals : array_like, shape (..., 3)
+    ///     As for ``factor``.
+    ///
+    /// Returns
+    /// -------
+    /// complex or ndarray of complex
+    ///     Amplitudes, in the common shape; 0 where the camera does not see the point.
     fn amplitude<'py>(
         &self,
         py: Python<'py>,
@@ -114,7 +129,15 @@ impl SpeckleFrame {
 
     /// Return what has become of the speckle at points since the reference state.
     ///
-    /// Parameters are those of ``factor``.
+    /// Parameters
+    /// ----------
+    /// points, normals : array_like, shape (..., 3)
+    ///     As for ``factor``.
+    ///
+    /// Returns
+    /// -------
+    /// SpeckleShift
+    ///     The shifts, in the common shape.
     fn shift<'py>(
         &self,
         py: Python<'py>,

@@ -370,7 +370,7 @@ def test_the_interpreter_is_free_while_patterns_are_made() -> None:
     done = threading.Event()
 
     def work() -> None:
-        tem00.Speckle(CAMERA, LASER, 1, poses=[SLIDE], memory=64 << 20)
+        tem00.Speckle(tem00.Camera(), LASER, 1, poses=[SLIDE], memory=64 << 20)
         done.set()
 
     worker = threading.Thread(target=work)

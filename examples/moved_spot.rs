@@ -2,6 +2,8 @@
 //!
 //!     cargo run --release --example moved_spot        writes out/moved_spot_0.png and out/moved_spot_1.png
 
+#![expect(clippy::print_stdout, reason = "an example prints its answer")]
+
 mod picture;
 
 use std::error::Error;

@@ -2,6 +2,8 @@
 //!
 //!     cargo run --release --example host              writes out/host.png, two frames
 
+#![expect(clippy::print_stdout, reason = "an example prints its answer")]
+
 #[path = "../picture/mod.rs"]
 mod picture;
 

@@ -180,6 +180,7 @@ fn a_body_that_returns_finds_its_old_speckle() {
 }
 
 #[test]
+#[expect(clippy::float_cmp, reason = "the same bits")]
 fn batches_have_the_bits_of_single_calls() {
     let pose = pose(DVec3::new(3e-4, 1e-4, 2e-3), DVec3::Y, 1e-3);
     let speckle = prepared(5, &[pose]);
@@ -332,6 +333,7 @@ fn the_plan_says_what_it_chose() {
 }
 
 #[test]
+#[expect(clippy::float_cmp, reason = "the same bits")]
 fn a_sample_out_of_focus_is_looked_up_where_it_is_seen() {
     let speckle = prepared(1, &[]);
     let frame = speckle.frame(&Motion::default()).unwrap();

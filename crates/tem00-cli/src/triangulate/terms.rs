@@ -224,6 +224,7 @@ mod tests {
     }
 
     #[test]
+    #[expect(clippy::float_cmp, reason = "values of the list")]
     fn a_quantile_is_the_least_value_that_is_not_exceeded() {
         let values: Vec<f64> = (1..=20).map(f64::from).collect();
         for (count, part, expected) in [

@@ -161,7 +161,7 @@ fn what_is_no_field_says_what_it_is() {
             "got the shape [4]",
         ),
         ("a scalar", array("<c8", "()", &[0; 8]), "got the shape []"),
-        ("a cube", array("<c8", "(2, 1, 2)", &[0; 32]), "[2, 1, 2]"),
+        ("a cube", array("<c8", "(2, 2, 2)", &[0; 64]), "[2, 2, 2]"),
         ("empty", array("<c8", "(0, 4)", &[]), "got the shape [0, 4]"),
         (
             "real",

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpydoc.validate
+import numpydoc.validate  # type: ignore[import-untyped]
 import pytest
 import tem00
 from tem00 import beam, coherence, decorrelation, speckle, statistics
@@ -61,7 +61,7 @@ CLASSES = [value for _, value in documented() if inspect.isclass(value) and not 
 
 @pytest.mark.parametrize("cls", CLASSES, ids=lambda cls: cls.__name__)
 def test_every_class_has_a_repr_and_says_how_it_is_made(cls: type) -> None:
-    assert cls.__repr__ is not object.__repr__
+    assert any("__repr__" in vars(base) for base in cls.__mro__ if base is not object)
     with pytest.raises(TypeError) as caught:
         cls(*[object()] * 40)
     message = str(caught.value)

@@ -67,7 +67,7 @@ impl Laser {
     /// returns `None` where it sends no light.
     ///
     /// The estimate of the reflected radiance is `f · |n·direction| · value`, where the source is
-    /// visible. No light is counted beyond four radii of the beam; [`event_pdf`](Self::event_pdf) is
+    /// visible. No light is counted beyond four radii of the beam; [`next_event_pdf`](Self::next_event_pdf) is
     /// 0 there.
     pub fn next_event_sampled(&self, point: DVec3, u: [f64; 2]) -> Option<SampledEvent> {
         let event = self.with_emitter(|light| light.next_event_sampled(point.to_array(), u))?;

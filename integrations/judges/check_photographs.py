@@ -92,7 +92,7 @@ def check(photograph: Path, verdict: Verdict) -> None:
     flat = image * part / ndimage.uniform_filter(image, WINDOW, mode="constant")
     x, y = grain_sizes(flat)
     contrast = float(flat.std(ddof=1) / flat.mean())
-    coherence_area = 4 / math.pi * np.mean(1 / (part * WINDOW**2))
+    coherence_area = float(4 / math.pi * np.mean(1 / (part * WINDOW**2)))
     numbers = {
         "contrast": contrast * (1 + 0.5 * (1 + contrast**2) * coherence_area * x * y),
         "speckle size x (pixels)": x * (1 + 0.675 * coherence_area * x**2),

@@ -5,6 +5,7 @@ NumPy; numbers give numbers, arrays give arrays of the common shape.
 """
 
 import sys
+from importlib.machinery import ModuleSpec
 from types import BuiltinFunctionType, ModuleType
 
 from tem00 import _tem00
@@ -23,6 +24,8 @@ from tem00._tem00 import (
 def _register(module: ModuleType, name: str) -> None:
     """Make a module of the extension, and what is inside, importable under a name."""
     module.__name__ = name
+    # Tools that look a module up by its name ask for how it was found.
+    module.__spec__ = ModuleSpec(name, None)
     sys.modules[name] = module
     for short, inner in list(vars(module).items()):
         if isinstance(inner, ModuleType):

@@ -181,6 +181,10 @@ fn tem00_speckle_motion(
 /// `CorrelationLaw::AtPeak`. From one length on the speckle is new, and its revivals are left out.
 fn tem00_correlation(pupil_shift: f32, axial_shift: f32) -> f32 {
     let overlap = tem00_disc_overlap_(pupil_shift);
+    // A point at rest keeps all: below, less is lost than the polynomial is off by.
+    if abs(axial_shift) < 0.001 {
+        return overlap * overlap;
+    }
     if abs(axial_shift) >= 1.0 {
         return 0.0;
     }

@@ -1,7 +1,7 @@
 //! Scenes that several tests share.
 
 use glam::DVec3;
-use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
+use tem00_camera::{Camera, CameraDescription};
 
 use crate::{
     BeamShape, Laser, LaserDescription, Material, Rectangle, Scene, Shape, SpectralLine, Surface,
@@ -11,17 +11,9 @@ use crate::{
 pub(crate) fn camera(position: DVec3, resolution: [usize; 2]) -> CameraDescription {
     CameraDescription {
         position,
-        look_at: DVec3::ZERO,
-        up: DVec3::Y,
-        focal_length: 25e-3,
-        f_number: 8.0,
         focus_distance: position.length(),
-        pixel_pitch: 3.45e-6,
         resolution,
-        principal_point: None,
-        tilt: SensorTilt::default(),
-        distortion: RadialDistortion::default(),
-        depth_of_field: true,
+        ..CameraDescription::default()
     }
 }
 

@@ -13,16 +13,7 @@ fn description() -> CameraDescription {
     CameraDescription {
         position: DVec3::new(0.1, -0.05, 0.3),
         look_at: DVec3::new(0.01, 0.02, 0.0),
-        up: DVec3::Y,
-        focal_length: 25e-3,
-        f_number: 8.0,
-        focus_distance: 0.3,
-        pixel_pitch: 3.45e-6,
-        resolution: [640, 480],
-        principal_point: None,
-        tilt: SensorTilt::default(),
-        distortion: RadialDistortion::default(),
-        depth_of_field: true,
+        ..CameraDescription::default()
     }
 }
 

@@ -16,6 +16,13 @@ pub struct Motion {
     pub laser: Pose,
 }
 
+impl Motion {
+    /// Tells whether nothing has moved.
+    pub(crate) fn is_still(&self) -> bool {
+        [self.surface, self.camera, self.laser] == [Pose::IDENTITY; 3]
+    }
+}
+
 impl From<Pose> for Motion {
     /// The motion of body 0 alone.
     fn from(surface: Pose) -> Self {

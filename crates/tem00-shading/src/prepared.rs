@@ -121,8 +121,8 @@ impl PreparedSpeckle {
             speckle: Arc::clone(patterns),
             state,
             side,
-            reach: patterns.reaches()[usize::from(side > 0.0)],
-            offset: place(motion.body) * DVec2::from_array(size),
+            reach: patterns.plan.reaches(patterns.shifts)[usize::from(side > 0.0)],
+            offset: DVec2::from_array(StackPlan::place(motion.body)) * DVec2::from_array(size),
         })
     }
 
@@ -142,19 +142,6 @@ impl PreparedSpeckle {
             .plan
             .memory_bytes()
             .saturating_mul(self.0.parts.len() as u64)
-    }
-}
-
-impl Patterns {
-    /// The largest shifts to either side of the reference that the slices tell apart, in pupil diameters. Where the path
-    /// has more than both need, each gets its part of it.
-    fn reaches(&self) -> [f64; 2] {
-        let reach = self.plan.reach();
-        let [before, after] = self.shifts;
-        if before == 0.0 || after == 0.0 {
-            return [reach; 2];
-        }
-        [before, after].map(|part| reach * part / (before + after))
     }
 }
 
@@ -239,13 +226,11 @@ impl SpeckleFrame {
         let Some(seen) = self.seen(point, normal) else {
             return 1.0;
         };
+        let Positions { x, y, u } = self.positions(&[Some(seen)]);
         let parts = self.speckle.parts.iter();
         let means = parts.map(|Part { fraction, stack }| {
-            let mut positions = Positions::NONE;
-            self.place(stack, &[Some(seen)], &mut positions);
             let pixel = stack.speckle_size() / self.speckle.needs.speckle_size;
-            let centre = [positions.x[0], positions.y[0]];
-            fraction * stack.average_over(centre, [pixel; 2], positions.u[0])
+            fraction * stack.average_over([x[0], y[0]], [pixel; 2], u[0])
         });
         means.sum()
     }
@@ -256,9 +241,8 @@ impl SpeckleFrame {
     pub fn amplitude(&self, point: DVec3, normal: DVec3) -> Option<Complex<f64>> {
         let seen = self.seen(point, normal)?;
         let Part { stack, .. } = self.speckle.parts.first()?;
-        let mut positions = Positions::NONE;
-        self.place(stack, &[Some(seen)], &mut positions);
-        Some(stack.amplitude_at(positions.x[0], positions.y[0], positions.u[0]))
+        let Positions { x, y, u } = self.positions(&[Some(seen)]);
+        Some(stack.amplitude_at(x[0], y[0], u[0]))
     }
 
     /// Returns what has become of the speckle at a point since the reference state, or `None` where the law has no value.
@@ -278,10 +262,8 @@ impl SpeckleFrame {
     fn look_up(&self, points: &[Option<SeenPoint>], factors: &mut [f64]) {
         let count = points.len();
         factors.fill(0.0);
+        let Positions { x, y, u } = self.positions(points);
         for Part { fraction, stack } in &self.speckle.parts {
-            let mut positions = Positions::NONE;
-            self.place(stack, points, &mut positions);
-            let Positions { x, y, u } = &positions;
             let mut intensities = [0.0; BLOCK];
             stack.intensity_batch(
                 &x[..count],
@@ -299,8 +281,16 @@ impl SpeckleFrame {
         }
     }
 
-    /// Finds where in a stack points are looked up; those out of sight anywhere.
-    fn place(&self, stack: &SpeckleStack, points: &[Option<SeenPoint>], positions: &mut Positions) {
+    /// Finds where points are looked up in the stacks, which are alike; those out of sight anywhere.
+    fn positions(&self, points: &[Option<SeenPoint>]) -> Positions {
+        let mut positions = Positions {
+            x: [0.0; BLOCK],
+            y: [0.0; BLOCK],
+            u: [0.0; BLOCK],
+        };
+        let Some(Part { stack, .. }) = self.speckle.parts.first() else {
+            return positions;
+        };
         let geometry = &self.speckle.geometry;
         let anywhere = SeenPoint {
             pixel: DVec2::ZERO,
@@ -327,26 +317,10 @@ impl SpeckleFrame {
         let u = &mut positions.u[..points.len()];
         stack.coordinates_within(self.reach, u);
         u.iter_mut().for_each(|u| *u *= self.side);
+        positions
     }
-}
-
-impl Positions {
-    const NONE: Self = Self {
-        x: [0.0; BLOCK],
-        y: [0.0; BLOCK],
-        u: [0.0; BLOCK],
-    };
 }
 
 fn is_finite(point: &SeenPoint) -> bool {
     point.pixel.is_finite() && point.position.is_finite()
-}
-
-/// Returns the place of the pattern of body `number` in a stack, in periods: the points of the sequence of Roberts
-/// (2018), far apart from each other.
-fn place(number: usize) -> DVec2 {
-    /// The plastic ratio: the root of x³ = x + 1.
-    const PLASTIC: f64 = 1.324_717_957_244_746;
-    let number = number as f64;
-    DVec2::new(number / PLASTIC, number / (PLASTIC * PLASTIC)).fract()
 }

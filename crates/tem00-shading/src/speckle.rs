@@ -117,20 +117,16 @@ impl Speckle {
     /// # Errors
     ///
     /// Returns an error if the image or the motions need more memory than allowed, if the number of looks or the degree
-    /// of polarisation is out of range, or if the laser is not monochromatic or no point: looks stand for what that takes
+    /// of polarisation is out of range, if no frame shows a point from which to find the largest shift, or if the laser is not monochromatic or no point: looks stand for what that takes
     /// of the contrast.
-    pub fn prepare(self) -> Result<PreparedSpeckle, ShadingError> {
+    pub fn prepare(mut self) -> Result<PreparedSpeckle, ShadingError> {
         self.check_coherence()?;
+        self.motions.retain(|motion| !motion.is_still());
         let geometry = self.camera.imaging_geometry(self.laser.wavelength())?;
         let fractions = incoherent_fractions(self.looks, self.polarisation, &[1.0])?;
         let demand = self.demand(&geometry)?;
-        let still = Motion::default();
         // The reference state is one of them.
-        let frames = 1 + self
-            .motions
-            .iter()
-            .filter(|motion| **motion != still)
-            .count();
+        let frames = 1 + self.motions.len();
         let of_each = self.memory / fractions.len() as u64;
         let needs = demand.needs(frames, geometry.speckle_size_in_pixels(), of_each);
         let plan = StackPlan::new(&needs)?;
@@ -186,14 +182,18 @@ impl Speckle {
             shifts: [0.0; 2],
             farthest: None,
         };
-        let still = Motion::default();
-        let moved = self.motions.iter().filter(|motion| **motion != still);
-        let states = moved.map(|motion| State::new((&self.camera, &self.laser), motion));
+        let motions = self.motions.iter();
+        let states = motions.map(|motion| State::new((&self.camera, &self.laser), motion));
         let states = states.collect::<Result<Vec<_>, _>>()?;
         let seen: Vec<_> = states
             .iter()
             .map(|state| state.scouted(geometry, &self.points))
             .collect();
+        if !seen.is_empty() && seen.iter().all(Vec::is_empty) {
+            return Err(ShadingError::Missing(
+                "a point in the image where the laser lights the plane in focus, or one of `at_points`",
+            ));
+        }
         let largest = states.iter().zip(&seen);
         let largest =
             largest.flat_map(|(state, seen)| seen.iter().map(move |found| (state, found)));

@@ -56,11 +56,6 @@ impl State {
         &self.perspective
     }
 
-    /// Tells whether nothing has moved against anything else.
-    fn is_still(&self) -> bool {
-        [self.motion.surface, self.motion.camera, self.motion.laser] == [Pose::IDENTITY; 3]
-    }
-
     /// Returns a point where the camera sees it, if it lies before the lens.
     pub(crate) fn seen(&self, position: DVec3, normal: DVec3) -> Option<SeenPoint> {
         let pixel = self.camera.project(position)?;
@@ -78,7 +73,7 @@ impl State {
         points: impl IntoIterator<Item = SeenPoint>,
         shifts: &mut [Option<SpeckleShift>],
     ) {
-        if self.is_still() {
+        if self.motion.is_still() {
             shifts.fill(Some(SpeckleShift::default()));
             return;
         }

@@ -306,6 +306,9 @@ fn what_does_not_fit_is_refused_by_name() {
         Err(ShadingError::BeyondPoses { .. })
     ));
     assert!(speckle.clone().within(1000).prepare().is_err(), "memory");
+    let aside = speckle.clone().for_poses(&[pose]);
+    let aside = aside.at_points([(DVec3::X, DVec3::Z)]).prepare();
+    assert!(matches!(aside, Err(ShadingError::Missing(_))), "{aside:?}");
     assert!(speckle.clone().looks(0).prepare().is_err(), "no looks");
     assert!(speckle.polarisation(1.5).prepare().is_err(), "polarisation");
     let broad =

@@ -236,6 +236,25 @@ impl StackPlan {
         self.path.reach()
     }
 
+    /// Returns the largest motions to either side of the reference that the slices tell apart, in pupil diameters, for
+    /// motions of which the largest are `shifts`: where both sides move, each gets its part of the [reach](Self::reach).
+    pub fn reaches(&self, shifts: [f64; 2]) -> [f64; 2] {
+        let [before, after] = shifts;
+        if before == 0.0 || after == 0.0 {
+            return [self.reach(); 2];
+        }
+        shifts.map(|part| self.reach() * part / (before + after))
+    }
+
+    /// Returns the place in a stack of pattern `number` of several that share it, in periods along x and y: the points of
+    /// the sequence of Roberts (2018), far apart from each other. The first is at the origin.
+    pub fn place(number: usize) -> [f64; 2] {
+        /// The plastic ratio: the root of x³ = x + 1.
+        const PLASTIC: f64 = 1.324_717_957_244_746;
+        let number = number as f64;
+        [PLASTIC, PLASTIC * PLASTIC].map(|step| (number / step).fract())
+    }
+
     /// Returns whether the pattern repeats nothing within the region.
     pub fn holds_region(&self, needs: &StackNeeds) -> bool {
         (0..2).all(|axis| self.diameter[axis] as f64 >= needs.region[axis] / needs.speckle_size)

@@ -68,18 +68,11 @@ impl PatternAllocation {
 
     /// Returns the largest motions of the pupil that the slices tell apart, to either side of the
     /// reference frame, in its diameters.
-    ///
-    /// Where the path is too short for both, each gets its part of it.
     pub(super) fn reaches(&self) -> [f64; 2] {
         if !self.middles.is_empty() {
             return [f64::INFINITY; 2];
         }
-        let reach = self.stack.reach();
-        let [before, after] = self.shifts;
-        if before == 0.0 || after == 0.0 {
-            return [reach; 2];
-        }
-        [before, after].map(|part| reach * part / (before + after))
+        self.stack.reaches(self.shifts)
     }
 }
 
@@ -274,26 +267,4 @@ fn separate(
         needed <= memory && choices.iter().all(|choice| choice.stack.field(0).is_ok())
     };
     Ok((0..levels).filter_map(at).find(fits))
-}
-
-/// Returns how far beside its own position a surface looks up a further pattern, in periods along x and y; 0 is its own.
-pub(super) fn position_beside(number: usize) -> [f64; 2] {
-    if number == 0 {
-        [0.0; 2]
-    } else {
-        offset(number)
-    }
-}
-
-/// Returns the offset of the pattern `number` among several in one stack, in periods along x and y.
-///
-/// They are the points of the sequence of Roberts (2018), far apart from each other.
-pub(super) fn offset(number: usize) -> [f64; 2] {
-    /// The plastic ratio: the root of x³ = x + 1.
-    const PLASTIC: f64 = 1.324_717_957_244_746;
-    let number = number as f64;
-    [
-        (number / PLASTIC).fract(),
-        (number / (PLASTIC * PLASTIC)).fract(),
-    ]
 }

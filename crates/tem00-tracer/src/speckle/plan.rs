@@ -385,7 +385,7 @@ impl Planner<'_> {
                             true => Part {
                                 fraction,
                                 stack: 0,
-                                offset: allocation::offset(first + number),
+                                offset: StackPlan::place(first + number),
                             },
                             false => Part {
                                 fraction,

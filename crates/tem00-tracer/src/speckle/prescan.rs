@@ -6,10 +6,10 @@ use tem00_camera::Camera;
 use tem00_decorrelation::ImagingGeometry;
 use tem00_numerics::cast::to_i64;
 use tem00_shading::{LightPath, Perspective, SpeckleShift};
+use tem00_speckle::StackPlan;
 
 use super::{
     SpecklePoint,
-    allocation::offset,
     change::{Change, ReferencePoint},
     multiple::MultipleMap,
 };
@@ -452,7 +452,7 @@ pub(super) fn first_ray(change: &Change, side: u32) -> DVec2 {
         RAYS_PER_SIDE => 0.0,
         _ => change.frames(),
     };
-    (DVec2::splat(0.5) + farther * DVec2::from_array(offset(1))).rem_euclid(DVec2::ONE)
+    (DVec2::splat(0.5) + farther * DVec2::from_array(StackPlan::place(1))).rem_euclid(DVec2::ONE)
 }
 
 /// Image points evenly spread over the image, in pixels: so many along each side, from a point in distances between

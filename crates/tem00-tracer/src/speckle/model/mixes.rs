@@ -5,10 +5,10 @@ use core::f64::consts::TAU;
 use glam::DVec2;
 use tem00_coherence::Recombination;
 use tem00_shading::{BLOCK, SpeckleShift};
-use tem00_speckle::{Complex, SpeckleStack};
+use tem00_speckle::{Complex, SpeckleStack, StackPlan};
 
 use super::{
-    super::{SpecklePoint, allocation, crossing::Following, plan::SurfacePatterns},
+    super::{SpecklePoint, crossing::Following, plan::SurfacePatterns},
     Block, Mix, SpeckleFrame, Stack, Window, in_samples,
 };
 
@@ -137,7 +137,7 @@ impl SpeckleFrame<'_> {
         // A component that the single light does not have takes positions of its own.
         let planned = component.min(surface.components - 1);
         let number = number + (component - planned) * Recombination::PATTERNS;
-        let beside = allocation::position_beside(number);
+        let beside = StackPlan::place(number);
         let mut whole = 0.0;
         for fields in surface.fields_of(planned, heights.len()) {
             let fraction = fields[0].fraction;

@@ -85,8 +85,8 @@ impl Speckle {
 
     /// Sets points with their normals, in the reference state, from which the largest shift of the speckle is found.
     ///
-    /// Without them it is found where the light of the laser crosses the plane in focus, on a surface that faces the
-    /// camera, the laser or the direction between both.
+    /// Without them it is found where the light of the laser crosses the plane in focus, or all over the image if it is
+    /// seen nowhere, on a surface that faces the camera, the laser or the direction between both.
     pub fn at_points(mut self, points: impl IntoIterator<Item = (DVec3, DVec3)>) -> Self {
         self.points.extend(points);
         self
@@ -191,7 +191,7 @@ impl Speckle {
             .collect();
         if !seen.is_empty() && seen.iter().all(Vec::is_empty) {
             return Err(ShadingError::Missing(
-                "a point in the image where the laser lights the plane in focus, or one of `at_points`",
+                "one of `at_points` in the image of some frame",
             ));
         }
         let largest = states.iter().zip(&seen);

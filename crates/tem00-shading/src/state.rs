@@ -1,5 +1,5 @@
 use glam::{DVec2, DVec3};
-use tem00_camera::Camera;
+use tem00_camera::{Camera, Ray};
 use tem00_decorrelation::{CameraFrame, ImagingGeometry, RigidChange, RigidMotions};
 
 use crate::{
@@ -27,7 +27,7 @@ pub(crate) struct ReferencePoint {
     way: DVec3,
 }
 
-/// Rays of the laser along each dimension of its light by which the places that it lights are found.
+/// Rays along each dimension of the light of the laser, and of the image, by which points are found.
 const RAYS: u32 = 6;
 
 impl State {
@@ -124,59 +124,71 @@ impl State {
     }
 
     /// Returns points that the camera sees now, with what has become of their speckle: those given in the reference
-    /// state, or where the light of the laser crosses the plane in focus.
+    /// state, or else points of the plane in focus.
     pub(crate) fn scouted(
         &self,
         geometry: &ImagingGeometry,
         given: &[(DVec3, DVec3)],
     ) -> Vec<(SeenPoint, SpeckleShift)> {
         let surface = &self.motion.surface;
-        let given: Vec<_> = given
+        let carried = given
             .iter()
-            .filter_map(|&(point, normal)| {
-                self.seen(surface.point(point), surface.direction(normal))
-            })
-            .collect();
-        let points = if given.is_empty() {
-            self.lit_in_focus()
-        } else {
-            given
+            .map(|&(point, normal)| (surface.point(point), surface.direction(normal)));
+        let points: Vec<_> = match given.is_empty() {
+            true => self.in_focus(),
+            false => carried.collect(),
         };
-        let size = DVec2::new(self.camera.width() as f64, self.camera.height() as f64);
-        let in_image = |point: &SeenPoint| {
-            point.pixel.cmpge(DVec2::ZERO).all() && point.pixel.cmple(size).all()
-        };
-        let points: Vec<_> = points.into_iter().filter(in_image).collect();
-        let mut shifts = vec![None; points.len()];
-        self.shifts(geometry, points.iter().copied(), &mut shifts);
-        let found = points.into_iter().zip(shifts);
+        let seen = points.into_iter();
+        let seen = seen.filter_map(|(point, normal)| self.seen(point, normal));
+        let seen: Vec<_> = seen.filter(|point| self.is_in_image(point.pixel)).collect();
+        let mut shifts = vec![None; seen.len()];
+        self.shifts(geometry, seen.iter().copied(), &mut shifts);
+        let found = seen.into_iter().zip(shifts);
         found
             .filter_map(|(point, shift)| Some((point, shift?)))
             .collect()
     }
 
-    /// Where rays of the laser cross the plane in focus, on surfaces that face the camera, the laser or between both.
-    fn lit_in_focus(&self) -> Vec<SeenPoint> {
+    fn is_in_image(&self, pixel: DVec2) -> bool {
+        pixel.cmpge(DVec2::ZERO).all() && pixel.cmple(self.size()).all()
+    }
+
+    fn size(&self) -> DVec2 {
+        DVec2::new(self.camera.width() as f64, self.camera.height() as f64)
+    }
+
+    /// Points in the image and in focus, where rays of the laser meet the plane there or, if none does as of a line much
+    /// wider than the image, all over the image; with normals towards the camera, the laser and between both.
+    fn in_focus(&self) -> Vec<(DVec3, DVec3)> {
         let (origin, normal) = self.camera.plane_in_focus();
-        let [_, laser] = &self.lasers;
-        let at = |digit: u32| (f64::from(digit) + 0.5) / f64::from(RAYS);
-        let uniforms =
-            (0..RAYS.pow(4)).map(|index| [0, 1, 2, 3].map(|i| at(index / RAYS.pow(i) % RAYS)));
-        let crossings = uniforms.filter_map(|uniforms| {
-            let ray = laser.sample_ray(uniforms).ray;
+        let meet = |ray: Ray| {
             let distance = (origin - ray.origin).dot(normal) / ray.direction.dot(normal);
             let point = ray.origin + distance * ray.direction;
-            (distance > 0.0 && point.is_finite()).then_some((point, -ray.direction))
-        });
-        let points = crossings.flat_map(|(point, to_laser)| {
+            (distance > 0.0 && point.is_finite()).then_some(point)
+        };
+        let fractions = |index: u32| {
+            [0, 1, 2, 3].map(|i| (f64::from(index / RAYS.pow(i) % RAYS) + 0.5) / f64::from(RAYS))
+        };
+        let [_, laser] = &self.lasers;
+        let lit = (0..RAYS.pow(4)).filter_map(|index| meet(laser.sample_ray(fractions(index)).ray));
+        let in_image = |point: &DVec3| {
+            let pixel = self.camera.project(*point);
+            pixel.is_some_and(|pixel| self.is_in_image(pixel))
+        };
+        let mut points: Vec<_> = lit.filter(in_image).collect();
+        if points.is_empty() {
+            let pixels = (0..RAYS.pow(2)).map(|index| {
+                let [x, y, ..] = fractions(index);
+                DVec2::new(x, y) * self.size()
+            });
+            points.extend(pixels.filter_map(|pixel| meet(self.camera.ray(pixel))));
+        }
+        let facing = |point: DVec3| {
             let to_camera = (self.camera.position() - point).normalize_or_zero();
-            let facing = [
-                to_camera,
-                to_laser,
-                (to_camera + to_laser).normalize_or_zero(),
-            ];
-            facing.map(|normal| self.seen(point, normal))
-        });
-        points.flatten().collect()
+            let to_laser = laser.wave_direction_at(point);
+            let between = (to_camera + to_laser).normalize_or_zero();
+            [to_camera, to_laser, between].map(|normal| (point, normal))
+        };
+        points.into_iter().flat_map(facing).collect()
     }
 }

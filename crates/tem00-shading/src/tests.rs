@@ -325,6 +325,25 @@ fn what_does_not_fit_is_refused_by_name() {
     ));
 }
 
+/// Of a line that is a hundred times as wide as the image, few rays are seen, if any.
+#[test]
+fn shifts_are_found_under_a_line_much_wider_than_the_image() {
+    let camera = camera(DVec3::new(0.0, -0.1, 0.28));
+    let line = Laser::line(650e-9, 0.1e-3, 1.2);
+    let line = line.placed(0.5 * DVec3::Z, DVec3::ZERO, DVec3::X).unwrap();
+    let pose = Pose::along(DVec3::X * 5e-3).unwrap();
+    let speckle = Speckle::new(&camera, &line, 1)
+        .for_poses(&[pose; 3])
+        .prepare();
+    let speckle = speckle.unwrap();
+    let frame = speckle.frame(&pose.into()).unwrap();
+    let shift = frame.shift(DVec3::ZERO, DVec3::Z).unwrap();
+    // More than the path of a motion that is not seen.
+    assert!(shift.pupil > 1.0, "{shift:?} tells nothing");
+    let reach = speckle.plan().reach();
+    assert!(reach >= shift.pupil, "{reach} for {shift:?}");
+}
+
 #[test]
 fn the_plan_says_what_it_chose() {
     let pose = Pose::along(DVec3::X * 1e-3).unwrap();

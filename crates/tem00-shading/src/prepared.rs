@@ -248,10 +248,35 @@ impl SpeckleFrame {
     /// Returns what has become of the speckle at a point since the reference state, or `None` where the law has no value.
     pub fn shift(&self, point: DVec3, normal: DVec3) -> Option<SpeckleShift> {
         let mut shift = [None];
-        let seen = self.seen(point, normal)?;
-        self.state
-            .shifts(&self.speckle.geometry, [seen], &mut shift);
+        self.shifts(&[point], &[normal], &mut shift);
         shift[0]
+    }
+
+    /// Writes what has become of the speckle at many points, `None` where the camera does not see them or the law has no
+    /// value: the same bits as [`shift`](Self::shift) one by one.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless the slices have the same length.
+    pub fn shifts(&self, points: &[DVec3], normals: &[DVec3], shifts: &mut [Option<SpeckleShift>]) {
+        assert!(
+            points.len() == shifts.len() && normals.len() == shifts.len(),
+            "{} points and {} normals for {} shifts",
+            points.len(),
+            normals.len(),
+            shifts.len()
+        );
+        let seen: Vec<_> = points
+            .iter()
+            .zip(normals)
+            .map(|(&point, &normal)| self.seen(point, normal))
+            .collect();
+        let anywhere = |point: &Option<SeenPoint>| point.unwrap_or(SeenPoint::ANYWHERE);
+        self.state
+            .shifts(&self.speckle.geometry, seen.iter().map(anywhere), shifts);
+        for (shift, point) in shifts.iter_mut().zip(&seen) {
+            *shift = shift.filter(|_| point.is_some());
+        }
     }
 
     fn seen(&self, point: DVec3, normal: DVec3) -> Option<SeenPoint> {
@@ -292,14 +317,9 @@ impl SpeckleFrame {
             return positions;
         };
         let geometry = &self.speckle.geometry;
-        let anywhere = SeenPoint {
-            pixel: DVec2::ZERO,
-            position: DVec3::ZERO,
-            normal: DVec3::ZERO,
-        };
         let seen = points
             .iter()
-            .map(|point| point.filter(is_finite).unwrap_or(anywhere));
+            .map(|point| point.filter(is_finite).unwrap_or(SeenPoint::ANYWHERE));
         let mut shifts = [None; BLOCK];
         let shifts = &mut shifts[..points.len()];
         self.state.shifts(geometry, seen.clone(), shifts);

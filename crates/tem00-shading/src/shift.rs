@@ -32,6 +32,15 @@ pub struct SeenPoint {
     pub normal: DVec3,
 }
 
+impl SeenPoint {
+    /// What stands in a block for a point that is not seen.
+    pub(crate) const ANYWHERE: Self = Self {
+        pixel: DVec2::ZERO,
+        position: DVec3::ZERO,
+        normal: DVec3::ZERO,
+    };
+}
+
 /// The light whose speckle is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LightPath {

@@ -141,6 +141,11 @@ impl Laser {
         &self.source_extent
     }
 
+    /// Tells whether the light is of one wavelength and from a point.
+    pub fn is_coherent(&self) -> bool {
+        self.spectral_line().is_monochromatic() && self.source_extent.is_point()
+    }
+
     /// Returns the laser with a motion from frame to frame.
     #[must_use]
     pub fn with_trajectory(mut self, trajectory: Trajectory) -> Self {

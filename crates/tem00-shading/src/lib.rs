@@ -12,7 +12,7 @@
 //! | level | names |
 //! |---|---|
 //! | what a renderer calls | [`Laser`], [`Camera`], [`Speckle`], [`Motion`], [`Pose`], [`SpeckleFrame`] |
-//! | what these are made of | [`SpeckleLaw`] and [`SpeckleShift`], [`Perspective`], [`Trajectory`], and the crates beam, camera, decorrelation, speckle |
+//! | what these are made of | [`SpeckleLaw`] and [`SpeckleShift`], [`SpectralLaw`] and [`SpectralShift`], [`Perspective`], [`Trajectory`], and the crates beam, camera, decorrelation, speckle |
 //!
 //! # Validity
 //!
@@ -27,6 +27,7 @@ mod perspective;
 mod prepared;
 mod shift;
 mod speckle;
+mod spectral;
 mod state;
 #[cfg(test)]
 mod testing;
@@ -45,7 +46,9 @@ pub use perspective::Perspective;
 pub use prepared::{PreparedSpeckle, SpeckleFrame};
 pub use shift::{BLOCK, LightPath, SeenPoint, SpeckleLaw, SpeckleShift};
 pub use speckle::Speckle;
+pub use spectral::{Bandwidth, SpectralLaw, SpectralShift, SurfaceLight};
 pub use tem00_camera::{Camera, CameraDescription};
 /// The place of a rigid body, relative to the reference state: a rotation and a translation.
 pub use tem00_decorrelation::RigidMotion as Pose;
+pub use tem00_decorrelation::{Illumination, Wavefront};
 pub use trajectory::{Keyframe, Rotation, Trajectory};

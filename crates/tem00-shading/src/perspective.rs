@@ -30,6 +30,11 @@ impl Perspective {
         }
     }
 
+    /// Returns the camera.
+    pub const fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
     /// Returns where an image point lies in perspective, in pixels.
     pub fn point(&self, pixel: DVec2) -> DVec2 {
         if self.plain {

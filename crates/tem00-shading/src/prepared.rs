@@ -1,13 +1,13 @@
-use core::fmt;
+use core::{f64::consts::TAU, fmt};
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use tem00_camera::Camera;
-use tem00_decorrelation::ImagingGeometry;
+use tem00_decorrelation::{Illumination, ImagingGeometry};
 use tem00_speckle::{Complex, SpeckleStack, StackNeeds, StackPlan};
 
 use crate::{
-    BLOCK, Laser, Motion, Pose, SeenPoint, ShadingError, SpeckleShift,
+    BLOCK, Bandwidth, Laser, Motion, Pose, SeenPoint, ShadingError, SpeckleShift,
     state::{ReferencePoint, State},
 };
 
@@ -22,7 +22,12 @@ pub(crate) struct Patterns {
     pub(crate) camera: Camera,
     pub(crate) laser: Laser,
     pub(crate) geometry: ImagingGeometry,
+    /// One for each field, or one for all.
+    pub(crate) stacks: Vec<SpeckleStack>,
     pub(crate) parts: Vec<Part>,
+    pub(crate) bandwidth: Option<Bandwidth>,
+    /// The equal parts of the line, each with its median wave number, that stand for all its light.
+    pub(crate) waves: usize,
     pub(crate) needs: StackNeeds,
     pub(crate) plan: StackPlan,
     /// The largest shifts of the poses to either side of the reference, in pupil diameters.
@@ -35,7 +40,16 @@ pub(crate) struct Patterns {
 #[derive(Clone, Debug)]
 pub(crate) struct Part {
     pub fraction: f64,
-    pub stack: SpeckleStack,
+    /// One, or one for each height of the relief, whose fields add.
+    pub fields: Vec<Field>,
+}
+
+/// A place in one of the stacks.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Field {
+    pub stack: usize,
+    /// In samples.
+    pub offset: DVec2,
 }
 
 /// The speckle of one body in one frame, which holds on to the patterns.
@@ -54,25 +68,55 @@ struct Positions {
     x: [f64; BLOCK],
     y: [f64; BLOCK],
     u: [f64; BLOCK],
+    /// The change of the phase with the height of the relief, in radians per metre.
+    phase_per_height: [f64; BLOCK],
 }
+
+/// The light in which points are looked up.
+#[derive(Clone, Copy)]
+struct Light<'a> {
+    /// The quantile of its wave number in the laser's line.
+    wave: f64,
+    /// Where it comes from, if not straight from the laser.
+    lit_by: Option<&'a Illumination>,
+}
+
+impl Light<'_> {
+    const fn of(wave: f64) -> Self {
+        Self { wave, lit_by: None }
+    }
+}
+
+/// The points of a pixel that stand for all of it in light with a linewidth, each in a wave number of its own.
+const POINTS: usize = 64;
+
+/// The largest error of the correlation of two frames in light with a linewidth.
+const MAX_ERROR: f64 = 0.05;
+
+/// The heights of a surface in light of one wavelength.
+const FLAT: &[[f64; 2]] = &[[0.0, 1.0]];
 
 impl PreparedSpeckle {
     /// Returns the speckle of a body in a frame: once per body and frame.
     ///
     /// # Errors
     ///
-    /// Returns an error if the motion shifts the speckle farther than the poses that it was prepared for.
+    /// Returns an error if the motion shifts the speckle farther than the poses that it was prepared for, or otherwise
+    /// than [`prepare`](crate::Speckle::prepare) says of a linewidth.
     pub fn frame(&self, motion: &Motion) -> Result<SpeckleFrame, ShadingError> {
         let Self(patterns) = self;
         let frame = self.unchecked(motion)?;
         let seen = frame.state.scouted(&patterns.geometry, &patterns.points);
-        let shifts = seen.into_iter().map(|(_, shift)| shift.pupil);
-        let shift = shifts.filter(|shift| shift.is_finite()).fold(0.0, f64::max);
+        let shifts = seen.into_iter().map(|(_, shift)| shift);
+        let shifts = shifts.filter(|shift| shift.pupil.is_finite());
+        let farthest = shifts.max_by(|a, b| a.pupil.total_cmp(&b.pupil));
+        let shift = farthest.map_or(0.0, |shift| shift.pupil);
         // Of two frames the second has new speckle beyond the reach, whatever it is.
         let held = frame.reach;
         if shift > held && (patterns.needs.frames > 2 || held == 0.0) {
             return Err(ShadingError::BeyondPoses { shift, held });
         }
+        farthest.map_or(Ok(()), |shift| frame.check_crossing(&shift))?;
         Ok(frame)
     }
 
@@ -117,12 +161,17 @@ impl PreparedSpeckle {
         let state = State::new((&patterns.camera, &patterns.laser), motion)?;
         let side = state.side(&patterns.geometry, patterns.farthest.as_ref());
         let size = patterns.plan.size().map(|samples| samples as f64);
+        let fields: usize = patterns.parts.iter().map(|part| part.fields.len()).sum();
+        let in_a_stack = fields / patterns.stacks.len();
+        let of_waves = patterns.bandwidth.as_ref().map_or(0.0, |b| b.reach);
+        let reach = patterns.plan.reaches(patterns.shifts)[usize::from(side > 0.0)];
         Ok(SpeckleFrame {
             speckle: Arc::clone(patterns),
             state,
             side,
-            reach: patterns.plan.reaches(patterns.shifts)[usize::from(side > 0.0)],
-            offset: DVec2::from_array(StackPlan::place(motion.body)) * DVec2::from_array(size),
+            reach: (reach - of_waves).max(0.0),
+            offset: DVec2::from_array(StackPlan::place(motion.body * in_a_stack))
+                * DVec2::from_array(size),
         })
     }
 
@@ -141,7 +190,13 @@ impl PreparedSpeckle {
         self.0
             .plan
             .memory_bytes()
-            .saturating_mul(self.0.parts.len() as u64)
+            .saturating_mul(self.0.stacks.len() as u64)
+    }
+}
+
+impl Patterns {
+    fn heights(&self) -> &[[f64; 2]] {
+        self.bandwidth.as_ref().map_or(FLAT, |b| &b.heights)
     }
 }
 
@@ -155,7 +210,7 @@ impl fmt::Display for PreparedSpeckle {
             f,
             "{} of {width} × {height} samples, {slices} {} ({:.0} MiB): speckle of {:.2} px, the region of {:.0} × {:.0} \
              px repeats nothing, the pupil moves by {:.2} of its diameters in {} frames",
-            counted(patterns.parts.len(), "pattern", "patterns"),
+            counted(patterns.stacks.len(), "pattern", "patterns"),
             if slices == 1 { "slice" } else { "slices each" },
             self.memory_bytes() as f64 / f64::from(1 << 20),
             patterns.needs.speckle_size,
@@ -163,7 +218,14 @@ impl fmt::Display for PreparedSpeckle {
             patterns.needs.region[1],
             before + after,
             patterns.needs.frames,
-        )
+        )?;
+        patterns.bandwidth.as_ref().map_or(Ok(()), |bandwidth| {
+            write!(
+                f,
+                ", a linewidth that displaces it by up to {:.2} of them among it",
+                bandwidth.reach
+            )
+        })
     }
 }
 
@@ -182,6 +244,15 @@ impl SpeckleFrame {
         factor[0]
     }
 
+    /// Returns the factor at a point that is lit otherwise than straight from the laser, as over mirrors and lenses:
+    /// [`Wavefront::from_differentials`](crate::Wavefront::from_differentials) has the wave from rays that a host has
+    /// traced. `light` is that of the reference state, and moves with the laser.
+    pub fn factor_under(&self, light: &Illumination, point: DVec3, normal: DVec3) -> f64 {
+        let mut factor = [1.0];
+        self.look_up(Some(light), &[self.seen(point, normal)], &mut factor);
+        factor[0]
+    }
+
     /// Returns the factor at a point that a camera sample sees at an image point, in pixels with y down: out of focus it
     /// lies beside the one where the centre of the lens sees it.
     pub fn factor_at(&self, pixel: DVec2, point: DVec3, normal: DVec3) -> f64 {
@@ -191,7 +262,7 @@ impl SpeckleFrame {
             normal,
         };
         let mut factor = [1.0];
-        self.look_up(&[Some(seen)], &mut factor);
+        self.look_up(None, &[Some(seen)], &mut factor);
         factor[0]
     }
 
@@ -216,8 +287,19 @@ impl SpeckleFrame {
             for (seen, (&point, &normal)) in seen.iter_mut().zip(points.iter().zip(normals)) {
                 *seen = self.state.seen(point, normal);
             }
-            self.look_up(&seen[..points.len()], factors);
+            self.look_up(None, &seen[..points.len()], factors);
         }
+    }
+
+    /// Returns the factor at a point in light of one wave number of the laser's line, the quantile `wave` between 0 and 1:
+    /// for a renderer that draws a wave number for each of its samples.
+    ///
+    /// [`factor`](Self::factor) is the mean over so many of them, at most 64, that contrasts are within 1 %, at as much
+    /// cost. In light of one wavelength both are the same.
+    pub fn factor_in_wave(&self, point: DVec3, normal: DVec3, wave: f64) -> f64 {
+        let mut factor = [1.0];
+        self.look_up_in(Light::of(wave), &[self.seen(point, normal)], &mut factor);
+        factor[0]
     }
 
     /// Returns the mean factor over the pixel about the image of a point: for a host with one sample per pixel, whose
@@ -226,23 +308,47 @@ impl SpeckleFrame {
         let Some(seen) = self.seen(point, normal) else {
             return 1.0;
         };
-        let Positions { x, y, u } = self.positions(&[Some(seen)]);
-        let parts = self.speckle.parts.iter();
-        let means = parts.map(|Part { fraction, stack }| {
+        if self.speckle.bandwidth.is_some() {
+            return self.average_over_waves(&seen);
+        }
+        let Positions { x, y, u, .. } = self.positions(Light::of(0.5), &[Some(seen)]);
+        let mean = |field: &Field| {
+            let stack = &self.speckle.stacks[field.stack];
             let pixel = stack.speckle_size() / self.speckle.needs.speckle_size;
-            fraction * stack.average_over([x[0], y[0]], [pixel; 2], u[0])
-        });
+            let place = DVec2::new(x[0], y[0]) + field.offset;
+            stack.average_over(place.to_array(), [pixel; 2], u[0])
+        };
+        let parts = self.speckle.parts.iter();
+        let means = parts.map(|part| part.fraction * part.fields.iter().map(mean).sum::<f64>());
         means.sum()
     }
 
-    /// Returns the complex amplitude of the first pattern, of mean square 1, for a host that adds fields.
+    /// The mean of points all over the pixel, in wave numbers all over the line.
+    fn average_over_waves(&self, seen: &SeenPoint) -> f64 {
+        let mut sum = 0.0;
+        for index in 0..POINTS {
+            let place = DVec2::from_array(StackPlan::place(index)) - 0.5;
+            let point = SeenPoint {
+                pixel: seen.pixel + place,
+                ..*seen
+            };
+            let mut factor = [1.0];
+            let wave = (index as f64 + 0.5) / POINTS as f64;
+            self.look_up_in(Light::of(wave), &[Some(point)], &mut factor);
+            sum += factor[0];
+        }
+        sum / POINTS as f64
+    }
+
+    /// Returns the complex amplitude of the first pattern, of mean square 1, for a host that adds fields: in light of
+    /// the median wave number of the laser's line.
     ///
     /// Returns `None` where the camera does not see the point.
     pub fn amplitude(&self, point: DVec3, normal: DVec3) -> Option<Complex<f64>> {
         let seen = self.seen(point, normal)?;
-        let Part { stack, .. } = self.speckle.parts.first()?;
-        let Positions { x, y, u } = self.positions(&[Some(seen)]);
-        Some(stack.amplitude_at(x[0], y[0], u[0]))
+        let part = self.speckle.parts.first()?;
+        let positions = self.positions(Light::of(0.5), &[Some(seen)]);
+        Some(self.amplitude_of(part, &positions, 0))
     }
 
     /// Returns what has become of the speckle at a point since the reference state, or `None` where the law has no value.
@@ -283,21 +389,52 @@ impl SpeckleFrame {
         self.state.seen(point, normal).filter(is_finite)
     }
 
-    /// Looks up a block of points.
-    fn look_up(&self, points: &[Option<SeenPoint>], factors: &mut [f64]) {
+    /// Looks up a block of points in all light of the laser.
+    fn look_up(
+        &self,
+        light: Option<&Illumination>,
+        points: &[Option<SeenPoint>],
+        factors: &mut [f64],
+    ) {
+        let of = |wave: f64| Light {
+            wave,
+            lit_by: light,
+        };
+        self.look_up_in(of(0.5 / self.speckle.waves as f64), points, factors);
+        for index in 1..self.speckle.waves {
+            let mut of_wave = [0.0; BLOCK];
+            let of_wave = &mut of_wave[..points.len()];
+            let wave = (index as f64 + 0.5) / self.speckle.waves as f64;
+            self.look_up_in(of(wave), points, of_wave);
+            let pairs = factors.iter_mut().zip(&*of_wave);
+            pairs.for_each(|(mean, factor)| *mean += (factor - *mean) / (index + 1) as f64);
+        }
+    }
+
+    /// Looks up a block of points in light of one wave number.
+    fn look_up_in(&self, light: Light<'_>, points: &[Option<SeenPoint>], factors: &mut [f64]) {
         let count = points.len();
         factors.fill(0.0);
-        let Positions { x, y, u } = self.positions(points);
-        for Part { fraction, stack } in &self.speckle.parts {
+        let positions = self.positions(light, points);
+        for part in &self.speckle.parts {
             let mut intensities = [0.0; BLOCK];
-            stack.intensity_batch(
-                &x[..count],
-                &y[..count],
-                &u[..count],
-                &mut intensities[..count],
-            );
-            let pairs = factors.iter_mut().zip(&intensities);
-            pairs.for_each(|(factor, intensity)| *factor += fraction * intensity);
+            let intensities = &mut intensities[..count];
+            match part.fields.as_slice() {
+                [Field { stack, offset }] => {
+                    let Positions { x, y, u, .. } = &positions;
+                    let [x, y] =
+                        [(x, offset.x), (y, offset.y)].map(|(at, by)| at.map(|at| at + by));
+                    let stack = &self.speckle.stacks[*stack];
+                    stack.intensity_batch(&x[..count], &y[..count], &u[..count], intensities);
+                }
+                _ => {
+                    for (i, intensity) in intensities.iter_mut().enumerate() {
+                        *intensity = self.amplitude_of(part, &positions, i).norm_sqr();
+                    }
+                }
+            }
+            let pairs = factors.iter_mut().zip(&*intensities);
+            pairs.for_each(|(factor, intensity)| *factor += part.fraction * intensity);
         }
         for (factor, point) in factors.iter_mut().zip(points) {
             if !point.as_ref().is_some_and(is_finite) {
@@ -306,14 +443,30 @@ impl SpeckleFrame {
         }
     }
 
+    /// The sum of the fields of a pattern at a position.
+    fn amplitude_of(&self, part: &Part, at: &Positions, index: usize) -> Complex<f64> {
+        let (x, y, u) = (at.x[index], at.y[index], at.u[index]);
+        let fields = part.fields.iter().zip(self.speckle.heights());
+        let fields = fields.map(|(Field { stack, offset }, [height, root])| {
+            let stack = &self.speckle.stacks[*stack];
+            // Fields are in the frame of the pupil of their slice, a ramp of phases that other places see elsewhere.
+            let ramp = TAU * (self.offset.x + offset.x)
+                / (stack.speckle_size() * stack.path().slices_per_diameter());
+            let phase = at.phase_per_height[index] * height - ramp * u.floor();
+            stack.amplitude_at(x + offset.x, y + offset.y, u) * Complex::cis(phase) * root
+        });
+        fields.sum()
+    }
+
     /// Finds where points are looked up in the stacks, which are alike; those out of sight anywhere.
-    fn positions(&self, points: &[Option<SeenPoint>]) -> Positions {
+    fn positions(&self, light: Light<'_>, points: &[Option<SeenPoint>]) -> Positions {
         let mut positions = Positions {
             x: [0.0; BLOCK],
             y: [0.0; BLOCK],
             u: [0.0; BLOCK],
+            phase_per_height: [0.0; BLOCK],
         };
-        let Some(Part { stack, .. }) = self.speckle.parts.first() else {
+        let Some(stack) = self.speckle.stacks.first() else {
             return positions;
         };
         let geometry = &self.speckle.geometry;
@@ -322,22 +475,89 @@ impl SpeckleFrame {
             .map(|point| point.filter(is_finite).unwrap_or(SeenPoint::ANYWHERE));
         let mut shifts = [None; BLOCK];
         let shifts = &mut shifts[..points.len()];
-        self.state.shifts(geometry, seen.clone(), shifts);
+        match light.lit_by {
+            Some(light) => {
+                for (shift, point) in shifts.iter_mut().zip(seen.clone()) {
+                    *shift = self.state.shift_under(light, geometry, point);
+                }
+            }
+            None => self.state.shifts(geometry, seen.clone(), shifts),
+        }
         let per_pixel = geometry.pattern_coordinate(DVec2::ONE, DVec2::ZERO, stack.speckle_size());
         let new = SpeckleShift {
             pupil: f64::INFINITY,
             ..SpeckleShift::default()
         };
-        for (i, (point, shift)) in seen.zip(&*shifts).enumerate() {
+        for (i, (point, shift)) in seen.clone().zip(&*shifts).enumerate() {
             let shift = shift.unwrap_or(new);
             let pixel = self.state.perspective().point(point.pixel) - shift.displacement;
-            [positions.x[i], positions.y[i]] = (pixel * per_pixel + self.offset).to_array();
+            [positions.x[i], positions.y[i]] = (pixel * per_pixel).to_array();
             positions.u[i] = shift.pupil;
         }
         let u = &mut positions.u[..points.len()];
         stack.coordinates_within(self.reach, u);
         u.iter_mut().for_each(|u| *u *= self.side);
+        if let Some(bandwidth) = &self.speckle.bandwidth {
+            for (i, point) in seen.enumerate() {
+                self.displace(&mut positions, i, &point, (bandwidth, light.wave));
+            }
+        }
+        let [x0, y0] = self.offset.to_array();
+        positions.x[..points.len()]
+            .iter_mut()
+            .for_each(|x| *x += x0);
+        positions.y[..points.len()]
+            .iter_mut()
+            .for_each(|y| *y += y0);
         positions
+    }
+
+    /// Displaces a position by what a wave number of the line displaces the speckle, in slices that stand along the axis
+    /// of the bandwidth.
+    fn displace(
+        &self,
+        positions: &mut Positions,
+        i: usize,
+        point: &SeenPoint,
+        (bandwidth, wave): (&Bandwidth, f64),
+    ) {
+        let Some(stack) = self.speckle.stacks.first() else {
+            return;
+        };
+        let law = self.state.spectral_law(&self.speckle.geometry);
+        let kappa = self.speckle.laser.spectral_line().draw(wave);
+        let shift = law.shift(point, kappa).unwrap_or_default();
+        let beside = self.speckle.geometry.pattern_coordinate(
+            shift.displacement,
+            DVec2::ZERO,
+            stack.speckle_size(),
+        );
+        let place = DVec2::new(positions.x[i], positions.y[i]) - beside;
+        let axis = bandwidth.axis;
+        [positions.x[i], positions.y[i]] = [axis.dot(place), axis.perp().dot(place)];
+        positions.u[i] += stack.path().slices_per_diameter() * shift.along(axis);
+        positions.phase_per_height[i] = shift.phase_per_height;
+    }
+
+    /// Checks that slices along one line hold the correlation of the frame with the reference in light with a linewidth.
+    fn check_crossing(&self, shift: &SpeckleShift) -> Result<(), ShadingError> {
+        let Some(bandwidth) = &self.speckle.bandwidth else {
+            return Ok(());
+        };
+        let line = self.speckle.laser.spectral_line();
+        let axis = bandwidth.axis;
+        let covariance = |way: DVec2| bandwidth.covariance(line, way, axis);
+        let held = covariance(self.side * shift.pupil * axis);
+        let error = (held - covariance(shift.pupil_vector())) / covariance(DVec2::ZERO);
+        if error.abs() <= MAX_ERROR {
+            return Ok(());
+        }
+        Err(ShadingError::OutOfRange {
+            parameter: "motion",
+            value: error,
+            allowed: "along the displacement of the pupil by other wavelengths: an error of at most 0.05 of the \
+                      correlation of two frames",
+        })
     }
 }
 

@@ -104,23 +104,13 @@ impl SpeckleLaw<'_> {
         points: impl IntoIterator<Item = SeenPoint>,
         shifts: &mut [Option<SpeckleShift>],
     ) {
-        let diameter = self.geometry.pupil_diameter();
+        let shared = self.shared(path);
         let [_, now] = self.lasers;
-        let shared = Shared {
-            law: self.change,
-            lasers: self.lasers.map(Laser::wave_frame),
-            is_carried: path == LightPath::Carried,
-            pixels_per_tangent: self.geometry.principal_distance() / self.geometry.pixel_pitch(),
-            per_diameter: diameter.recip(),
-            axial_length: 0.125 * diameter * diameter / now.wavelength(),
-        };
         let shape = now.wave_shape();
         let mut points = points.into_iter();
         for shifts in shifts.chunks_mut(BLOCK) {
             let count = shifts.len();
-            let block = Block::new(points.by_ref().take(count), |pixel| {
-                self.perspective.focus_vergence(self.geometry, pixel)
-            });
+            let block = self.block(points.by_ref().take(count));
             assert_eq!(block.count, count, "a point for each shift");
             let mut changes = shared.changes(&block, &shape);
             add_axial_shifts(count, &mut changes.pupil, &changes.axial);
@@ -128,6 +118,44 @@ impl SpeckleLaw<'_> {
                 *shift = changes.shift(index);
             }
         }
+    }
+}
+
+impl SpeckleLaw<'_> {
+    /// Returns what has become of the speckle of a point that is lit from the unit vectors `to_source`, in the reference
+    /// frame and now, or `None` where the law has no value.
+    pub fn shift_under(&self, to_source: [DVec3; 2], point: SeenPoint) -> Option<SpeckleShift> {
+        let shared = self.shared(LightPath::Direct);
+        let block = self.block([point].into_iter());
+        let changed = self.change.at(&ChangedPoint {
+            position: point.position,
+            normal: point.normal,
+            to_source,
+        });
+        let mut changes = Changes::new();
+        shared.put(&changed, block.focus_vergence[0], 0, &mut changes);
+        add_axial_shifts(1, &mut changes.pupil, &changes.axial);
+        changes.shift(0)
+    }
+
+    fn shared(&self, path: LightPath) -> Shared<'_> {
+        let diameter = self.geometry.pupil_diameter();
+        let [_, now] = self.lasers;
+        Shared {
+            law: self.change,
+            lasers: self.lasers.map(Laser::wave_frame),
+            is_carried: path == LightPath::Carried,
+            pixels_per_tangent: self.geometry.principal_distance() / self.geometry.pixel_pitch(),
+            per_diameter: diameter.recip(),
+            axial_length: 0.125 * diameter * diameter / now.wavelength(),
+        }
+    }
+
+    #[inline(always)] // It is filled in where it lies.
+    fn block(&self, points: impl Iterator<Item = SeenPoint>) -> Block {
+        Block::new(points, |pixel| {
+            self.perspective.focus_vergence(self.geometry, pixel)
+        })
     }
 }
 
@@ -187,12 +215,7 @@ impl Shared<'_> {
     #[inline(always)] // They are written where they lie.
     fn changes(&self, block: &Block, shape: &WaveShape) -> Changes {
         let end = block.count.next_multiple_of(LANES).min(BLOCK);
-        let mut changes = Changes {
-            displacement: [[0.0; BLOCK]; 2],
-            across: [[0.0; BLOCK]; 2],
-            pupil: [0.0; BLOCK],
-            axial: [0.0; BLOCK],
-        };
+        let mut changes = Changes::new();
         vectorised(
             #[inline(always)]
             || match shape {
@@ -250,6 +273,15 @@ impl Shared<'_> {
 }
 
 impl Changes {
+    const fn new() -> Self {
+        Self {
+            displacement: [[0.0; BLOCK]; 2],
+            across: [[0.0; BLOCK]; 2],
+            pupil: [0.0; BLOCK],
+            axial: [0.0; BLOCK],
+        }
+    }
+
     /// The shift of a point, or `None` where it has no value.
     fn shift(&self, index: usize) -> Option<SpeckleShift> {
         let [x, y] = self.displacement.map(|along| along[index]);

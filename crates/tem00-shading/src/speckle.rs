@@ -2,12 +2,13 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use tem00_camera::Camera;
+use tem00_coherence::Relief;
 use tem00_decorrelation::ImagingGeometry;
 use tem00_speckle::{SpeckleStack, StackNeeds, StackPlan, incoherent_fractions};
 
 use crate::{
-    Laser, Motion, Perspective, Pose, PreparedSpeckle, ShadingError,
-    prepared::{Part, Patterns},
+    Bandwidth, Laser, Motion, Perspective, Pose, PreparedSpeckle, ShadingError, SurfaceLight,
+    prepared::{Field, Part, Patterns},
     state::{ReferencePoint, State},
 };
 
@@ -52,6 +53,7 @@ pub struct Speckle {
     memory: u64,
     looks: usize,
     polarisation: f64,
+    relief: Relief,
 }
 
 impl Speckle {
@@ -69,6 +71,7 @@ impl Speckle {
             memory: 256 << 20,
             looks: 1,
             polarisation: 1.0,
+            relief: Relief::default(),
         }
     }
 
@@ -112,65 +115,101 @@ impl Speckle {
         self
     }
 
+    /// Sets the relief of the surface that is finer than a resolution cell: its paths lower the contrast of a laser that
+    /// has a linewidth.
+    pub const fn relief(mut self, relief: Relief) -> Self {
+        self.relief = relief;
+        self
+    }
+
     /// Chooses sizes, slices and seeds, and generates the patterns.
     ///
     /// # Errors
     ///
     /// Returns an error if the image or the motions need more memory than allowed, if the number of looks or the degree
-    /// of polarisation is out of range, if no frame shows a point from which to find the largest shift, or if the laser is not monochromatic or no point: looks stand for what that takes
-    /// of the contrast.
+    /// of polarisation is out of range, or if no frame shows a point from which to find the largest shift.
+    ///
+    /// A laser that has a linewidth or is no point needs [`at_points`](Self::at_points), one of which the camera sees in
+    /// the reference state. With a linewidth, motions must displace the pupil along the direction in which other
+    /// wavelengths do: an error says where two frames would correlate by 0.05 otherwise than by the law.
     pub fn prepare(mut self) -> Result<PreparedSpeckle, ShadingError> {
-        self.check_coherence()?;
         self.motions.retain(|motion| !motion.is_still());
         let geometry = self.camera.imaging_geometry(self.laser.wavelength())?;
-        let fractions = incoherent_fractions(self.looks, self.polarisation, &[1.0])?;
-        let demand = self.demand(&geometry)?;
-        // The reference state is one of them.
+        let light = self.light(&geometry)?;
+        let fractions = incoherent_fractions(self.looks, self.polarisation, &light.modes)?;
+        let mut demand = self.demand(&geometry)?;
+        let bandwidth = light.bandwidth.map(|bandwidth| demand.beside(&bandwidth));
+        let heights = bandwidth.as_ref().map_or(1, |b| b.heights.len());
+        let fields = fractions.len() * heights;
+        // The reference state is one of them; the waves of a line want a path as long as many frames do.
         let frames = 1 + self.motions.len();
-        let of_each = self.memory / fractions.len() as u64;
-        let needs = demand.needs(frames, geometry.speckle_size_in_pixels(), of_each);
-        let plan = StackPlan::new(&needs)?;
-        if !(plan.holds_motion(&needs) && plan.holds_region(&needs)) {
-            return Err(ShadingError::OutOfRange {
-                parameter: "memory",
-                value: self.memory as f64,
-                allowed: "enough for slices over the whole motion of the poses (in bytes)",
-            });
-        }
-        let fields = plan.field(self.seed)?.independent(fractions.len())?;
-        let parts = fields.iter().zip(fractions).map(|(field, fraction)| {
-            let stack = SpeckleStack::generate(field, plan.path())?;
-            Ok(Part { fraction, stack })
+        let frames = if bandwidth.is_some() {
+            frames.max(3)
+        } else {
+            frames
+        };
+        let needs = demand.needs(frames, geometry.speckle_size_in_pixels(), self.memory);
+        let Layout { plan, stacks } = Layout::new(&needs, fields)?;
+        let of_stacks = plan.field(self.seed)?.independent(stacks)?;
+        let of_stacks = of_stacks.iter();
+        let stacks = of_stacks.map(|field| SpeckleStack::generate(field, plan.path()));
+        let stacks = stacks.collect::<Result<Vec<_>, _>>()?;
+        let size = plan.size().map(|samples| samples as f64);
+        let field = |number: usize| match stacks.len() {
+            1 => Field {
+                stack: 0,
+                offset: DVec2::from_array(StackPlan::place(number)) * DVec2::from_array(size),
+            },
+            _ => Field {
+                stack: number,
+                offset: DVec2::ZERO,
+            },
+        };
+        let parts = fractions.into_iter().enumerate();
+        let parts = parts.map(|(index, fraction)| Part {
+            fraction,
+            fields: (heights * index..heights * (index + 1))
+                .map(field)
+                .collect(),
         });
-        Ok(PreparedSpeckle(Arc::new(Patterns {
+        let speckle = PreparedSpeckle(Arc::new(Patterns {
+            waves: bandwidth
+                .as_ref()
+                .map_or(1, |b| b.waves(self.laser.spectral_line())),
             camera: self.camera,
             laser: self.laser,
             geometry,
-            parts: parts.collect::<Result<_, ShadingError>>()?,
+            parts: parts.collect(),
+            stacks,
+            bandwidth,
             needs,
             plan,
             shifts: demand.shifts,
             farthest: demand.farthest,
             points: self.points,
-        })))
+        }));
+        let has_line = speckle.0.bandwidth.is_some();
+        for motion in self.motions.iter().filter(|_| has_line) {
+            speckle.frame(motion)?;
+        }
+        Ok(speckle)
     }
 
-    fn check_coherence(&self) -> Result<(), ShadingError> {
-        let length = self.laser.spectral_line().coherence_length();
-        if length.is_finite() {
-            return Err(ShadingError::OutOfRange {
-                parameter: "coherence_length",
-                value: length,
-                allowed: "infinite (in metres): monochromatic light",
-            });
+    /// Finds what the linewidth and the extent of the laser ask of the surface.
+    fn light(&self, geometry: &ImagingGeometry) -> Result<SurfaceLight, ShadingError> {
+        if self.laser.is_coherent() {
+            return Ok(SurfaceLight::single());
         }
-        if !self.laser.source_extent().is_point() {
-            return Err(ShadingError::Direction {
-                parameter: "source_extent",
-                allowed: "that of a point",
-            });
-        }
-        Ok(())
+        let state = State::new((&self.camera, &self.laser), &Motion::default())?;
+        let seen = match self.points.is_empty() {
+            true => Vec::new(),
+            false => state.scouted(geometry, &self.points),
+        };
+        let seen = seen.into_iter().map(|(point, _)| point);
+        let light = state.spectral_law(geometry).light(seen, self.relief);
+        light.ok_or(ShadingError::Missing(
+            "one of `at_points` in the image of the reference state, for a laser with a linewidth or an extent",
+        ))
     }
 
     /// Finds how far the speckle moves in the frames.
@@ -212,6 +251,44 @@ impl Speckle {
     }
 }
 
+/// The number of slices per pupil diameter from which a stack for each field is worth more than a place in one with more
+/// slices: the blend between them then exceeds the correlation law by up to 0.11.
+const ENOUGH_SLICES: f64 = 16.0;
+
+/// A stack for each field, or one for all.
+struct Layout {
+    plan: StackPlan,
+    stacks: usize,
+}
+
+impl Layout {
+    fn new(needs: &StackNeeds, fields: usize) -> Result<Self, ShadingError> {
+        let of = |stacks: usize| {
+            let needs = StackNeeds {
+                memory_limit: needs.memory_limit / stacks as u64,
+                ..*needs
+            };
+            let plan = StackPlan::new(&needs)?;
+            let holds = plan.holds_motion(&needs) && plan.holds_region(&needs);
+            holds
+                .then_some(Self { plan, stacks })
+                .ok_or(ShadingError::OutOfRange {
+                    parameter: "memory",
+                    value: needs.memory_limit as f64,
+                    allowed: "enough for slices over the whole motion of the poses (in bytes)",
+                })
+        };
+        let is_good = |layout: &Self| {
+            let slices = layout.plan.path().slices_per_diameter();
+            needs.motion.is_none() || slices >= ENOUGH_SLICES
+        };
+        match of(fields) {
+            Ok(layout) if fields == 1 || is_good(&layout) => Ok(layout),
+            _ => of(1),
+        }
+    }
+}
+
 /// What the frames ask of the patterns.
 struct Demand {
     /// Width and height of the image, in pixels.
@@ -234,6 +311,18 @@ impl Demand {
         }
     }
 
+    /// Makes room beside the motion for what a linewidth asks, which it returns on the side of the farthest.
+    fn beside(&mut self, bandwidth: &Bandwidth) -> Bandwidth {
+        let [before, after] = self.shifts;
+        self.shifts = [before.max(after) + bandwidth.reach; 2];
+        let [low, high] = self.region;
+        // Turned so that the slices stand along the axis.
+        let size = (high - low).max(turned((high - low).abs(), bandwidth.axis.abs()));
+        self.region = [low, low + size];
+        let way = self.farthest.as_ref().map(ReferencePoint::way_across);
+        bandwidth.beside(way.unwrap_or(DVec2::ZERO))
+    }
+
     fn needs(&self, frames: usize, speckle_size: f64, memory: u64) -> StackNeeds {
         let [low, high] = self.region;
         let [before, after] = self.shifts;
@@ -246,4 +335,9 @@ impl Demand {
             memory_limit: memory,
         }
     }
+}
+
+/// The width and height of a region along an axis and across it, both with positive parts.
+fn turned(size: DVec2, axis: DVec2) -> DVec2 {
+    DVec2::new(axis.dot(size), DVec2::new(axis.y, axis.x).dot(size))
 }

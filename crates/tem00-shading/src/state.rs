@@ -1,9 +1,10 @@
 use glam::{DVec2, DVec3};
 use tem00_camera::{Camera, Ray};
-use tem00_decorrelation::{CameraFrame, ImagingGeometry, RigidChange, RigidMotions};
+use tem00_decorrelation::{CameraFrame, Illumination, ImagingGeometry, RigidChange, RigidMotions};
 
 use crate::{
     Laser, LightPath, Motion, Perspective, Pose, SeenPoint, ShadingError, SpeckleLaw, SpeckleShift,
+    SpectralLaw,
 };
 
 /// Body, camera and laser now, beside the reference state.
@@ -25,6 +26,13 @@ pub(crate) struct ReferencePoint {
     position: DVec3,
     normal: DVec3,
     way: DVec3,
+}
+
+impl ReferencePoint {
+    /// Returns the way of the pupil across the line of sight, to the right and up.
+    pub(crate) fn way_across(&self) -> DVec2 {
+        self.way.truncate()
+    }
 }
 
 /// Rays along each dimension of the light of the laser, and of the image, by which points are found.
@@ -77,14 +85,44 @@ impl State {
             shifts.fill(Some(SpeckleShift::default()));
             return;
         }
+        self.law(geometry).shifts(LightPath::Direct, points, shifts);
+    }
+
+    const fn law<'a>(&'a self, geometry: &'a ImagingGeometry) -> SpeckleLaw<'a> {
         let [before, now] = &self.lasers;
-        let law = SpeckleLaw {
+        SpeckleLaw {
             change: &self.change,
             lasers: [before, now],
             perspective: &self.perspective,
             geometry,
-        };
-        law.shifts(LightPath::Direct, points, shifts);
+        }
+    }
+
+    /// Returns what has become of the speckle of a point in light that, in the reference state, was this and moves with
+    /// the laser.
+    pub(crate) fn shift_under(
+        &self,
+        light: &Illumination,
+        geometry: &ImagingGeometry,
+        point: SeenPoint,
+    ) -> Option<SpeckleShift> {
+        let before = light.direction_from(self.change.origin(point.position))?;
+        let now = light.moved(&self.motion.laser);
+        let to_source = [before, now.direction_from(point.position)?];
+        self.law(geometry).shift_under(to_source, point)
+    }
+
+    /// Returns the law by which speckle changes with the wave number, now.
+    pub(crate) const fn spectral_law<'a>(
+        &'a self,
+        geometry: &'a ImagingGeometry,
+    ) -> SpectralLaw<'a> {
+        let [_, now] = &self.lasers;
+        SpectralLaw {
+            laser: now,
+            perspective: &self.perspective,
+            geometry,
+        }
     }
 
     fn shift(&self, geometry: &ImagingGeometry, point: SeenPoint) -> Option<SpeckleShift> {

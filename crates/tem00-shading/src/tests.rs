@@ -5,8 +5,8 @@ use tem00_decorrelation::pupil_overlap_correlation;
 use tem00_statistics::{exponential_cumulative, kolmogorov_smirnov, pixel_contrast};
 
 use crate::{
-    Camera, CameraDescription, DVec2, DVec3, Laser, Motion, Pose, PreparedSpeckle, ShadingError,
-    Speckle, SpeckleFrame,
+    Camera, CameraDescription, DVec2, DVec3, Illumination, Laser, Motion, Pose, PreparedSpeckle,
+    ShadingError, Speckle, SpeckleFrame, Wavefront,
 };
 
 fn camera(position: DVec3) -> Camera {
@@ -311,18 +311,6 @@ fn what_does_not_fit_is_refused_by_name() {
     assert!(matches!(aside, Err(ShadingError::Missing(_))), "{aside:?}");
     assert!(speckle.clone().looks(0).prepare().is_err(), "no looks");
     assert!(speckle.polarisation(1.5).prepare().is_err(), "polarisation");
-    let broad =
-        tem00_coherence::SpectralLine::new(650e-9, 1e-9, tem00_coherence::LineShape::Gaussian);
-    let broad = Laser::spot(650e-9, 1e-3).spectrum(broad.unwrap());
-    let broad = broad.placed(0.3 * DVec3::Z, DVec3::ZERO, DVec3::X).unwrap();
-    let refused = Speckle::new(&camera, &broad, 1).prepare();
-    assert!(matches!(
-        refused,
-        Err(ShadingError::OutOfRange {
-            parameter: "coherence_length",
-            ..
-        })
-    ));
 }
 
 /// Of a line that is a hundred times as wide as the image, few rays are seen, if any.
@@ -370,4 +358,53 @@ fn a_sample_out_of_focus_is_looked_up_where_it_is_seen() {
         frame.factor_at(pixel + DVec2::X, point, normal),
         frame.factor(point, normal)
     );
+}
+
+/// Light of the laser over a flat mirror is that of its image behind it.
+#[test]
+fn light_over_a_mirror_is_that_of_the_mirrored_laser() {
+    let camera = camera(DVec3::new(-0.05, 0.01, 0.3));
+    let spot = |origin: DVec3| {
+        // A tenth of a millimetre wide and out of focus: nearly a point source.
+        let laser = Laser::spot(650e-9, 20e-6).focused_at(0.0);
+        laser.placed(origin, DVec3::ZERO, DVec3::X).unwrap()
+    };
+    let (real, mirrored) = (DVec3::new(0.6, 0.02, 0.4), DVec3::new(-0.1, 0.02, 0.4));
+    let motion = Motion {
+        surface: pose(DVec3::new(1e-4, 5e-5, 2e-4), DVec3::Y, 1e-3),
+        laser: Pose::along(DVec3::Y * 1e-4).unwrap(),
+        ..Motion::default()
+    };
+    let [over_mirror, direct] = [real, mirrored].map(|origin| {
+        let speckle = Speckle::new(&camera, &spot(origin), 9).for_motions([motion]);
+        let points = [(DVec3::ZERO, DVec3::Z)];
+        let speckle = speckle.at_points(points).prepare().unwrap();
+        speckle.frame(&motion).unwrap()
+    });
+    let normal = motion.surface.direction(DVec3::Z);
+    // The wave near the spot, as traced rays tell it: it leaves the axis where the spot lies.
+    let rays = |point: DVec3| (mirrored - point).normalize();
+    let step = 1e-5;
+    let along = |axis: DVec3| (rays(step * axis) - rays(-step * axis)) / (2.0 * step);
+    let wave = Wavefront::from_differentials(
+        rays(DVec3::ZERO),
+        [DVec3::X, DVec3::Y],
+        [DVec3::X, DVec3::Y].map(along),
+    )
+    .unwrap();
+    let light = Illumination::near(DVec3::ZERO, wave).unwrap();
+    let mut differences = Vec::new();
+    for point in places(600)
+        .into_iter()
+        .filter(|point| point.length() < 1.5e-3)
+    {
+        let now = motion.surface.point(point);
+        let [found, expected] = [
+            over_mirror.factor_under(&light, now, normal),
+            direct.factor(now, normal),
+        ];
+        differences.push(found - expected);
+    }
+    let rms = mean(differences.iter().map(|d| d * d)).sqrt();
+    assert!(rms < 0.01, "{rms}");
 }

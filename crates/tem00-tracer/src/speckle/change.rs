@@ -1,15 +1,9 @@
-use core::f64::consts::TAU;
-
 use glam::{DVec2, DVec3};
 use tem00_camera::Camera;
-use tem00_coherence::{CellGeometry, ResolutionCell};
-use tem00_decorrelation::{
-    CameraFrame, Configuration, ConfigurationData, Illumination, ImageOrientation, ImagingGeometry,
-    RigidChange, RigidMotion, RigidMotions, SpeckleMotion,
-};
-use tem00_shading::{LightPath, Perspective, SpeckleLaw, SpeckleShift};
+use tem00_decorrelation::{CameraFrame, ImagingGeometry, RigidChange, RigidMotion, RigidMotions};
+use tem00_shading::{LightPath, Perspective, SpeckleLaw, SpeckleShift, SpectralLaw};
 
-use super::{SpecklePoint, upright};
+use super::SpecklePoint;
 use crate::{Laser, Scene};
 
 /// Motion of the scene between the reference frame and another.
@@ -41,17 +35,6 @@ struct LaserChange {
     before: Laser,
     now: Laser,
     moved: bool,
-}
-
-/// Change of the speckle of a point with the wave number.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct SpectralShift {
-    /// The displacement of the speckle in the image in perspective, in pixels with y down: none in focus.
-    pub displacement: DVec2,
-    /// The displacement of the pupil over the speckle to the right and up, in pupil diameters.
-    pub pupil: DVec2,
-    /// The change of the phase with the height, in radians per metre.
-    pub phase_per_height: f64,
 }
 
 /// A point of a surface whose speckle the pupil has moved over.
@@ -326,63 +309,17 @@ impl Change {
         ])
     }
 
-    /// Returns what becomes of the speckle of a laser at a point, now, in light whose wave number differs by `kappa`, in
-    /// rad/m, from the mean one, if the theory has a value.
-    pub(super) fn spectral_shift(
-        &self,
+    /// Returns the law by which the speckle of a laser changes with the wave number, now.
+    pub(super) fn spectral_law<'a>(
+        &'a self,
         laser: usize,
-        geometry: &ImagingGeometry,
-        point: &SpecklePoint,
-        kappa: f64,
-    ) -> Option<SpectralShift> {
-        let mean = self.state_now(laser, point)?;
-        let other = mean
-            .with_wavelength(TAU / (TAU / mean.wavelength() + kappa))
-            .ok()?;
-        let pixels_per_tangent = geometry.principal_distance() / geometry.pixel_pitch();
-        let geometry = &self.perspective.geometry(geometry, point.pixel);
-        let speckle =
-            SpeckleMotion::between(geometry, &mean, &other, ImageOrientation::ScreenUpright);
-        let tangents = speckle.speckle_displacement() / geometry.principal_distance();
-        Some(SpectralShift {
-            displacement: upright(tangents * pixels_per_tangent),
-            pupil: speckle.pupil_displacement? / geometry.pupil_diameter(),
-            phase_per_height: mean.height_phase_change(&other)?,
-        })
-        .filter(SpectralShift::is_finite)
-    }
-
-    /// Returns the resolution cell at a point, now, if there is one.
-    pub(super) fn resolution_cell(
-        &self,
-        laser: usize,
-        geometry: &ImagingGeometry,
-        point: &SpecklePoint,
-    ) -> Option<ResolutionCell> {
-        let now = self.state_now(laser, point)?;
-        let to_pupil = self.cameras[1].position() - point.position;
-        ResolutionCell::new(CellGeometry {
-            to_source: now.direction_to_source(),
-            to_pupil,
-            normal: point.normal,
-            sin_aperture: (0.5 * geometry.pupil_diameter() / to_pupil.length()).min(1.0),
-            wavelength: now.wavelength(),
-        })
-        .ok()
-    }
-
-    /// The point with its light and its camera now, wherever they were in the reference frame.
-    fn state_now(&self, laser: usize, point: &SpecklePoint) -> Option<Configuration> {
-        let (laser, camera) = (self.laser(laser), self.camera());
-        Configuration::new(ConfigurationData {
-            wavelength: laser.wavelength(),
-            point: point.position,
-            normal: point.normal,
-            illumination: light_at(laser, point.position)?,
-            camera: CameraFrame::from_axes(camera.axes()).ok()?,
-            pupil: camera.position(),
-        })
-        .ok()
+        geometry: &'a ImagingGeometry,
+    ) -> SpectralLaw<'a> {
+        SpectralLaw {
+            laser: self.laser(laser),
+            perspective: &self.perspective,
+            geometry,
+        }
     }
 
     /// Returns how far the surface has moved at a point, and the camera.
@@ -403,18 +340,6 @@ impl ReferencePoint {
     pub(super) fn way_across(&self) -> DVec2 {
         self.way.truncate()
     }
-}
-
-impl SpectralShift {
-    fn is_finite(&self) -> bool {
-        self.displacement.is_finite() && self.pupil.is_finite() && self.phase_per_height.is_finite()
-    }
-}
-
-/// The light of a laser at a point: its phase follows from its direction alone in every state, so that the wave between
-/// two need not be known.
-fn light_at(laser: &Laser, point: DVec3) -> Option<Illumination> {
-    Illumination::collimated(laser.wave_direction_at(point)).ok()
 }
 
 #[cfg(test)]

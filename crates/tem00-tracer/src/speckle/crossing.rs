@@ -5,10 +5,9 @@ use std::collections::BTreeSet;
 
 use glam::DVec2;
 use tem00_decorrelation::{ImagingGeometry, pupil_overlap_correlation};
-use tem00_shading::LightPath;
+use tem00_shading::{Bandwidth, LightPath};
 
 use super::{
-    bandwidth::Bandwidth,
     change::{Change, ReferencePoint},
     prescan::{FrameNeeds, MotionPrescan},
 };
@@ -327,10 +326,6 @@ impl<'a> Waves<'a> {
         let Some((line, bandwidth)) = &self.line else {
             return pupil_overlap_correlation(shift.length());
         };
-        let covariance = line.mean_over_pairs(bandwidth.scale(), |kappa| {
-            let shift = shift + kappa * bandwidth.tilt * axis;
-            bandwidth.kept_by_heights(kappa) * pupil_overlap_correlation(shift.length())
-        });
-        covariance / self.variance
+        bandwidth.covariance(line, shift, axis) / self.variance
     }
 }

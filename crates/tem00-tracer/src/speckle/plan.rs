@@ -2,11 +2,12 @@ mod lines;
 
 use glam::DVec2;
 use tem00_decorrelation::ImagingGeometry;
+use tem00_shading::{Bandwidth, SurfaceLight};
 use tem00_speckle::{SlicePath, StackNeeds, StackPlan, incoherent_fractions};
 
 use super::{
     allocation::{self, FrameRequest, Part, PatternAllocation, Request},
-    bandwidth::{Bandwidth, SurfaceLight, laser_lights},
+    bandwidth::laser_lights,
     change::ReferencePoint,
     crossing::{CorrelationNote, Followed, Following, Tracks, Waves},
     prescan::{LaserGroups, MotionPrescan, SurveyOfFrame, prescan},
@@ -131,6 +132,10 @@ impl SpecklePlan {
     pub fn patterns(&self) -> &[PatternPlan] {
         &self.patterns
     }
+}
+
+fn way_across(moving: Option<&ReferencePoint>) -> DVec2 {
+    moving.map_or(DVec2::ZERO, ReferencePoint::way_across)
 }
 
 /// The group of each surface: those with the same motion have the same, and all that stand still.
@@ -258,7 +263,7 @@ impl Planner<'_> {
         let surfaces = self.surfaces_of(group);
         let waves = surfaces.iter().filter_map(|&surface| {
             let bandwidth = self.lights[surface].bandwidth.as_ref()?;
-            let bandwidth = bandwidth.beside(prescan.reference_point.as_ref());
+            let bandwidth = bandwidth.beside(way_across(prescan.reference_point.as_ref()));
             Some(Waves::of(line, surface, bandwidth))
         });
         let mut waves: Vec<_> = waves.collect();
@@ -369,7 +374,7 @@ impl Planner<'_> {
                 let bandwidth = light.bandwidth.as_ref();
                 let following = followed[group].following;
                 let bandwidth = bandwidth.map(|bandwidth| match following {
-                    Following::Length => bandwidth.beside(moving.as_ref()),
+                    Following::Length => bandwidth.beside(way_across(moving.as_ref())),
                     Following::Axis(axis) => bandwidth.along(axis),
                 });
                 SurfacePatterns {

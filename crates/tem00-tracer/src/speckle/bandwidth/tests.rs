@@ -1,6 +1,8 @@
 use glam::DVec3;
 use tem00_camera::Camera;
-use tem00_coherence::{LineShape, Relief, ResolutionCell, SourceExtent, SpectralLine};
+use tem00_coherence::{
+    LineShape, PolychromaticSpeckle, Relief, ResolutionCell, SourceExtent, SpectralLine,
+};
 
 use super::{super::crossing::Waves, *};
 use crate::{
@@ -82,7 +84,8 @@ fn cell(scene: &Scene) -> ResolutionCell {
     let geometry = scene.camera.imaging_geometry(650e-9).unwrap();
     let size = [scene.camera.width(), scene.camera.height()].map(|side| side as f64);
     let point = seen(&scene.camera, 0.5 * DVec2::from_array(size));
-    let cell = change.resolution_cell(0, &geometry, &point).unwrap();
+    let law = change.spectral_law(0, &geometry);
+    let cell = law.resolution_cell(&point.seen()).unwrap();
     let cell = cell.with_relief(scene.surfaces[0].relief).unwrap();
     cell.with_source_extent(scene.lasers[0].source_extent().clone())
 }

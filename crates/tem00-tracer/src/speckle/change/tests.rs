@@ -1,6 +1,9 @@
-use tem00_decorrelation::equivalent_pupil_shift;
+use tem00_decorrelation::{
+    Configuration, ConfigurationData, Illumination, ImageOrientation, SpeckleMotion,
+    equivalent_pupil_shift,
+};
 
-use super::*;
+use super::{super::upright, *};
 use crate::{BeamShape, Keyframe, Rotation, Scene, Trajectory, testing};
 
 /// A plate under a spot that diverges, from the side, a little out of focus.

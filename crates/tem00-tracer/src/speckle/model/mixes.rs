@@ -101,13 +101,12 @@ impl SpeckleFrame<'_> {
             };
         };
         let kappa = self.change.laser(laser).spectral_line().draw(point.wave);
-        let wave = self.change.spectral_shift(laser, geometry, point, kappa);
-        let wave = wave.unwrap_or_default();
+        let law = self.change.spectral_law(laser, geometry);
+        let wave = law.shift(&point.seen(), kappa).unwrap_or_default();
         pixel -= wave.displacement;
-        let tilt = wave.pupil.length() * wave.pupil.dot(bandwidth.axis).signum();
         Place {
             pixel,
-            u: pattern.slices_per_diameter * (tilt + along),
+            u: pattern.slices_per_diameter * (wave.along(bandwidth.axis) + along),
             phase_per_height: wave.phase_per_height,
         }
     }

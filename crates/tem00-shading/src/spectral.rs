@@ -1,0 +1,268 @@
+//! What light that is not of one wavelength, or not from a point, asks of the speckle of a surface.
+
+use core::f64::consts::TAU;
+
+use glam::DVec2;
+use tem00_coherence::{
+    CellGeometry, PatternSum, PolychromaticSpeckle, Relief, ResolutionCell, SpectralLine,
+};
+use tem00_decorrelation::{
+    CameraFrame, Configuration, ConfigurationData, Illumination, ImageOrientation, ImagingGeometry,
+    SpeckleMotion, pupil_overlap_correlation,
+};
+use tem00_speckle::Complex;
+
+use crate::{Laser, Perspective, SeenPoint};
+
+/// The law by which the speckle of points changes with the wave number of the light of one laser.
+#[derive(Clone, Copy, Debug)]
+pub struct SpectralLaw<'a> {
+    /// The laser now.
+    pub laser: &'a Laser,
+    /// The image now.
+    pub perspective: &'a Perspective,
+    /// The camera's imaging geometry on the axis, in the mean wavelength of the laser.
+    pub geometry: &'a ImagingGeometry,
+}
+
+/// The change of the speckle of a point with the wave number.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpectralShift {
+    /// The displacement of the speckle in the image in perspective, in pixels with y down: none in focus.
+    pub displacement: DVec2,
+    /// The displacement of the pupil over the speckle to the right and up, in pupil diameters.
+    pub pupil: DVec2,
+    /// The change of the phase with the height, in radians per metre.
+    pub phase_per_height: f64,
+}
+
+/// The light of a laser on a surface: fractions of patterns whose intensities add, and what else its bandwidth asks.
+#[derive(Clone, Debug)]
+pub struct SurfaceLight {
+    /// One, or the modes of heights that dominate, or of directions of the source.
+    pub modes: Vec<f64>,
+    /// What each look-up must draw from the linewidth, unless light of any wave number looks alike.
+    pub bandwidth: Option<Bandwidth>,
+}
+
+/// How a surface looks up the speckle of a laser that has a linewidth.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bandwidth {
+    /// Heights that stand for the relief, in metres, with the roots of their fractions of the light. Their fields add.
+    pub heights: Vec<[f64; 2]>,
+    /// The unit vector in the image, with y up, along which another wavelength displaces the pupil, on the side to which
+    /// it moves farthest.
+    pub axis: DVec2,
+    /// The largest such displacement that the slices hold to either side, in pupil diameters.
+    pub reach: f64,
+    /// The displacement in pupil diameters over the difference of wave numbers.
+    pub tilt: f64,
+    /// The change of the phase with the height, in radians per metre, over the difference of wave numbers.
+    pub phase_per_height: f64,
+}
+
+/// The spread of the wave number over that which displaces the pupil by its diameter, below which a contrast is above
+/// 0.999.
+const NEGLIGIBLE_TILT: f64 = 5e-4;
+
+/// The part of the line to either side that the slices need not hold, and the most that they hold in pupil diameters: on
+/// a path that closes, the rest finds speckle that is new to nearly all of the line.
+const LEFT_OUT: f64 = 5e-4;
+const MAX_REACH: f64 = 1.5;
+
+impl SpectralLaw<'_> {
+    /// Returns what becomes of the speckle at a point in light whose wave number differs by `kappa`, in rad/m, from the
+    /// mean one, or `None` where the theory has no value.
+    pub fn shift(&self, point: &SeenPoint, kappa: f64) -> Option<SpectralShift> {
+        let mean = self.configuration(point)?;
+        let other = mean
+            .with_wavelength(TAU / (TAU / mean.wavelength() + kappa))
+            .ok()?;
+        let on_axis = self.geometry;
+        let pixels_per_tangent = on_axis.principal_distance() / on_axis.pixel_pitch();
+        let geometry = &self.perspective.geometry(on_axis, point.pixel);
+        let speckle =
+            SpeckleMotion::between(geometry, &mean, &other, ImageOrientation::ScreenUpright);
+        let tangents = speckle.speckle_displacement() / geometry.principal_distance();
+        let upright = tangents * pixels_per_tangent;
+        Some(SpectralShift {
+            displacement: DVec2::new(upright.x, -upright.y),
+            pupil: speckle.pupil_displacement? / geometry.pupil_diameter(),
+            phase_per_height: mean.height_phase_change(&other)?,
+        })
+        .filter(SpectralShift::is_finite)
+    }
+
+    /// Returns the resolution cell at a point, if there is one.
+    pub fn resolution_cell(&self, point: &SeenPoint) -> Option<ResolutionCell> {
+        let now = self.configuration(point)?;
+        let to_pupil = self.perspective.camera().position() - point.position;
+        let radius = 0.5 * self.geometry.pupil_diameter();
+        ResolutionCell::new(CellGeometry {
+            to_source: now.direction_to_source(),
+            to_pupil,
+            normal: point.normal,
+            sin_aperture: (radius / to_pupil.length()).min(1.0),
+            wavelength: now.wavelength(),
+        })
+        .ok()
+    }
+
+    /// Returns the light on a surface of a relief of which these points are seen, or `None` if the theory has a value at
+    /// none of them.
+    ///
+    /// The point where wavelengths displace the pupil most stands for all.
+    pub fn light(
+        &self,
+        points: impl Iterator<Item = SeenPoint>,
+        relief: Relief,
+    ) -> Option<SurfaceLight> {
+        let line = self.laser.spectral_line();
+        if self.laser.is_coherent() {
+            return Some(SurfaceLight::single());
+        }
+        let responses = points.filter_map(|point| Some((self.response(&point)?, point)));
+        let tilt = |response: &SpectralShift| response.pupil.length();
+        let farthest = responses.max_by(|a, b| tilt(&a.0).total_cmp(&tilt(&b.0)));
+        let (response, point) = farthest?;
+        let tilt = tilt(&response);
+        let cell = self.resolution_cell(&point);
+        let Some(cell) = cell.and_then(|cell| cell.with_relief(relief).ok()) else {
+            return Some(SurfaceLight::single());
+        };
+        let cell = cell.with_source_extent(self.laser.source_extent().clone());
+        let speckle = PolychromaticSpeckle { line, cell: &cell };
+        let PatternSum { fractions, heights } =
+            speckle.patterns(|speckle| speckle.contrast().powi(2));
+        let is_flat = line.effective_spread() * tilt < NEGLIGIBLE_TILT && heights.len() == 1;
+        let farthest = line.draw(1.0 - LEFT_OUT).max(-line.draw(LEFT_OUT));
+        let bandwidth = (!heights.is_empty() && !is_flat).then(|| Bandwidth {
+            heights,
+            axis: response.pupil.try_normalize().unwrap_or(DVec2::X),
+            reach: (tilt * farthest).min(MAX_REACH),
+            tilt,
+            phase_per_height: response.phase_per_height,
+        });
+        Some(SurfaceLight {
+            modes: fractions,
+            bandwidth,
+        })
+    }
+
+    /// Returns the change of the speckle of a point over the difference of wave numbers.
+    fn response(&self, point: &SeenPoint) -> Option<SpectralShift> {
+        // Small against every linewidth that counts, and large against rounding.
+        let kappa = 1e-6 * self.laser.spectral_line().wave_number();
+        let shift = self.shift(point, kappa)?;
+        Some(SpectralShift {
+            displacement: shift.displacement / kappa,
+            pupil: shift.pupil / kappa,
+            phase_per_height: shift.phase_per_height / kappa,
+        })
+    }
+
+    /// The point with its light: its phase follows from its direction alone, so that the wave need not be known.
+    fn configuration(&self, point: &SeenPoint) -> Option<Configuration> {
+        let camera = self.perspective.camera();
+        let to_source = self.laser.wave_direction_at(point.position);
+        Configuration::new(ConfigurationData {
+            wavelength: self.laser.wavelength(),
+            point: point.position,
+            normal: point.normal,
+            illumination: Illumination::collimated(to_source).ok()?,
+            camera: CameraFrame::from_axes(camera.axes()).ok()?,
+            pupil: camera.position(),
+        })
+        .ok()
+    }
+}
+
+impl SpectralShift {
+    fn is_finite(&self) -> bool {
+        self.displacement.is_finite() && self.pupil.is_finite() && self.phase_per_height.is_finite()
+    }
+
+    /// Returns the displacement of the pupil along an axis, with its length.
+    pub fn along(&self, axis: DVec2) -> f64 {
+        self.pupil.length() * self.pupil.dot(axis).signum()
+    }
+}
+
+impl SurfaceLight {
+    /// Returns light of one wavelength from a point.
+    pub fn single() -> Self {
+        Self {
+            modes: vec![1.0],
+            bandwidth: None,
+        }
+    }
+}
+
+impl Bandwidth {
+    /// Returns the same with an axis on the side of a way of the pupil over the speckle, to the right and up.
+    #[must_use]
+    pub fn beside(&self, way: DVec2) -> Self {
+        let axis = self.axis;
+        self.along(if way.dot(axis) < 0.0 { -axis } else { axis })
+    }
+
+    /// Returns the same with another axis, along which a motion is followed.
+    #[must_use]
+    pub fn along(&self, axis: DVec2) -> Self {
+        Self {
+            axis,
+            ..self.clone()
+        }
+    }
+
+    /// Returns the covariance of intensities in the light of a line between which the pupil has moved by so many
+    /// diameters, where other waves displace it along an axis.
+    pub fn covariance(&self, line: &SpectralLine, shift: DVec2, axis: DVec2) -> f64 {
+        line.mean_over_pairs(self.scale(), |kappa| self.kept_of(kappa, shift, axis))
+    }
+
+    /// Returns into how many equal parts a line must be split, each with its median wave number, for a contrast within 1 %
+    /// of that of the whole line: at most 64.
+    pub(crate) fn waves(&self, line: &SpectralLine) -> usize {
+        let law = self.covariance(line, DVec2::ZERO, self.axis);
+        let of_parts = |count: usize| {
+            let wave = |index: usize| line.draw((index as f64 + 0.5) / count as f64);
+            let waves: Vec<_> = (0..count).map(wave).collect();
+            let pairs = waves.iter().flat_map(|a| waves.iter().map(move |b| a - b));
+            let kept = pairs.map(|kappa| self.kept_of(kappa, DVec2::ZERO, self.axis));
+            kept.sum::<f64>() / (count * count) as f64
+        };
+        // The contrast is the root of the covariance.
+        let is_enough = |&count: &usize| (of_parts(count) / law - 1.0).abs() < 0.02;
+        (1..=5)
+            .map(|power| 1 << power)
+            .find(is_enough)
+            .unwrap_or(64)
+    }
+
+    /// Returns the covariance that a difference of wave numbers and a displacement of the pupil leave.
+    fn kept_of(&self, kappa: f64, shift: DVec2, axis: DVec2) -> f64 {
+        let shift = shift + kappa * self.tilt * axis;
+        self.kept_by_heights(kappa) * pupil_overlap_correlation(shift.length())
+    }
+
+    /// Returns the difference of wave numbers over which the speckle changes.
+    fn scale(&self) -> f64 {
+        let largest = self.heights.iter().map(|[height, _]| height.abs());
+        let phases = self.phase_per_height.abs() * largest.fold(0.0, f64::max);
+        self.tilt.max(phases).recip()
+    }
+
+    /// Returns the squared correlation that the heights leave of a difference of wave numbers.
+    fn kept_by_heights(&self, kappa: f64) -> f64 {
+        let phase = |height: f64| Complex::cis(self.phase_per_height * kappa * height);
+        let fields = self.heights.iter();
+        let field: Complex<f64> = fields
+            .map(|[height, root]| phase(*height) * root * root)
+            .sum();
+        field.norm_sqr()
+    }
+}
+
+#[cfg(test)]
+mod tests;

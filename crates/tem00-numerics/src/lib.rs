@@ -20,6 +20,7 @@ mod least_squares;
 mod memory;
 mod pupil;
 pub mod quadrature;
+pub mod seed;
 mod shown;
 mod vectorised;
 

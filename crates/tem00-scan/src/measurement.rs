@@ -3,6 +3,7 @@ use core::sync::atomic::AtomicBool;
 use glam::DMat3;
 use glam::{DVec2, DVec3};
 use tem00_camera::Camera;
+use tem00_numerics::seed::{Purpose, derived};
 use tem00_tracer::{
     BeamShape, Filter, Frame, Laser, Method, ReferencePoint, Scene, SpeckleChange, SpeckleModel,
     SurfaceSpeckle, render_frame,
@@ -179,7 +180,7 @@ impl Measurement {
         frame: u32,
         speckled: bool,
     ) -> Result<MeasuredFrame, ScanError> {
-        let seed = noise_seed(self.scene.render.seed, frame);
+        let seed = derived(self.scene.render.seed, Purpose::Frame, u64::from(frame));
         let surroundings = self.surroundings(frame, speckled);
         surroundings.measure(exposure, frame, seed)
     }
@@ -191,7 +192,11 @@ impl Measurement {
     ///
     /// Returns an error if the light cannot be exposed.
     pub fn repeat(&self, frame: &MeasuredFrame, number: u32) -> Result<MeasuredFrame, ScanError> {
-        let seed = noise_seed(self.scene.render.seed, u32::MAX - number);
+        let seed = derived(
+            self.scene.render.seed,
+            Purpose::Frame,
+            u64::from(u32::MAX - number),
+        );
         let surroundings = self.surroundings(frame.frame, frame.reference_point.is_some());
         let mut repeated = surroundings.measure(frame.exposure.clone(), frame.frame, seed)?;
         repeated.reference_point = frame.reference_point;
@@ -352,10 +357,4 @@ fn saturation(sensor: &SensorDescription) -> f64 {
     let largest = f64::from((1_u32 << sensor.bit_depth) - 1);
     // A well that holds no more than its noise is never told from a full one.
     largest.min(full.max(1.0))
-}
-
-/// A seed for the noise of each frame: the golden ratio keeps those of one render apart.
-const fn noise_seed(seed: u64, frame: u32) -> u64 {
-    const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
-    seed.wrapping_add(GOLDEN.wrapping_mul(frame as u64 + 1))
 }

@@ -5,7 +5,11 @@ use std::path::Path;
 
 use glam::DVec2;
 use tem00_camera::{Camera, CameraDescription};
-use tem00_numerics::{Grid, cast::to_f32};
+use tem00_numerics::{
+    Grid,
+    cast::to_f32,
+    seed::{Purpose, derived},
+};
 use tem00_scene::parse_scene;
 use tem00_topography::{Artefact, Axis, DVec3, Field, Groove, ProfileSensor, Shape, SurfacePoint};
 use tem00_tracer::{
@@ -25,8 +29,7 @@ const GROOVE_DEPTH: f64 = 0.5;
 const BESIDE: f64 = 8.0;
 /// The frames of one scene: few, so that they need few rows of the image.
 const FRAMES: usize = 8;
-/// The golden ratio, in 2⁻⁶⁴, which keeps the seeds of scenes apart.
-const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+
 /// The least number of rows of a set-up.
 const MIN_ROWS: usize = 16;
 
@@ -263,7 +266,7 @@ impl ProfileSensor for SetupSensor<'_> {
         let mut profiles = Vec::new();
         for frames in frames.chunks(FRAMES) {
             // Each scene has speckle and noise of its own.
-            self.seed = self.seed.wrapping_add(GOLDEN);
+            self.seed = derived(self.seed, Purpose::Frame, 0);
             let measurement = Measurement::new(self.scene(artefact, frames)?)?;
             for (same, number) in frames.iter().zip(0..) {
                 let height = middle_height(artefact, same[0]);

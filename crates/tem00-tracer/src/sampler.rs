@@ -3,7 +3,7 @@ mod displacements;
 mod independent;
 mod lattice;
 
-use tem00_numerics::vectorised;
+use tem00_numerics::{seed::scattered, vectorised};
 
 pub use self::displacements::mean_over_sample_displacements;
 #[cfg(test)]
@@ -102,7 +102,7 @@ impl Sequence {
         let lattice = self.lattice(first);
         let columns = words(seed).map(|offset| (u64::from(offset) * u64::from(self.count)) >> 32);
         let corner = columns.map(|columns| lattice.column().wrapping_mul(columns));
-        let seeds = [mixed(seed), mixed(!seed)];
+        let seeds = [scattered(seed), scattered(!seed)];
         vectorised(
             #[inline(always)]
             || {
@@ -124,7 +124,7 @@ impl Sequence {
         let start = word(start >> 32);
         // The start is rounded down.
         let column = ((u64::from(start) + 1) * u64::from(self.count)) >> 32;
-        let within = word(mixed(seed ^ (column >> 1)));
+        let within = word(scattered(seed ^ (column >> 1)));
         let mirrored = if column & 1 == 0 { within } else { !within };
         fraction(start.wrapping_add(quotient(mirrored, self.count)))
     }
@@ -163,7 +163,7 @@ impl Sequence {
         Points {
             lattice: self.lattice(stream),
             offsets: words(seed),
-            order: mixed(seed),
+            order: scattered(seed),
         }
     }
 
@@ -203,18 +203,18 @@ impl Points<'_> {
 
 /// Returns the two numbers in (0, 1) of a key.
 pub(crate) fn point_in_square(key: u64) -> [f64; 2] {
-    words(mixed(key)).map(fraction)
+    words(scattered(key)).map(fraction)
 }
 
 /// Combines the seed of a render with three numbers, as those of a frame and of a pixel's column and row.
 pub(crate) fn pixel_key(seed: u64, [first, second, third]: [u64; 3]) -> u64 {
-    let key = mixed(mixed(seed) ^ first);
-    mixed(mixed(key ^ second.rotate_left(16)) ^ third.rotate_left(48))
+    let key = scattered(scattered(seed) ^ first);
+    scattered(scattered(key ^ second.rotate_left(16)) ^ third.rotate_left(48))
 }
 
 /// Returns a random number of a pixel for a use.
 const fn seed(stream: Stream, purpose: Use) -> u64 {
-    mixed(stream.key ^ purpose.code())
+    scattered(stream.key ^ purpose.code())
 }
 
 /// Returns the lower half of a number.
@@ -277,16 +277,6 @@ fn quotient(number: u32, by: u32) -> u32 {
 #[inline(always)]
 fn fraction(bits: u32) -> f64 {
     (f64::from(bits) + 0.5) / (1_u64 << 32) as f64
-}
-
-/// Spreads neighbouring numbers over all: the generator `SplitMix64` of G. L. Steele, D. Lea and
-/// C. H. Flood, *Fast Splittable Pseudorandom Number Generators*, 2014.
-#[inline(always)]
-const fn mixed(number: u64) -> u64 {
-    let mut bits = number.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    bits ^ (bits >> 31)
 }
 
 #[cfg(test)]

@@ -1,4 +1,7 @@
-use tem00_numerics::cast::to_f32;
+use tem00_numerics::{
+    cast::to_f32,
+    seed::{Purpose, derived},
+};
 
 use crate::{PupilField, SpeckleError, SpecklePattern};
 
@@ -129,7 +132,10 @@ impl PupilField {
             None if patterns > 1 => Err(SpeckleError::NoSeed),
             None => Ok(vec![self.clone()]),
             Some(seed) => Ok((0..patterns)
-                .map(|index| self.clone().with_seed(part_seed(seed, index)))
+                .map(|index| {
+                    self.clone()
+                        .with_seed(derived(seed, Purpose::Pattern, index as u64))
+                })
                 .collect()),
         }
     }
@@ -178,25 +184,6 @@ impl SpecklePattern {
             None => Ok(Self::new(sum, speckle_size)),
         }
     }
-}
-
-/// The seed of pattern `index` of a sum: its own for the first, scattered over all seeds for the
-/// others.
-///
-/// Were it `seed + index`, the second pattern of one seed would be the first of the next.
-const fn part_seed(seed: u64, index: usize) -> u64 {
-    match index {
-        0 => seed,
-        _ => scatter(scatter(seed) ^ scatter(index as u64)),
-    }
-}
-
-/// Steele, Lea and Flood (2014), the output function of `SplitMix64`.
-const fn scatter(x: u64) -> u64 {
-    let x = x.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    let x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    let x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    x ^ (x >> 31)
 }
 
 #[cfg(test)]

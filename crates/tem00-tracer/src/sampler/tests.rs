@@ -151,7 +151,7 @@ fn orders_are_permutations() {
     for count in [1, 2, 3, 4, 63, 64, 121] {
         for seed in 0..10 {
             let mut found: Vec<_> = (0..count)
-                .map(|i| permuted(i, count, mixed(seed)))
+                .map(|i| permuted(i, count, scattered(seed)))
                 .collect();
             found.sort_unstable();
             assert!(found.into_iter().eq(0..count), "{count}, {seed}");

@@ -2,6 +2,7 @@ mod lines;
 
 use glam::DVec2;
 use tem00_decorrelation::ImagingGeometry;
+use tem00_numerics::seed::{Purpose, derived};
 use tem00_shading::{Bandwidth, SurfaceLight};
 use tem00_speckle::{SlicePath, StackNeeds, StackPlan, incoherent_fractions};
 
@@ -226,8 +227,6 @@ impl Planner<'_> {
             followed = chosen(0).collect();
             (requests, allocations) = allocate(&followed)?;
         }
-        // Weyl steps keep the seeds of the lasers apart from each other and from the camera's.
-        let number = self.laser as u64 + 1;
         Ok(PatternPlan {
             wavelength: geometry.wavelength(),
             speckle_size: geometry.speckle_size_in_pixels(),
@@ -245,7 +244,7 @@ impl Planner<'_> {
             names: self.scene.surfaces.iter().map(|s| s.name.clone()).collect(),
             as_printed,
             chosen: settings.size.is_none() && settings.diameter.is_none(),
-            seed: seed.wrapping_add(number.wrapping_mul(0x9e37_79b9_7f4a_7c15)),
+            seed: derived(seed, Purpose::Laser, self.laser as u64),
         })
     }
 
@@ -487,8 +486,7 @@ impl PatternPlan {
 
     /// Returns the seed of allocation `number`: that of the laser for the first.
     pub(super) const fn seed_of(&self, number: u64) -> u64 {
-        self.seed
-            .wrapping_add(number.wrapping_mul(0xd1b5_4a32_d192_ed03))
+        derived(self.seed, Purpose::Body, number)
     }
 }
 

@@ -6,6 +6,7 @@ use obvhs::{
     ploc::PlocBuilder,
 };
 use rayon::prelude::*;
+use tem00_numerics::seed::scattered;
 
 use super::{Child, Hierarchy, Node, PADDING, WIDTH};
 
@@ -85,10 +86,7 @@ impl Hierarchy {
 /// Returns a scattered padding for each axis.
 fn padding(corner: u64) -> DVec3 {
     const BITS: u64 = 1 << 20;
-    // The finaliser of SplitMix64 (Steele, Lea and Flood 2014) spreads neighbouring numbers.
-    let mut bits = corner.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    let bits = scattered(corner);
     let excess = [bits, bits >> 20, bits >> 40].map(|word| (word % BITS) as f64 / BITS as f64);
     PADDING * (1.0 + DVec3::from_array(excess))
 }

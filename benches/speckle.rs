@@ -16,7 +16,10 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 use tem00::{
+    Camera, CameraDescription, DVec2, DVec3, Laser, Pose, Speckle,
+    decorrelation::{CameraFrame, RigidChange, RigidMotions},
     numerics::Grid,
+    shading::{BLOCK, LightPath, Perspective, SeenPoint, SpeckleLaw},
     speckle::{PupilField, SlicePath, SpeckleScratch, SpeckleStack},
 };
 
@@ -225,5 +228,74 @@ fn sum(values: &[Complex<f32>]) -> f32 {
     sums.iter().sum()
 }
 
-criterion_group!(benches, patterns, stacks, look_ups, bandwidth);
+/// The factors of an image of a plane that has moved, beside the same from the crates below, and their law alone.
+fn factors(criterion: &mut Criterion) {
+    let camera = Camera::new(CameraDescription::default()).expect("a camera");
+    let laser = Laser::spot(650e-9, 3e-3);
+    let laser = laser.placed(DVec3::new(0.2, 0.0, 0.4), DVec3::ZERO, DVec3::X);
+    let (laser, pose) = (laser.expect("a laser"), DVec3::new(1e-4, 0.0, 2e-4));
+    let pose = Pose::along(pose).expect("a pose");
+    let speckle = Speckle::new(&camera, &laser, 1)
+        .for_poses(&[pose])
+        .prepare();
+    let speckle = speckle.expect("speckle");
+    let frame = speckle.frame(&pose.into()).expect("a frame");
+    let point = |pixel: DVec2| {
+        let ray = camera.ray(pixel);
+        ray.origin - ray.origin.z / ray.direction.z * ray.direction
+    };
+    let (width, height) = (camera.width(), camera.height());
+    let pixels = (0..width * height).map(|i| [i % width, i / width].map(|i| i as f64 + 0.5));
+    let points: Vec<_> = pixels.map(|pixel| point(pixel.into())).collect();
+    let (normals, mut values) = (vec![DVec3::Z; points.len()], vec![0.0; points.len()]);
+
+    let mut group = criterion.benchmark_group("factor");
+    group.throughput(Throughput::Elements(points.len() as u64));
+    group.bench_function("factors", |bencher| {
+        bencher.iter(|| frame.factors(black_box(&points), &normals, &mut values));
+    });
+    let axes = CameraFrame::from_axes(camera.axes()).expect("axes");
+    let motions = RigidMotions {
+        surface: pose,
+        ..RigidMotions::default()
+    };
+    let law = SpeckleLaw {
+        change: &RigidChange::new(axes, camera.position(), &motions).expect("a change"),
+        lasers: [&laser; 2],
+        perspective: &Perspective::new(camera),
+        geometry: speckle.geometry(),
+    };
+    let stack = speckle.plan().stack(1).expect("a stack");
+    let per_pixel = law
+        .geometry
+        .pattern_coordinate(DVec2::ONE, DVec2::ZERO, stack.speckle_size());
+    group.bench_function("by hand", |bencher| {
+        bencher.iter(|| {
+            for (points, values) in points.chunks(BLOCK).zip(values.chunks_mut(BLOCK)) {
+                let mut shifts = [None; BLOCK];
+                let (mut x, mut y, mut u) = ([0.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK]);
+                let seen = |&position: &DVec3| SeenPoint {
+                    pixel: camera.project(position).unwrap_or(DVec2::ZERO),
+                    position,
+                    normal: DVec3::Z,
+                };
+                law.shifts(LightPath::Direct, points.iter().map(seen), &mut shifts);
+                for (i, (point, shift)) in points.iter().zip(&shifts).enumerate() {
+                    let shift = shift.unwrap_or_default();
+                    let place = (seen(point).pixel - shift.displacement) * per_pixel;
+                    (x[i], y[i], u[i]) = (place.x, place.y, shift.pupil);
+                }
+                stack.coordinates_within(stack.path().reach(), &mut u);
+                stack.intensity_batch(&x, &y, &u, values);
+            }
+        });
+    });
+    let mut shifts = vec![None; points.len()];
+    group.bench_function("the law alone", |bencher| {
+        bencher.iter(|| frame.shifts(black_box(&points), &normals, &mut shifts));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, patterns, stacks, look_ups, factors, bandwidth);
 criterion_main!(benches);

@@ -4,8 +4,8 @@
 //! [`Speckle`] chooses the patterns for a [`Camera`] and the poses of bodies, and [`SpeckleFrame::factor`] multiplies the
 //! light of a hit. How: `docs/integration.md` in the repository.
 //!
-//! Below them this facade re-exports the crates of the workspace under one name. A renderer that wants only
-//! one of them depends on that one: they meet through plain numbers.
+//! These names are the upper level. The modules are the level below, for a renderer that wants lights alone, patterns of its
+//! own or the law of motion: `docs/functions.md`. Each is a crate, and they meet through plain numbers.
 //!
 //! | module | crate | what it holds |
 //! |---|---|---|
@@ -85,5 +85,5 @@ pub use tem00_wave as wave;
 struct ReadmeExamples;
 
 #[cfg(doctest)]
-#[doc = include_str!("../docs/integration.md")]
-struct IntegrationExamples;
+#[doc = include_str!("../docs/functions.md")]
+struct FunctionExamples;

@@ -110,8 +110,8 @@ fn no_threads_come_along_unless_asked_for() {
 
 #[test]
 fn the_documentation_names_functions_that_the_header_or_the_shaders_have() {
-    let page = read("docs/integration.md");
-    let shaders = ["beam", "speckle", "decorrelation"]
+    let page = [read("docs/integration.md"), read("docs/functions.md")].concat();
+    let shaders = ["beam", "speckle", "decorrelation", "shading"]
         .map(|name| read(format!("crates/tem00-{name}/shaders/tem00_{name}.wgsl")));
     let texts = [read("bindings/c/include/tem00.h"), shaders.concat()].concat();
     let names = page.split('`').filter(|word| {
@@ -126,9 +126,20 @@ fn the_documentation_names_functions_that_the_header_or_the_shaders_have() {
         missing.is_empty(),
         "neither in tem00.h nor in WGSL: {missing:?}"
     );
-    let program = read("integrations/cpp/moved_spot.cpp");
-    let shown = format!("```cpp\n{program}```\n");
-    assert!(page.contains(&shown), "the program in C++ is another");
+}
+
+#[test]
+fn the_documentation_shows_the_programs_that_run() {
+    let page = read("docs/integration.md");
+    for (language, file) in [
+        ("rust,ignore", "examples/moved_spot.rs"),
+        ("cpp", "integrations/cpp/moved_spot.cpp"),
+        ("python", "integrations/python/moved_spot.py"),
+        ("wgsl", "bindings/gpu/examples/factors.wgsl"),
+    ] {
+        let shown = format!("```{language}\n{}```\n", read(file));
+        assert!(page.contains(&shown), "another program than {file}");
+    }
 }
 
 const fn crosses_threads<T: Send + Sync>() {}

@@ -20,7 +20,7 @@ use tem00::{
     decorrelation::{CameraFrame, RigidChange, RigidMotions},
     numerics::Grid,
     shading::{BLOCK, LightPath, Perspective, SeenPoint, SpeckleLaw},
-    speckle::{PupilField, SlicePath, SpeckleScratch, SpeckleStack},
+    speckle::{PupilField, SlicePath, SpeckleScratch, SpeckleStack, StackOptions},
 };
 
 /// A Weyl sequence: an even spread without a generator.
@@ -265,7 +265,10 @@ fn factors(criterion: &mut Criterion) {
         perspective: &Perspective::new(camera),
         geometry: speckle.geometry(),
     };
-    let stack = speckle.plan().stack(1).expect("a stack");
+    let stack = speckle
+        .plan()
+        .stack(1, StackOptions::default())
+        .expect("a stack");
     let per_pixel = law
         .geometry
         .pattern_coordinate(DVec2::ONE, DVec2::ZERO, stack.speckle_size());

@@ -385,6 +385,12 @@ impl SpeckleFrame {
         }
     }
 
+    /// Returns on which side of the reference state the speckle is: 1, or −1 where the pupil has moved over it the other
+    /// way than in the frame in which it moves farthest.
+    pub const fn side(&self) -> f64 {
+        self.side
+    }
+
     fn seen(&self, point: DVec3, normal: DVec3) -> Option<SeenPoint> {
         self.state.seen(point, normal).filter(is_finite)
     }

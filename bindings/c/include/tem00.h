@@ -1901,6 +1901,21 @@ tem00_status tem00_speckle_frame_factor(const tem00_speckle_frame *frame,
                                         double *factor);
 
 /**
+ * Computes the factor at a point that a camera sample sees at an image point: out of focus it lies
+ * beside the one where the centre of the lens sees it.
+ *
+ * `pixel` holds x and y in pixels, y down; `point` and `normal` are as for
+ * `tem00_speckle_frame_factor`.
+ *
+ * The pointers are null or valid, `pixel` for two numbers, `point` and `normal` for three.
+ */
+tem00_status tem00_speckle_frame_factor_at(const tem00_speckle_frame *frame,
+                                           const double *pixel,
+                                           const double *point,
+                                           const double *normal,
+                                           double *factor);
+
+/**
  * Computes the factors at `count` points: the bits of `tem00_speckle_frame_factor`. Neighbours in
  * the image, one after the other, are fastest.
  *

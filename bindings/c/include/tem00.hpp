@@ -258,6 +258,13 @@ public:
         return factor;
     }
 
+    /** Factor at a point that a camera sample sees at an image point, in pixels with y down. */
+    double factor_at(const vec2 &pixel, const vec3 &point, const vec3 &normal) const {
+        double factor = 0;
+        check(tem00_speckle_frame_factor_at(get(), pixel.data(), point.data(), normal.data(), &factor));
+        return factor;
+    }
+
     /** Factors at `count` points of x, y, z, with their normals. */
     void factors(const double *points, const double *normals, std::size_t count,
                  double *factors) const {

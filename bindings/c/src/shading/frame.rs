@@ -1,10 +1,10 @@
 use tem00_decorrelation::pupil_overlap_correlation;
-use tem00_shading::DVec3;
+use tem00_shading::{DVec2, DVec3};
 
 use super::{Speckle, SpeckleFrame, speckle::BodyMotion, vectors_and_factors};
 use crate::{
     pointers::{borrow, create, read, write},
-    status::{Status, call},
+    status::{Failure, Status, call},
 };
 
 /// What has become of the speckle at a point since the reference state.
@@ -69,7 +69,7 @@ unsafe fn ask_at<R>(
     point: *const f64,
     normal: *const f64,
     answer: (&'static str, *mut R),
-    question: impl FnOnce(&tem00_shading::SpeckleFrame, DVec3, DVec3) -> R,
+    question: impl FnOnce(&tem00_shading::SpeckleFrame, DVec3, DVec3) -> Result<R, Failure>,
 ) -> Status {
     call(|| {
         // SAFETY: by the contract of this function.
@@ -79,7 +79,7 @@ unsafe fn ask_at<R>(
         // SAFETY: by the contract of this function.
         let normal = DVec3::from_array(unsafe { read("normal", normal) }?);
         // SAFETY: by the contract of this function.
-        unsafe { write(answer.0, answer.1, question(frame, point, normal)) }
+        unsafe { write(answer.0, answer.1, question(frame, point, normal)?) }
     })
 }
 
@@ -104,7 +104,34 @@ pub unsafe extern "C" fn tem00_speckle_frame_factor(
     // SAFETY: by the contract of this function.
     unsafe {
         ask_at(frame, point, normal, answer, |frame, point, normal| {
-            frame.factor(point, normal)
+            Ok(frame.factor(point, normal))
+        })
+    }
+}
+
+/// Computes the factor at a point that a camera sample sees at an image point: out of focus it lies
+/// beside the one where the centre of the lens sees it.
+///
+/// `pixel` holds x and y in pixels, y down; `point` and `normal` are as for
+/// `tem00_speckle_frame_factor`.
+///
+/// # Safety
+///
+/// The pointers are null or valid, `pixel` for two numbers, `point` and `normal` for three.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_speckle_frame_factor_at(
+    frame: *const SpeckleFrame,
+    pixel: *const f64,
+    point: *const f64,
+    normal: *const f64,
+    factor: *mut f64,
+) -> Status {
+    let answer = ("factor", factor);
+    // SAFETY: by the contract of this function.
+    unsafe {
+        ask_at(frame, point, normal, answer, |frame, point, normal| {
+            let pixel = DVec2::from_array(read("pixel", pixel)?);
+            Ok(frame.factor_at(pixel, point, normal))
         })
     }
 }
@@ -154,7 +181,7 @@ pub unsafe extern "C" fn tem00_speckle_frame_average(
     // SAFETY: by the contract of this function.
     unsafe {
         ask_at(frame, point, normal, answer, |frame, point, normal| {
-            frame.average(point, normal)
+            Ok(frame.average(point, normal))
         })
     }
 }
@@ -176,7 +203,7 @@ pub unsafe extern "C" fn tem00_speckle_frame_shift(
     // SAFETY: by the contract of this function.
     unsafe {
         ask_at(frame, point, normal, answer, |frame, point, normal| {
-            frame.shift(point, normal).into()
+            Ok(frame.shift(point, normal).into())
         })
     }
 }

@@ -1,13 +1,10 @@
 //! Speckle by one call per hit against the library that is called.
 #![expect(clippy::float_cmp, reason = "the same bits are asked for")]
 
-use core::{
-    f64::consts::{FRAC_2_PI, FRAC_PI_4},
-    ffi::CStr,
-    ptr,
-};
+use core::{f64::consts::FRAC_PI_4, ffi::CStr, ptr};
 
-use tem00_shading::{BeamShape, DMat3, Laser, LaserDescription, Motion};
+use tem00_decorrelation::pupil_overlap_correlation;
+use tem00_shading::{BeamShape, DMat3, DVec2, Laser, LaserDescription, Motion};
 
 use super::*;
 use crate::{
@@ -16,7 +13,7 @@ use crate::{
     testing::{each_is_refused, number_is_refused, pointer_is_refused, refusal},
 };
 
-/// Looks straight down at the origin.
+/// Looks straight down at the origin, through a lens that distorts, at a sensor that is tilted.
 const CAMERA: CameraDescription = CameraDescription {
     position: [0.0, 0.0, 0.3],
     look_at: [0.0; 3],
@@ -26,9 +23,9 @@ const CAMERA: CameraDescription = CameraDescription {
     focus_distance: 0.3,
     pixel_pitch: 3.45e-6,
     resolution: [96, 64],
-    principal_offset: [0.0; 2],
-    tilt: [0.0; 2],
-    distortion: [0.0; 3],
+    principal_offset: [3.0, -2.0],
+    tilt: [0.1, 0.3],
+    distortion: [-0.1, 0.05, 0.01],
 };
 
 /// Shines straight down, with its waist on the plane z = 0. Its axes have no rounding.
@@ -57,7 +54,7 @@ const ELLIPTIC: EllipticDescription = EllipticDescription {
     waist_radius: [5e-3, 3e-3],
     waist_distance: [0.5, 0.3],
     m_squared: [1.0, 1.2],
-    rotation: 0.0,
+    rotation: FRAC_PI_4,
 };
 
 static ANGLES: [f64; 2] = [-1.0, 1.0];
@@ -139,12 +136,8 @@ fn spot() -> Owned<Light> {
     made(tem00_light_create_spot, &SPOT, tem00_light_destroy)
 }
 
-fn elliptic(description: &EllipticDescription) -> Owned<Light> {
-    made(
-        tem00_light_create_elliptic,
-        description,
-        tem00_light_destroy,
-    )
+fn elliptic() -> Owned<Light> {
+    made(tem00_light_create_elliptic, &ELLIPTIC, tem00_light_destroy)
 }
 
 fn line(description: &LineDescription) -> Owned<Light> {
@@ -168,14 +161,6 @@ fn frame(speckle: &Owned<Speckle>, motion: &BodyMotion) -> Owned<SpeckleFrame> {
     // SAFETY: the pointers are valid.
     let create = |out| unsafe { tem00_speckle_frame_create(speckle.0, motion, out) };
     Owned(answer(ptr::null_mut(), create), tem00_speckle_frame_destroy)
-}
-
-fn shift(frame: &Owned<SpeckleFrame>, point: &[f64; 3], normal: &[f64; 3]) -> SpeckleShift {
-    let (point, normal) = (point.as_ptr(), normal.as_ptr());
-    // SAFETY: the pointers are valid.
-    answer(SpeckleShift::default(), |out| unsafe {
-        tem00_speckle_frame_shift(frame.0, point, normal, out)
-    })
 }
 
 /// A body that slides, beside a camera and a light that stand still.
@@ -234,14 +219,14 @@ fn places() -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
 
 /// Lights by the interface, and lasers by the library.
 fn lights() -> [(Owned<Light>, Laser); 4] {
-    let placed = |placement: &Placement, power, shape| {
+    let placed = |placement: &Placement, power, line_direction, shape| {
         let position = DVec3::from_array(placement.origin);
         let laser = Laser::new(LaserDescription {
             line: tem00_coherence::SpectralLine::monochromatic(650e-9).unwrap(),
             power,
             position,
             look_at: position - DVec3::Z,
-            line_direction: DVec3::X,
+            line_direction,
             shape,
         });
         laser.unwrap()
@@ -274,20 +259,28 @@ fn lights() -> [(Owned<Light>, Laser); 4] {
         edge: 0.1,
         ..LINE
     };
+    // The y axis of a light that goes down is that of the world turned about.
+    let (sine, cosine) = ELLIPTIC.rotation.sin_cos();
+    let turned = DVec3::new(cosine, -sine, 0.0);
+    let x = DVec3::X;
     [
-        (spot(), placed(&SPOT.placement, 5e-3, round)),
-        (elliptic(&ELLIPTIC), placed(&PLACEMENT, 4e-3, oval)),
-        (line(&powell), placed(&PLACEMENT, 2e-3, fan(flat))),
-        (line(&LINE), placed(&PLACEMENT, 2e-3, fan(table))),
+        (spot(), placed(&SPOT.placement, 5e-3, x, round)),
+        (elliptic(), placed(&PLACEMENT, 4e-3, turned, oval)),
+        (line(&powell), placed(&PLACEMENT, 2e-3, x, fan(flat))),
+        (line(&LINE), placed(&PLACEMENT, 2e-3, x, fan(table))),
     ]
 }
 
 fn library_camera() -> tem00_shading::Camera {
-    tem00_shading::Camera::new(tem00_shading::CameraDescription {
+    let mut description = tem00_shading::CameraDescription {
         resolution: CAMERA.resolution,
+        principal_point: Some(DVec2::new(51.0, 30.0)),
         ..tem00_shading::CameraDescription::default()
-    })
-    .unwrap()
+    };
+    (description.tilt.angle, description.tilt.azimuth) = (0.1, 0.3);
+    let bent = &mut description.distortion;
+    (bent.k1, bent.k2, bent.k3) = (-0.1, 0.05, 0.01);
+    tem00_shading::Camera::new(description).unwrap()
 }
 
 fn library(laser: &Laser, motion: Motion) -> PreparedSpeckle {
@@ -301,151 +294,91 @@ fn library(laser: &Laser, motion: Motion) -> PreparedSpeckle {
 }
 
 #[test]
-fn factors_are_those_of_the_library_to_the_last_bit() {
+fn answers_are_those_of_the_library_to_the_last_bit() {
     let (motion, of_library) = motion();
     let (points, normals) = places();
+    let previous: Vec<_> = points.iter().map(|&[x, y, z]| [x - 1e-4, y, z]).collect();
+    let [was, is, normal] = [&previous, &points, &normals]
+        .map(|column| column.iter().map(|&v| v.into()).collect::<Vec<DVec3>>());
+    let count = points.len();
     for (light, laser) in lights() {
         let library = library(&laser, of_library);
         let speckle = speckle(&light, &[motion]);
         let frame = frame(&speckle, &motion);
-        drop((speckle, light));
         let of_library = library.frame(&of_library).unwrap();
-        let mut batch = vec![0.0; points.len()];
-        let (p, n) = (points.as_ptr().cast(), normals.as_ptr().cast());
-        let (count, out) = (points.len(), batch.as_mut_ptr());
-        // SAFETY: the handle and the columns are valid.
-        let status = unsafe { tem00_speckle_frame_factors(frame.0, p, n, count, out) };
-        assert_eq!(status, Status::Ok, "{}", message());
-        assert!(batch.iter().all(|factor| factor.is_finite()), "{batch:?}");
-        for ((point, normal), in_batch) in points.iter().zip(&normals).zip(batch) {
-            let (p, n) = (point.as_ptr(), normal.as_ptr());
+
+        let [mut batch, mut since, mut expected] = [0.0; 3].map(|zero| vec![zero; count]);
+        let [w, p, n] = [&previous, &points, &normals].map(|column| column.as_ptr().cast());
+        // SAFETY: the handles and the columns are valid.
+        let statuses = unsafe {
+            [
+                tem00_speckle_frame_factors(frame.0, p, n, count, batch.as_mut_ptr()),
+                tem00_speckle_factors_since(speckle.0, w, p, n, count, since.as_mut_ptr()),
+            ]
+        };
+        assert_eq!(statuses, [Status::Ok; 2], "{}", message());
+        library.factors_since(&was, &is, &normal, &mut expected);
+        assert_eq!(since, expected);
+
+        let info = SpeckleInfo {
+            summary: ptr::null(),
+            speckle_size: 0.0,
+            memory_bytes: 0,
+        };
+        // SAFETY: the pointers are valid.
+        let info = answer(info, |out| unsafe {
+            tem00_speckle_describe(speckle.0, out)
+        });
+        // SAFETY: the text belongs to the speckle.
+        let summary = unsafe { CStr::from_ptr(info.summary) };
+        assert_eq!(summary.to_str().unwrap(), library.to_string());
+        assert_eq!(info.memory_bytes, library.memory_bytes());
+        let size = library.geometry().speckle_size_in_pixels();
+        assert_eq!(info.speckle_size, size);
+
+        drop((speckle, light));
+        let beside = DVec2::new(40.0, 30.5);
+        for (i, (point, in_batch)) in is.iter().zip(batch).enumerate() {
+            let (p, n) = (points[i].as_ptr(), normals[i].as_ptr());
+            let (frame, pixel) = (frame.0, beside.as_ref().as_ptr());
             // SAFETY: the handle and the pointers are valid.
-            let [factor, mean] = unsafe {
+            let found = unsafe {
                 [
-                    answer(0.0, |out| tem00_speckle_frame_factor(frame.0, p, n, out)),
-                    answer(0.0, |out| tem00_speckle_frame_average(frame.0, p, n, out)),
+                    answer(0.0, |out| tem00_speckle_frame_factor(frame, p, n, out)),
+                    answer(0.0, |out| {
+                        tem00_speckle_frame_factor_at(frame, pixel, p, n, out)
+                    }),
+                    answer(0.0, |out| tem00_speckle_frame_average(frame, p, n, out)),
                 ]
             };
-            let (p, n) = (DVec3::from_array(*point), DVec3::from_array(*normal));
-            let expected = of_library.factor(p, n);
-            assert_eq!([factor, in_batch], [expected; 2], "at {point:?}");
-            assert_eq!(mean, of_library.average(p, n), "about {point:?}");
-            let shift = shift(&frame, point, normal);
-            assert_eq!(shift, of_library.shift(p, n).into(), "at {point:?}");
-            assert!(!shift.correlation.is_nan(), "at {point:?}");
+            let factor = of_library.factor(*point, normal[i]);
+            let at = of_library.factor_at(beside, *point, normal[i]);
+            let average = of_library.average(*point, normal[i]);
+            assert_eq!(found, [factor, at, average], "at {point:?}");
+            assert_eq!(in_batch, factor, "at {point:?}");
+            // SAFETY: the handle and the pointers are valid.
+            let shift = answer(SpeckleShift::default(), |out| unsafe {
+                tem00_speckle_frame_shift(frame, p, n, out)
+            });
+            let expected = of_library.shift(*point, normal[i]);
+            assert_eq!(shift, expected.into(), "at {point:?}");
+            let left = expected.map_or(0.0, |shift| pupil_overlap_correlation(shift.pupil));
+            assert_eq!(shift.correlation, left, "at {point:?}");
         }
     }
 }
 
 #[test]
-fn what_was_chosen_is_what_the_library_chooses() {
-    let (motion, of_library) = motion();
-    let [(light, laser), ..] = lights();
-    let (library, speckle) = (library(&laser, of_library), speckle(&light, &[motion]));
-    let info = SpeckleInfo {
-        summary: ptr::null(),
-        speckle_size: 0.0,
-        memory_bytes: 0,
-    };
-    // SAFETY: the pointers are valid.
-    let info = answer(info, |out| unsafe {
-        tem00_speckle_describe(speckle.0, out)
-    });
-    // SAFETY: the text belongs to the speckle.
-    let summary = unsafe { CStr::from_ptr(info.summary) };
-    assert_eq!(summary.to_str().unwrap(), library.to_string());
-    assert_eq!(info.memory_bytes, library.memory_bytes());
-    let size = library.geometry().speckle_size_in_pixels();
-    assert_eq!(info.speckle_size, size);
-}
-
-#[test]
-fn the_speckle_of_an_ellipse_turns_with_it() {
-    let mut turned = [ELLIPTIC; 3];
-    turned[0].rotation = FRAC_PI_4;
-    // From the x axis towards the y axis of a light that goes down.
-    turned[1].placement.fan_axis = [1.0, -1.0, 0.0];
-    let moved = sliding(3e-4, 1e-4);
-    let shifts = turned.map(|description| {
-        let speckle = speckle(&elliptic(&description), &[moved]);
-        shift(&frame(&speckle, &moved), &[1e-3, 0.0, 0.0], &NORMAL).pupil_shift
-    });
-    let [turned, placed, straight] = shifts;
-    assert!((turned - placed).abs() < 1e-12, "{shifts:?}");
-    assert!((turned - straight).abs() > 1e-6, "{shifts:?}");
-}
-
-#[test]
-fn buffers_of_an_image_are_those_of_the_library() {
-    let (motion, of_library) = motion();
-    let (points, normals) = places();
-    let previous = points.iter().map(|&[x, y, z]| [x - 1e-4, y, z]);
-    let read = [&previous.collect(), &points, &normals];
-    let [(light, laser), ..] = lights();
-    let speckle = speckle(&light, &[motion]);
-    let [mut found, mut expected] = [0, 1].map(|_| vec![0.0; points.len()]);
-    let ([was, is, n], out) = (
-        read.map(|column| column.as_ptr().cast()),
-        found.as_mut_ptr(),
-    );
-    // SAFETY: the handle and the columns are valid.
-    let status = unsafe { tem00_speckle_factors_since(speckle.0, was, is, n, points.len(), out) };
-    assert_eq!(status, Status::Ok, "{}", message());
-    let [was, is, n] = read.map(|column| column.iter().map(|&v| v.into()).collect::<Vec<_>>());
-    library(&laser, of_library).factors_since(&was, &is, &n, &mut expected);
-    assert_eq!(found, expected);
-}
-
-/// Lit by a plane wave and seen along its normal, a plane takes its speckle along over the pupil.
-#[test]
-fn what_is_left_of_the_speckle_of_a_plane_is_the_overlap_of_two_discs() {
-    let moved = sliding(6e-4, -8e-4);
-    let speckle = speckle(&spot(), &[moved]);
-    let [still, moved] = [BodyMotion::default(), moved].map(|motion| {
-        let frame = frame(&speckle, &motion);
-        shift(&frame, &motion.surface.translation, &NORMAL)
-    });
-    let none = SpeckleShift {
-        correlation: 1.0,
-        ..SpeckleShift::default()
-    };
-    assert_eq!(still, none, "the reference state");
-    // 1 mm over a pupil of 25 mm / 8; the image is 25 / 275 of the surface.
-    let s = 1e-3 / (25e-3 / 8.0);
-    let overlap = FRAC_2_PI * (f64::acos(s) - s * (1.0 - s * s).sqrt());
-    let pixels = 25.0 / 275.0 / 3.45e-6;
-    let errors = [
-        moved.pupil_shift / s - 1.0,
-        moved.correlation / (overlap * overlap) - 1.0,
-        moved.displacement[0] / (6e-4 * pixels) - 1.0,
-        moved.displacement[1] / (8e-4 * pixels) - 1.0,
-    ];
-    // The point is 1 mm of 300 off the axis, whose square is 1e-5.
-    assert!(errors.iter().all(|error| error.abs() < 1e-4), "{errors:?}");
-}
-
-#[test]
 fn points_are_seen_where_the_library_sees_them() {
-    let bent = CameraDescription {
-        principal_offset: [3.0, -2.0],
-        tilt: [0.1, 0.3],
-        distortion: [-0.1, 0.05, 0.01],
-        ..CAMERA
-    };
-    let camera = camera(&bent);
-    let mut expected = *library_camera().description();
-    expected.principal_point = Some(tem00_shading::DVec2::new(51.0, 30.0));
-    (expected.tilt.angle, expected.tilt.azimuth) = (0.1, 0.3);
-    let bent = &mut expected.distortion;
-    (bent.k1, bent.k2, bent.k3) = (-0.1, 0.05, 0.01);
-    let expected = tem00_shading::Camera::new(expected).unwrap();
+    let camera = camera(&CAMERA);
     let project = |point: &[f64; 3], out: *mut [f64; 2]| {
         // SAFETY: the pointers are valid.
         unsafe { tem00_camera_project(camera.0, point.as_ptr(), out.cast()) }
     };
     let point = [2e-3, -1e-3, 3e-4];
     let seen = answer([0.0; 2], |out| project(&point, out));
-    assert_eq!(seen, expected.project(point.into()).unwrap().to_array());
+    let expected = library_camera().project(point.into()).unwrap();
+    assert_eq!(seen, expected.to_array());
     for unseen in [[0.0, 0.0, 1.0], [f64::NAN; 3]] {
         let mut out = [7.0; 2];
         number_is_refused("point", project(&unseen, &raw mut out));

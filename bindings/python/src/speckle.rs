@@ -13,6 +13,7 @@ mod pattern;
 mod pixels;
 mod plan;
 mod pupil;
+mod seed;
 mod slice_law;
 mod stack;
 mod sum;
@@ -32,6 +33,7 @@ pub(crate) mod speckle {
         pixels::PixelArray,
         plan::{StackNeeds, StackPlan},
         pupil::{Pupil, Transmission},
+        seed::derived_seed,
         slice_law::SliceLaw,
         stack::SpeckleStack,
         sum::incoherent_fractions,

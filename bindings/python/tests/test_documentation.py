@@ -10,10 +10,10 @@ from pathlib import Path
 import numpydoc.validate  # type: ignore[import-untyped]
 import pytest
 import tem00
-from tem00 import beam, coherence, decorrelation, speckle, statistics
+from tem00 import beam, coherence, decorrelation, shading, speckle, statistics
 
 PAGE = Path(__file__).parents[3] / "docs/python.md"
-MODULES = (beam, beam.closed_form, coherence, decorrelation, speckle, statistics)
+MODULES = (beam, beam.closed_form, coherence, decorrelation, shading, speckle, statistics)
 
 
 def blocks(language: str) -> list[str]:

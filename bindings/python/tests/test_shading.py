@@ -122,44 +122,6 @@ def test_rays_are_those_of_a_pinhole() -> None:
     np.testing.assert_allclose(tangents(tilt=[tilt, math.pi / 2]), turned, rtol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("surface", "laser"),
-    [
-        (SLIDE, None),
-        (tem00.Pose.along([-3e-4, 3e-4, 0.0]), None),
-        (None, tem00.Pose.about(ORIGIN, [0, 1, 0], 1.5e-3)),
-        (tem00.Pose.along([2e-4, 0, 0]), tem00.Pose.along([0, 4e-4, 0])),
-    ],
-)
-def test_frames_correlate_by_the_law(
-    surface: tem00.Pose | None, laser: tem00.Pose | None
-) -> None:
-    still = tem00.Pose.identity()
-    speckle = tem00.Speckle(CAMERA, LASER, 3, poses=[surface or still], laser_poses=[laser or still])
-    before, after = speckle.frame(), speckle.frame(surface, laser=laser)
-    shift = after.shift(TARGET, UP)
-    gone = after.factor(seen(image() + shift.displacement), UP)
-    found = np.corrcoef(np.ravel(before.factor(seen(image()), UP)), np.ravel(gone))[0, 1]
-    law = np.asarray(shift.correlation).item()
-    assert 0.05 < law < 0.95
-    # Three standard errors of so many speckles, and what the blend of slices adds.
-    speckles = image().size / 2 / speckle.speckle_size**2
-    assert abs(found - law) < 3 * (1 + law) / math.sqrt(speckles) + 0.02
-
-
-def test_only_differences_of_motions_count() -> None:
-    # Camera and laser moved as one are the body moved back.
-    pose = tem00.Pose.about([0, 0, 0.1], [1, 2, 0], 4e-4)
-    back = pose.inverse()
-    speckle = tem00.Speckle(CAMERA, LASER, 5, poses=[back])
-    points = seen(image())
-    by_others = speckle.frame(camera=pose, laser=pose).factor(points, UP)
-    by_body = speckle.frame(back).factor(carried(back, points), back.direction(UP))
-    # The same look-ups but for rounding, which the edge-free patterns hardly tell.
-    np.testing.assert_allclose(by_others, by_body, rtol=0, atol=1e-6)
-    assert np.std(np.subtract(by_others, speckle.frame().factor(points, UP))) > 0.1
-
-
 def test_batches_have_the_bits_of_single_calls_and_shapes_broadcast() -> None:
     frame = MOVED.frame(SLIDE)
     # More than one block of 4096.
@@ -175,8 +137,22 @@ def test_batches_have_the_bits_of_single_calls_and_shapes_broadcast() -> None:
     assert type(frame.factor(points[0, 0], UP)) is float
     assert type(frame.amplitude(points[0, 0], UP)) is complex
     assert np.shape(frame.factor(points[0, 0], np.tile(UP, (2, 5, 1)))) == (2, 5)
-    assert frame.shift(points, UP).displacement.shape == (*points.shape[:-1], 2)
     assert np.shape(frame.shift(points[0, 0], UP).pupil) == ()
+    shift = frame.shift(points, UP)
+    assert shift.displacement.shape == (*points.shape[:-1], 2)
+    np.testing.assert_array_equal(shift.displacement[44, 63], frame.shift(points[44, 63], UP).displacement)
+
+
+def test_samples_in_focus_see_a_point_where_the_middle_of_the_lens_does() -> None:
+    frame = MOVED.frame(SLIDE)
+    pixels, points = image(), seen(image())
+    at_samples = frame.factor_at(pixels, points, UP)
+    # The same look-ups but for rounding, which the edge-free patterns hardly tell.
+    np.testing.assert_allclose(at_samples, frame.factor(points, UP), rtol=0, atol=1e-6)
+    # The speckle of the neighbour moves as far, but for 3e-4 of a pixel.
+    beside = np.asarray(frame.factor_at(pixels + [1, 0], points, UP))
+    np.testing.assert_allclose(beside[:, :-1], np.asarray(at_samples)[:, 1:], rtol=0, atol=1e-2)
+    assert frame.factor_at([1, math.nan], points[0, 0], UP) == 1
 
 
 def test_what_is_out_of_sight_has_the_factor_one_and_no_nan() -> None:
@@ -205,17 +181,6 @@ def test_buffers_of_positions_have_the_bits_of_hits() -> None:
     expected = np.where(moved[..., 0], away, still)
     np.testing.assert_array_equal(speckle.factors_since(previous, points, UP), expected)
     assert np.any(away != still)
-
-
-def test_looks_and_polarisation_lower_the_contrast() -> None:
-    points = seen(image()[::4, ::4])
-    for looks, polarisation in ((4, 1.0), (1, 0.0), (2, 0.6)):
-        speckle = tem00.Speckle(CAMERA, LASER, 11, looks=looks, polarisation=polarisation)
-        factors = speckle.frame().factor(points, UP)
-        contrast = np.std(factors) / np.mean(factors)
-        law = math.sqrt((1 + polarisation**2) / 2 / looks)
-        # Three standard errors of the contrast of independent points: 65 µm to a speckle, 166 µm apart.
-        assert abs(contrast - law) < 3 * law / math.sqrt(points.size / 3) * 1.2
 
 
 LASERS: list[tuple[tem00.Laser, Callable[[beam.Placement], beam.Emitter]]] = [
@@ -280,6 +245,7 @@ def test_lasers_are_the_lights_of_beam(
     light = place(beam.Placement(ORIGIN, np.subtract(TARGET, ORIGIN), [1, 0, 0]))
     assert type(laser.light) is type(light)
     assert laser.light == light
+    assert (laser.wavelength, laser.power) == (light.wavelength, light.power)
     points = np.random.default_rng(1).uniform(-0.01, 0.01, (5, 40, 3))
     points[0, 0] = [0, 0, 1]  # behind the aperture
     event, expected = laser.next_event(points), light.next_event(*np.moveaxis(points, -1, 0))
@@ -306,6 +272,8 @@ def test_lasers_are_the_lights_of_beam(
         (lambda: CAMERA.ray([1.0, math.nan]), "pixels"),
         (lambda: CAMERA.ray([1.0, 2.0, 3.0]), "pixels"),
         (lambda: spot(wavelength=-1.0), "wavelength"),
+        (lambda: spot(wavelength=650), "wavelength"),
+        (lambda: line(wavelength=650), "wavelength"),
         (lambda: spot(waist_radius=1e-9), "waist_radius"),
         (lambda: spot(waist_radius=[1e-3, 1e-3, 1e-3]), "waist_radius"),
         (lambda: spot(origin=[0, math.nan, 0]), "origin"),
@@ -328,6 +296,7 @@ def test_lasers_are_the_lights_of_beam(
         (lambda: FAR.frame(tem00.Pose.about(TARGET, [0, 1, 0], 0.05)), "surface"),
         (lambda: MOVED.frame(body=-1), "body"),
         (lambda: MOVED.frame().factor([0, 0], UP), "points"),
+        (lambda: MOVED.frame().factor_at([0, 0, 0], TARGET, UP), "pixels"),
         (lambda: MOVED.frame().factor(np.zeros((2, 3)), np.zeros((5, 3))), "normals"),
     ],
 )
@@ -342,15 +311,14 @@ def test_patterns_that_no_memory_holds_are_a_memory_error() -> None:
         tem00.Speckle(CAMERA, LASER, 1, memory=1000)
 
 
-
 def spot(wavelength: float = 650e-9, waist_radius: object = 1e-3, **given: object) -> tem00.Laser:
     arguments = {"origin": ORIGIN, "target": TARGET, **given}
     return tem00.Laser.spot(wavelength, waist_radius, **arguments)  # type: ignore[arg-type]
 
 
-def line(thickness: float = 1e-4, fan_angle: float = 0.1, **given: object) -> tem00.Laser:
-    arguments = {"origin": ORIGIN, "target": TARGET, **given}
-    return tem00.Laser.line(650e-9, thickness, fan_angle, **arguments)  # type: ignore[arg-type]
+def line(**given: object) -> tem00.Laser:
+    arguments = {"wavelength": 650e-9, "thickness": 1e-4, "fan_angle": 0.1, **given}
+    return tem00.Laser.line(**{"origin": ORIGIN, "target": TARGET, **arguments})  # type: ignore[arg-type]
 
 
 def test_given_points_decide_how_far_the_speckle_moves() -> None:

@@ -19,6 +19,7 @@ from tem00.speckle import (
     StackOptions,
     StackPlan,
     Transmission,
+    derived_seed,
     incoherent_fractions,
 )
 
@@ -78,6 +79,10 @@ REFUSED: list[tuple[Callable[[], object], str, str]] = [
     (lambda: needs(frames=2**32), "frames", "4294967296"),
     (lambda: StackPlan(NEEDS).with_half_period(0), "half_period", "0"),
     (lambda: StackPlan(NEEDS).with_square(64, 33), "diameter", "33"),
+    (lambda: StackPlan.place(-1), "number", "-1"),
+    (lambda: derived_seed(1, "lamp", 0), "purpose", "'lamp'"),  # type: ignore[arg-type]
+    (lambda: derived_seed(2**64, "body", 0), "seed", str(2**64)),
+    (lambda: STACK.coordinate_at(np.nan), "shift", "NaN"),
     (lambda: incoherent_fractions(0, 1.0, [1.0]), "patterns", "0"),
     (lambda: incoherent_fractions(1, 1.0, [1.0, -1.5]), "weights", "-1.5"),
     (lambda: incoherent_fractions(1, 1.5, [1.0]), "polarisation", "1.5"),

@@ -25,6 +25,7 @@ from tem00.speckle import (
     StackOptions,
     StackPlan,
     Transmission,
+    derived_seed,
 )
 from tem00.statistics import autocovariance
 
@@ -217,3 +218,14 @@ def test_objects_know_their_equals() -> None:
         hash(FIELD)
     with pytest.raises(AttributeError):
         FIELD.seed = 8  # type: ignore[misc]
+
+
+def test_seeds_are_steps_of_weyl_and_places_powers_of_the_plastic_number() -> None:
+    lasers = [derived_seed(2**64 - 1, "laser", i) for i in range(3)]
+    bodies = [derived_seed(2**64 - 1, "body", i) for i in range(3)]
+    assert lasers == [((i + 1) * 0x9E3779B97F4A7C15 - 1) % 2**64 for i in range(3)]
+    assert bodies == [(i * 0xD1B54A32D192ED03 - 1) % 2**64 for i in range(3)]
+    (plastic,) = (root.real for root in np.roots([1, 0, -1, -1]) if abs(root.imag) < 1e-12)
+    expected = [3 / plastic % 1, 3 / plastic**2 % 1]
+    np.testing.assert_allclose(StackPlan.place(3), expected, rtol=0, atol=1e-12)
+    assert StackPlan.place(0) == (0.0, 0.0)

@@ -225,6 +225,9 @@ def test_correlations_have_the_closed_forms(field: PupilField, stack: SpeckleSta
         u_of_gamma = optimize.brentq(law, 0, 3.99, xtol=1e-13)
         assert stack.coordinate_of(gamma) == pytest.approx(u_of_gamma, abs=1e-9)
     assert stack.coordinate_of([2.0, 1.0, 0.0, -1.0]).tolist() == [0.0, 0.0, 4.0, 4.0]
+    there = straight.coordinate_at([0.3, -0.3])
+    np.testing.assert_allclose(straight.correlation_at(there), straight_law(np.asarray(0.3)), atol=1e-9)
+    assert there[0] == -there[1] > 0
 
 
 def test_slices_are_correlated_as_counted_and_as_by_the_law() -> None:

@@ -1,10 +1,10 @@
 use pyo3::{prelude::*, types::PyComplex};
 use tem00_decorrelation::pupil_overlap_correlation;
-use tem00_shading::{self as physics, DVec3, Motion};
+use tem00_shading::{self as physics, DVec2, DVec3, Motion};
 
 use super::arguments::{any, vectors};
 use crate::{
-    arrays::{Values, Vectors, evaluate},
+    arrays::{Column, Values, Vectors, evaluate},
     beam::records::record,
     decorrelation::RigidMotion,
 };
@@ -64,6 +64,40 @@ impl SpeckleFrame {
     ) -> PyResult<Values<'py>> {
         let [factors] = ask(py, [&points, &normals], [&[]], |points, normals, [out]| {
             self.frame.factors(points, normals, out);
+        })?;
+        Ok(factors)
+    }
+
+    /// Return the factors at points that camera samples see at image points: out of focus those lie beside the ones where
+    /// the centre of the lens sees the points.
+    ///
+    /// Parameters
+    /// ----------
+    /// pixels : array_like, shape (..., 2)
+    ///     Image points of the samples, in pixels with y down.
+    /// points, normals : array_like, shape (..., 3)
+    ///     As for ``factor``.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Factors, in the common shape.
+    fn factor_at<'py>(
+        &self,
+        py: Python<'py>,
+        pixels: Vectors<'py>,
+        points: Vectors<'py>,
+        normals: Vectors<'py>,
+    ) -> PyResult<Values<'py>> {
+        let [x, y] = Column::components(("pixels", &pixels), &[2], f64::INFINITY)?;
+        let ([a, b, c], [d, e, f]) = (any("points", &points)?, any("normals", &normals)?);
+        let columns = [x, y, a, b, c, d, e, f];
+        let [factors] = evaluate(py, columns, [&[]], |[x, y, a, b, c, d, e, f], [out]| {
+            let (points, normals) = (vectors([a, b, c]), vectors([d, e, f]));
+            for (i, out) in out.iter_mut().enumerate() {
+                let pixel = DVec2::new(x[i], y[i]);
+                *out = self.frame.factor_at(pixel, points[i], normals[i]);
+            }
         })?;
         Ok(factors)
     }
@@ -147,12 +181,13 @@ impl SpeckleFrame {
         let inner: [&[usize]; 5] = [&[2], &[], &[2], &[], &[]];
         let shifts = ask(py, [&points, &normals], inner, |points, normals, out| {
             let [displacement, pupil, across, axial, correlation] = out;
-            for i in 0..pupil.len() {
-                let new = physics::SpeckleShift {
+            let mut shifts = vec![None; pupil.len()];
+            self.frame.shifts(points, normals, &mut shifts);
+            for (i, shift) in shifts.into_iter().enumerate() {
+                let shift = shift.unwrap_or(physics::SpeckleShift {
                     pupil: f64::INFINITY,
                     ..physics::SpeckleShift::default()
-                };
-                let shift = self.frame.shift(points[i], normals[i]).unwrap_or(new);
+                });
                 displacement[2 * i..][..2].copy_from_slice(&shift.displacement.to_array());
                 across[2 * i..][..2].copy_from_slice(&shift.across.to_array());
                 (pupil[i], axial[i]) = (shift.pupil, shift.axial);
@@ -176,6 +211,16 @@ impl SpeckleFrame {
         let body = motion.body;
         format!("<SpeckleFrame: surface={surface}, camera={camera}, laser={laser}, body={body}>")
     }
+}
+
+methods! {
+    impl SpeckleFrame as this: this.frame;
+
+    unmade "Speckle.frame";
+
+    /// Side of the reference state on which the speckle is: 1.0, or -1.0 where the pupil has moved over it the other way
+    /// than in the frame in which it moves farthest.
+    get side -> f64;
 }
 
 /// Hands points and their normals to `f` block by block, with where to write: as [`evaluate`].

@@ -3,7 +3,7 @@ use tem00_shading::{self as physics, DVec3, LaserBuilder};
 
 use super::arguments::vector;
 use crate::{
-    arrays::{Column, Components, Numbers, Vectors},
+    arrays::{Column, Components, Numbers, Vectors, wavelength_of_light},
     beam::{Emitter, LineProfile, NextEvent, light_of},
     error::{IntoPython, refused},
 };
@@ -57,6 +57,7 @@ impl Laser {
             Numbers::One(radius) => [radius; 2],
             radii => radii.vector("waist_radius")?,
         };
+        let wavelength = wavelength_of_light("wavelength", wavelength)?;
         let builder = physics::Laser::spot(wavelength, radii[0]).waist_radii(radii);
         let builder = builder.power(power).m_squared(m_squared);
         Self::placed(builder, [origin, target], line_direction, focused_at, &[])
@@ -104,6 +105,7 @@ impl Laser {
         focused_at: Option<f64>,
         m_squared: f64,
     ) -> PyResult<Self> {
+        let wavelength = wavelength_of_light("wavelength", wavelength)?;
         let mut builder = physics::Laser::line(wavelength, thickness, fan_angle);
         builder = builder.power(power).m_squared(m_squared);
         if let Some(profile) = profile {
@@ -148,6 +150,18 @@ impl Laser {
             self.light(py)?.repr()?
         ))
     }
+}
+
+methods! {
+    impl Laser as this: this.0;
+
+    unmade "spot or line";
+
+    /// Wavelength in vacuum, in metres.
+    get wavelength -> f64;
+
+    /// Power, in watts.
+    get power -> f64;
 }
 
 impl Laser {

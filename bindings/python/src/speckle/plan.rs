@@ -193,6 +193,17 @@ impl StackPlan {
         ))
     }
 
+    /// Return the place in a stack of one of several patterns that share it, in periods along x and y.
+    ///
+    /// Parameters
+    /// ----------
+    /// number : int
+    ///     Number of the pattern; the first, 0, is at the origin.
+    #[staticmethod]
+    fn place(number: Whole<'_>) -> PyResult<(f64, f64)> {
+        Ok(physics::StackPlan::place(number.unsigned("number")?).into())
+    }
+
     /// Return the plan with a square pattern.
     ///
     /// Parameters

@@ -303,6 +303,14 @@ methods! {
     /// correlation : array_like
     ///     Correlation; 1 and more give 0, 0 and less the first slice of no correlation.
     map coordinate_of(correlation);
+
+    /// Return the coordinate u where the pupil has moved by a shift over the speckle.
+    ///
+    /// Parameters
+    /// ----------
+    /// shift : array_like
+    ///     Shift in pupil diameters, to one side or the other; beyond the reach of the path it counts as the reach.
+    map coordinate_at(shift);
 }
 
 impl SpeckleStack {

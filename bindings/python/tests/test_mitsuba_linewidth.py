@@ -48,9 +48,9 @@ def pattern_of(light: LineLight | None, **properties: Any) -> Pattern:
     return pattern
 
 
-def factors(pattern: Pattern, u: float = 0.0) -> Array:
+def factors(pattern: Pattern, pupil: float = 0.0) -> Array:
     """Return the factors at the pixels' centres."""
-    pattern.move_to(Place(u, (0.0, 0.0)))
+    pattern.move_to(Place(pupil, (0.0, 0.0)))
     x, y = np.meshgrid(np.arange(IMAGE[0]) + 0.5, np.arange(IMAGE[1]) + 0.5)
     values = np.array(pattern.factor(mi.Point2f(x.ravel(), y.ravel())), dtype=np.float64)
     return values.reshape(IMAGE[::-1])
@@ -111,8 +111,7 @@ def test_frames_of_a_motion_along_and_across_the_tilt_are_those_of_the_law() -> 
     across = light._replace(axis=(0.0, 1.0))
     for turned, displacement in ((light, (0.25, 0.0)), (across, (0.0, 0.25))):
         pattern = pattern_of(turned, **flat)
-        # 32 slices to a pupil diameter.
-        here, there = factors(pattern), factors(pattern, 8.0)
+        here, there = factors(pattern), factors(pattern, 0.25)
         expected = light.cell.covariance(light.line, displacement)
         assert covariance(here, there) == pytest.approx(expected, abs=0.03)
 

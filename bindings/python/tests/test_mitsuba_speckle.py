@@ -114,8 +114,7 @@ def stack_of(number: int = 0, seed: int = 0, image: tuple[int, int] = (WIDTH, HE
         frames=1,
         memory_limit=1 << 30,
     )
-    step = 0x9E3779B97F4A7C15
-    field = speckle.StackPlan(needs).field((seed + (number + 1) * step) % 2**64)
+    field = speckle.StackPlan(needs).field(speckle.derived_seed(seed, "laser", number))
     return speckle.SpeckleStack.generate(field, speckle.SlicePath.still())
 
 
@@ -129,22 +128,22 @@ def pixel_means(stack: Any, width: int = WIDTH, height: int = HEIGHT) -> Array:
 
 @pytest.mark.parametrize("table", ["intensity", "amplitude"])
 @pytest.mark.parametrize(
-    ("properties", "u"),
+    ("properties", "pupil"),
     [
         ({}, 0.0),
-        ({"path": "straight"}, 3.3),
-        ({"path": "straight", "half_period": 16, "length": 4}, -0.5),
-        ({"path": "straight", "half_period": 16, "length": 4}, 7.0),
-        ({"path": "circle", "half_period": 3}, 5.5),
+        ({"path": "straight"}, 0.05),
+        ({"path": "straight", "half_period": 16, "length": 4}, -0.06),
+        ({"path": "straight", "half_period": 16, "length": 4}, 0.9),
+        ({"path": "circle", "half_period": 3}, 0.5),
         ({"pattern_size": 256, "pattern_diameter": 64}, 0.0),
         ({"pattern_diameter": 90, "seed": 7}, 0.0),
     ],
 )
 def test_the_look_up_is_that_of_the_stack(
-    properties: dict[str, Any], u: float, table: str
+    properties: dict[str, Any], pupil: float, table: str
 ) -> None:
     ((pattern,),) = generate(settings(**properties, table=table), [SPECKLE_SIZE], (320, 240), ALIKE)
-    error, expected = errors_of(pattern, u)
+    error, expected = errors_of(pattern, pupil)
     # The spline with 8 nodes per fringe: 1.2e-4 rms, 9e-4 at worst of so many points, by the same
     # comparison in NumPy alone. 16-bit coefficients: 1e-4. Coordinates in single precision: 4 * 1200
     # / 2 * 2**-24 of a node and slopes of 2 pi / 8 of an intensity of 4 per node: 4e-4.
@@ -158,15 +157,15 @@ def test_the_look_up_is_that_of_the_stack(
     assert np.std(expected) > 0.8
 
 
-def errors_of(pattern: Pattern, u: float) -> tuple[Array, Array]:
+def errors_of(pattern: Pattern, pupil: float) -> tuple[Array, Array]:
     """Return the errors of a look-up, and the intensities of the stack, in the image and up to three periods beyond."""
     x, y = np.random.default_rng(1).uniform(-900.0, 1200.0, (2, 20_000)).astype(np.float32)
     shift = (0.3, -0.7)
-    pattern.move_to(Place(u, shift))
+    pattern.move_to(Place(pupil, shift))
     scale = pattern.stack.speckle_size / SPECKLE_SIZE
     got = np.array(pattern.factor(mi.Point2f(x, y)), dtype=np.float64)
     at = scale * (x.astype(np.float64) - shift[0]), -scale * (y.astype(np.float64) - shift[1])
-    expected = pattern.stack.intensity_at(*at, u)
+    expected = pattern.stack.intensity_at(*at, pattern.stack.coordinate_at(pupil))
     return got - expected, expected
 
 
@@ -175,7 +174,7 @@ def test_amplitudes_are_interpolated_as_the_stack_interpolates(interpolation: In
     field = speckle.PupilField(128, 48, 5)
     path = speckle.SlicePath.straight(half_period=8, length=2)
     stack = speckle.SpeckleStack.generate(field, path, speckle.StackOptions(interpolation))
-    error, _ = errors_of(Pattern([Part(1.0, stack, (0.0, 0.0))], SPECKLE_SIZE, "amplitude"), 2.3)
+    error, _ = errors_of(Pattern([Part(1.0, stack, (0.0, 0.0))], SPECKLE_SIZE, "amplitude"), 0.3)
     # Places in single precision may round to the other of two samples: 1e-4 of a sample to either side.
     flipped = 4 * 1e-4 if interpolation == "nearest" else 0.0
     assert np.mean(np.abs(error) > 1.5e-3) <= flipped
@@ -186,7 +185,7 @@ def test_amplitudes_behind_an_asymmetric_pupil_have_its_law() -> None:
     pupil = speckle.Pupil.sampled(speckle.Transmission(np.outer(ramp, ramp)))
     field = speckle.PupilField(128, 64, 5).with_pupil(pupil)
     stack = speckle.SpeckleStack.generate(field, speckle.SlicePath.circle(half_period=3))
-    error, _ = errors_of(Pattern([Part(1.0, stack, (0.0, 0.0))], SPECKLE_SIZE, "amplitude"), 0.5)
+    error, _ = errors_of(Pattern([Part(1.0, stack, (0.0, 0.0))], SPECKLE_SIZE, "amplitude"), 0.2)
     assert np.sqrt(np.mean(error**2)) < 6e-5
 
 
@@ -205,7 +204,7 @@ def test_five_megapixels_fit_the_memory_as_amplitudes() -> None:
     assert np.abs(error).max() < 1.5e-3
 
 
-@pytest.mark.parametrize("motion", [{}, {"path": "straight", "half_period": 8, "u": 1.3}])
+@pytest.mark.parametrize("motion", [{}, {"path": "straight", "half_period": 8, "pupil_shift": 0.16}])
 def test_pictures_of_amplitudes_are_those_of_intensities(motion: dict[str, Any]) -> None:
     of_amplitudes, of_intensities = (
         picture({**DIRECT, **motion, "table": table}) for table in ("amplitude", "intensity")
@@ -221,9 +220,9 @@ def test_motion_compiles_no_kernel_anew(table: str) -> None:
     render(loaded)
     with dr.scoped_set_flag(dr.JitFlag.KernelHistory):
         dr.kernel_history_clear()
-        for u in (1.0, 2.7, -5.5):
-            parameters["integrator.u"] = mi.Float(u)
-            parameters["integrator.shift_x"] = mi.Float(3.0 * u)
+        for step in (0.1, 0.3, -0.7):
+            parameters["integrator.pupil_shift"] = mi.Float(step)
+            parameters["integrator.shift_x"] = mi.Float(20.0 * step)
             parameters.update()
             render(loaded)
         kernels = dr.kernel_history([dr.KernelType.JIT])
@@ -271,23 +270,45 @@ def test_a_shift_moves_the_pattern_right_and_down() -> None:
     assert np.corrcoef(after.ravel(), before.ravel())[0, 1] < 0.9
 
 
-def test_slices_change_the_pattern_by_their_correlation() -> None:
-    wide: Node = {"plate": PLATE, "laser": LASER, "camera": camera(128, 96)}
-    moving = {**DIRECT, "path": "straight", "half_period": 32}
-    loaded = scene(moving, **wide)
-    smooth = picture(plain(), 64, **wide)
-    before = render(loaded, 64) / smooth
-    parameters = mi.traverse(loaded)
-    stack = speckle.SpeckleStack.generate(
-        stack_of(image=(128, 96)).field, speckle.SlicePath.straight(half_period=32, length=2)
+def test_poses_move_and_change_the_pattern_by_the_law_of_motion() -> None:
+    width, height, pixel = 128, 96, 12e-3 / 128
+    # The same lens for both, whose speckle is 4.5 pixels wide.
+    radius = 0.5 * 650e-9 * 0.3 / (SPECKLE_SIZE * pixel)
+    lens = {**camera(width, height), "aperture_radius": radius}
+    wide: Node = {"plate": PLATE, "laser": LASER, "camera": lens}
+    thick = tem00.Camera(
+        focal_length=25e-3,
+        f_number=25e-3 / (2.0 * radius),
+        pixel_pitch=pixel * 25e-3 / (0.3 - 25e-3),
+        resolution=(width, height),
     )
-    parameters["integrator.u"] = mi.Float(8.0)
-    parameters.update()
-    after = render(loaded, 64) / smooth
-    measured = np.corrcoef(before.ravel(), after.ravel())[0, 1]
-    # Of 600 speckles the correlation coefficient has the standard error (1 - r) / sqrt(600) times
-    # 1.5 for exponential intensities: 0.03 with r = 0.5.
-    assert measured == pytest.approx(stack.correlation_between(0, 8), abs=3.3 * 0.03)
+    laser = tem00.Laser.spot(
+        650e-9, 40e-3, origin=[0.1, 0.0, 0.1732], target=[0.0, 0.0, 0.0], focused_at=0.0
+    )
+    # By a pixel to the right, and to the left.
+    there = tem00.Pose.along([pixel, 0.0, 0.0])
+    poses = [there, there.inverse()]
+    moving = tem00.Speckle(thick, laser, 1, poses=poses, memory=16 << 20)
+    loaded = scene({"type": "speckle", "max_depth": 2, "path": "straight", "half_period": 32}, **wide)
+    smooth = picture(plain(), 64, **wide)
+    still = render(loaded, 64) / smooth
+    moved = []
+    for pose in poses:
+        loaded.integrator().move(moving.frame(pose), pose.point([0.0, 0.0, 0.0]), [0.0, 0.0, 1.0])
+        moved.append(render(loaded, 64) / smooth)
+    right, left = moved
+    pupil = pixel / (2.0 * radius)
+    for was, now, shift in (
+        (still[:, :-1], right[:, 1:], pupil),
+        (still[:, 1:], left[:, :-1], pupil),
+        # To two sides of the reference.
+        (right[:, 2:], left[:, :-2], 2.0 * pupil),
+    ):
+        measured = np.corrcoef(was.ravel(), now.ravel())[0, 1]
+        law = tem00.decorrelation.pupil_overlap_correlation(shift)
+        # Of 600 speckles the correlation coefficient has the standard error (1 - r) / sqrt(600) times
+        # 1.5 for exponential intensities: 0.03 with r = 0.5.
+        assert measured == pytest.approx(law, abs=3.3 * 0.03)
 
 
 def test_a_stack_file_is_the_stack_it_holds(tmp_path: Path) -> None:
@@ -517,7 +538,7 @@ def test_a_thin_lens_determines_the_speckle_size() -> None:
         ("path", "spiral"),
         ("half_period", 0),
         ("length", 0),
-        ("u", float("inf")),
+        ("pupil_shift", float("inf")),
         ("shift_x", float("nan")),
         ("shift_y", "far"),
         ("file", "nowhere.t00"),
@@ -615,8 +636,8 @@ def test_a_pinhole_needs_the_speckle_size() -> None:
 def test_a_parameter_that_is_no_number_is_refused() -> None:
     loaded = scene(DIRECT)
     parameters = mi.traverse(loaded)
-    parameters["integrator.u"] = mi.Float(float("nan"))
-    with pytest.raises(Exception, match="u: must be a finite number"):
+    parameters["integrator.pupil_shift"] = mi.Float(float("nan"))
+    with pytest.raises(Exception, match="pupil_shift: must be a finite number"):
         parameters.update()
 
 

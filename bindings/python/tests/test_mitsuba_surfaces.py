@@ -125,12 +125,12 @@ def test_a_mixture_of_all_shapes_but_one() -> None:
 
 def test_shapes_that_move_apart_change_by_their_own_correlation() -> None:
     parts = halves()
-    loaded = scene({**MOVING, "gear:u": 0.0}, **parts)
+    loaded = scene({**MOVING, "gear:pupil_shift": 0.0}, **parts)
     smooth = picture(plain(), 64, **parts)
     before = np.split(render(loaded, 64) / smooth, 2, axis=1)
     parameters = mi.traverse(loaded)
-    parameters["integrator.u"] = mi.Float(8.0)
-    parameters["integrator.gear:u"] = mi.Float(3.0)
+    parameters["integrator.pupil_shift"] = mi.Float(0.25)
+    parameters["integrator.gear:pupil_shift"] = mi.Float(3.0 / 32.0)
     parameters.update()
     after = np.split(render(loaded, 64) / smooth, 2, axis=1)
 
@@ -154,7 +154,7 @@ def test_a_shape_with_a_motion_has_a_pattern_of_its_own_and_the_others_keep_thei
     # The seed of `tem00 render` for what moves apart.
     field = stack_of().field
     assert field.seed is not None
-    own_field = field.with_seed((field.seed + 0xD1B54A32D192ED03) % 2**64)
+    own_field = field.with_seed(speckle.derived_seed(field.seed, "body", 1))
     means = pixel_means(speckle.SpeckleStack.generate(own_field, speckle.SlicePath.still()))
     assert np.corrcoef(right_own.ravel(), np.split(means, 2, axis=1)[1].ravel())[0, 1] > 0.999
 
@@ -162,7 +162,7 @@ def test_a_shape_with_a_motion_has_a_pattern_of_its_own_and_the_others_keep_thei
 def test_shapes_are_numbered_in_the_order_in_which_the_integrator_names_them() -> None:
     props = mi.Properties("speckle")
     # That which only has patterns moves with all others.
-    for name in ("zinc:u", "brass:patterns", "gear:shift_x", "gear:u"):
+    for name in ("zinc:pupil_shift", "brass:patterns", "gear:shift_x", "gear:pupil_shift"):
         props[name] = 1
     surfaces, _ = read_surfaces(props)
     numbers = {surface.prefix: surface.motion for surface in surfaces}
@@ -214,15 +214,15 @@ def test_a_mirror_shows_the_pattern_of_the_shape_in_it() -> None:
 
 @pytest.mark.parametrize("table", ["intensity", "amplitude"])
 def test_the_motion_of_a_shape_compiles_no_kernel_anew(table: str) -> None:
-    own = {"gear:u": 0.0, "gear:shift_x": 0.0, "gear:polarisation": 0.0, "table": table}
+    own = {"gear:pupil_shift": 0.0, "gear:shift_x": 0.0, "gear:polarisation": 0.0, "table": table}
     loaded = scene({**MOVING, **own}, **halves((WIDTH, HEIGHT)))
     parameters = mi.traverse(loaded)
     pictures = [render(loaded)]
     with dr.scoped_set_flag(dr.JitFlag.KernelHistory):
         dr.kernel_history_clear()
-        for u in (1.0, 2.7, -5.5):
-            parameters["integrator.gear:u"] = mi.Float(u)
-            parameters["integrator.gear:shift_x"] = mi.Float(3.0 * u)
+        for step in (0.03, 0.1, -0.2):
+            parameters["integrator.gear:pupil_shift"] = mi.Float(step)
+            parameters["integrator.gear:shift_x"] = mi.Float(100.0 * step)
             parameters.update()
             pictures.append(render(loaded))
         kernels = dr.kernel_history([dr.KernelType.JIT])
@@ -270,7 +270,7 @@ def test_too_many_look_ups_of_amplitudes_are_refused_with_the_memory_of_intensit
         ("polarisation", float("nan")),
         ("gear:patterns", 0),
         ("gear:polarisation", -0.1),
-        ("gear:u", float("inf")),
+        ("gear:pupil_shift", float("inf")),
         ("gear:shift_y", "far"),
         ("gear:sift_y", 1.0),
         ("gear:seed", 3),
@@ -285,23 +285,23 @@ def test_a_refused_property_of_a_shape_is_named(name: str, value: Any) -> None:
 def test_shapes_that_were_merged_are_refused_with_the_way_out() -> None:
     twins = {**halves(), "gear": half(1.0)}
     with pytest.raises((RuntimeError, ParameterError)) as caught:
-        picture({**DIRECT, "gear:u": 1.0}, 1, **twins)
+        picture({**DIRECT, "gear:shift_x": 1.0}, 1, **twins)
     assert "optimize=False" in text_of(caught.value)
-    nodes = {"type": "scene", "integrator": {**DIRECT, "gear:u": 1.0}, **twins}
+    nodes = {"type": "scene", "integrator": {**DIRECT, "gear:shift_x": 1.0}, **twins}
     assert render(mi.load_dict(nodes, optimize=False), 1).mean() > 0.0
 
 
 def test_an_id_that_no_shape_has_is_refused_with_those_that_shapes_have() -> None:
     with pytest.raises((RuntimeError, ParameterError)) as caught:
-        picture({**DIRECT, "wheel:u": 1.0}, 1, **halves())
+        picture({**DIRECT, "wheel:shift_x": 1.0}, 1, **halves())
     assert "wheel: no shape has this id; those that shapes have are base, gear" in text_of(
         caught.value
     )
 
 
 def test_a_motion_of_a_shape_that_is_no_number_is_refused() -> None:
-    loaded = scene({**DIRECT, "gear:u": 0.0}, **halves())
+    loaded = scene({**DIRECT, "gear:pupil_shift": 0.0}, **halves())
     parameters = mi.traverse(loaded)
-    parameters["integrator.gear:u"] = mi.Float(float("nan"))
-    with pytest.raises(Exception, match="gear:u: must be a finite number"):
+    parameters["integrator.gear:pupil_shift"] = mi.Float(float("nan"))
+    with pytest.raises(Exception, match="gear:pupil_shift: must be a finite number"):
         parameters.update()

@@ -19,7 +19,7 @@ from tem00.mitsuba.look_up import (
     nodes_per_sample,
 )
 from tem00.mitsuba.speckle_settings import refused
-from tem00.speckle import SlicePath, SpeckleStack, StackNeeds, StackOptions, StackPlan
+from tem00.speckle import SlicePath, SpeckleStack, StackNeeds, StackOptions, StackPlan, derived_seed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,26 +29,20 @@ if TYPE_CHECKING:
     from tem00.mitsuba.surfaces import Surface
     from tem00.speckle import PupilField
 
-# Steps of Weyl's sequence: they keep the seeds of the lasers apart. The same in `tem00 render`.
-_SEED_STEP = 0x9E37_79B9_7F4A_7C15
-# The same between the surfaces that move apart.
-_MOTION_STEP = 0xD1B5_4A32_D192_ED03
 # Look-ups of amplitudes are written out in the kernel.
 _MOST_LOOK_UPS = 16
 # What the library's arguments are called here.
 _PROPERTIES = {"size": "pattern_size", "diameter": "pattern_diameter", "image": "speckle_size"}
-# The root of x**3 = x + 1: multiples of its powers are far apart (Roberts 2018).
-_PLASTIC = 1.324717957244746
 
 
 class Place(NamedTuple):
     """Place at which the pattern of a laser is looked up.
 
-    ``u`` is the slice coordinate, ``shift`` the motion of the pattern in the image, in pixels, x to
-    the right and y down.
+    ``pupil`` is the motion of the pupil over the speckle, in its diameters, ``shift`` that of the pattern in the
+    image, in pixels, x to the right and y down.
     """
 
-    u: float
+    pupil: float
     shift: tuple[float, float]
 
 
@@ -74,9 +68,10 @@ class Pattern:
 
     def move_to(self, place: Place) -> None:
         """Look the pattern up at another place from now on."""
-        if place.u != self._u:
-            self._tables = self._tables_at(place.u)
-            self._u = place.u
+        u = self.stack.coordinate_at(place.pupil)
+        if u != self._u:
+            self._tables = self._tables_at(u)
+            self._u = u
         scale = self._nodes_per_pixel
         # Read from memory, so that motion compiles nothing anew. Patterns have y up.
         self._scale = mi.Vector2f(scale, -scale)
@@ -149,9 +144,9 @@ def generate(
 
 def _fields(seed: int, plan: StackPlan, laser: int, motions: int) -> list[PupilField]:
     """Return the fields of the laser of this number for each motion, the first that of `tem00 render` in a still scene."""
-    first = seed + (laser + 1) * _SEED_STEP
+    first = derived_seed(seed, "laser", laser)
     try:
-        return [plan.field((first + motion * _MOTION_STEP) % 2**64) for motion in range(motions)]
+        return [plan.field(derived_seed(first, "body", motion)) for motion in range(motions)]
     except ParameterError as error:
         raise _renamed(error) from error
 
@@ -227,7 +222,7 @@ def _places_in(
     counts = _counts([(surface, len(surface.fractions)) for surface in surfaces])
     return [
         [
-            Part(fraction, stack, _place(first + step * (sum(counts[: surface.motion]) + index)))
+            Part(fraction, stack, StackPlan.place(first + step * (sum(counts[: surface.motion]) + index)))
             for index, fraction in enumerate(surface.fractions)
         ]
         for surface in surfaces
@@ -294,10 +289,6 @@ def _read(file: str, memory: int) -> SpeckleStack:
         return SpeckleStack.read_from(str(path), memory_limit=memory)
     except OSError as error:
         raise refused("file", f"{path} cannot be read: {error}") from error
-
-
-def _place(number: int) -> tuple[float, float]:
-    return number / _PLASTIC % 1.0, number / _PLASTIC**2 % 1.0
 
 
 def _table(speckles: list[list[Part]], settings: PatternSettings) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from math import isfinite, radians, tan
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import drjit as dr
 import mitsuba as mi
@@ -26,9 +26,12 @@ from tem00.mitsuba.transport import PathTracer
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from tem00._typing import Vector
     from tem00.mitsuba.linewidth import LineLight
     from tem00.mitsuba.surfaces import Surface
     from tem00.mitsuba.transport import Factor
+    from tem00.shading import SpeckleFrame
+    from tem00._typing import Vector
 
 _ENDLESS = 2**32 - 1
 
@@ -70,6 +73,33 @@ def speckle_class(variant: str) -> type[mi.Integrator]:
             super().parameters_changed(list(keys))
             for surface in self.surfaces:
                 self._place(surface)
+
+        def move(
+            self, frame: SpeckleFrame, point: Vector, normal: Vector, shape: str = ""
+        ) -> None:
+            """Show the speckle of a frame as it has moved at a point of a surface.
+
+            Parameters
+            ----------
+            frame
+                The speckle of the surface in the frame, of a ``tem00.Speckle``.
+            point, normal
+                The point where it is now, in metres, and the unit normal.
+            shape
+                The ``id`` of a shape with a motion of its own; all others without it.
+            """
+            prefix = f"{shape}:" if shape else ""
+            if not any(own.prefix == prefix and bool(own.motion) == bool(shape) for own in self.surfaces):
+                raise refused(shape, f"has no motion of its own: give the integrator a property {prefix}{MOTION[0]}")
+            shift: Any = frame.shift(point, normal)
+            # What has left the pupil is new, however far it has gone.
+            pupil = frame.side * min(shift.pupil, _ENDLESS)
+            places = {
+                prefix + name: mi.Float(float(value))
+                for name, value in zip(MOTION, (pupil, *shift.displacement), strict=True)
+            }
+            self.places = {**places, **self.places}
+            mi.traverse(self).update(places)
 
         def _place(self, surface: Surface) -> Place:
             """Return the place of a surface; what it does not say is that of all others."""

@@ -14,7 +14,7 @@ from tem00.speckle import incoherent_fractions
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-MOTION = ("u", "shift_x", "shift_y")
+MOTION = ("pupil_shift", "shift_x", "shift_y")
 _MIXTURE = ("patterns", "polarisation")
 _RELIEF = ("rms_height", "correlation_length")
 _MOST_PATTERNS = 1024

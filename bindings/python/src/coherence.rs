@@ -4,6 +4,8 @@ mod mixed;
 
 use pyo3::prelude::*;
 
+pub(crate) use self::line::SpectralLine;
+
 /// Speckle in light that is not of one wavelength.
 ///
 /// Directions are arrays of shape (3,) and lead away from the surface. Displacements across the pupil are in pupil

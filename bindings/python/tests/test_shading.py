@@ -369,3 +369,22 @@ def test_the_example_of_the_guide_finds_the_law() -> None:
     assert before.shape == (480, 640)
     # The mean of so many speckles, weighted by the light: 5 mW at an angle of 27°.
     assert abs(before.sum() / after.sum() - 1) < 0.02
+
+
+def test_a_linewidth_lowers_the_contrast_by_the_law_of_a_resolution_cell() -> None:
+    line = SpectralLine(650e-9, 5e-9)
+    laser = tem00.Laser.spot(line, 50e-3, origin=[0, 0, 3], target=TARGET)
+    eye = 0.3 * np.array([0.5, 0.0, np.cos(np.radians(30))])
+    camera = tem00.Camera(position=eye, resolution=[480, 360])
+    frame = tem00.Speckle(camera, laser, 3, at_points=(TARGET, UP), rms_height=2e-6).frame()
+    pixels = 40.0 + 4.3 * np.stack(np.meshgrid(np.arange(64), np.arange(56)), axis=-1)
+    origin, direction = camera.ray(pixels)
+    points = origin - float(origin[2]) / direction[..., 2:] * direction
+    factors = frame.factor(points, UP)
+    sin_aperture = 0.5 * 25e-3 / 8 / 0.3
+    law = ResolutionCell([0, 0, 1], eye, UP, sin_aperture, 650e-9, rms_height=2e-6).contrast(line)
+    assert np.std(factors) / np.mean(factors) == pytest.approx(law, rel=0.06)
+    waves = [frame.factor_in_wave(points[:8, 0], UP, (i + 0.5) / 64) for i in range(64)]
+    assert np.mean(waves, axis=0) == pytest.approx(factors[:8, 0], rel=0.15)
+    with pytest.raises(tem00.ParameterError, match="at_points"):
+        tem00.Speckle(camera, laser, 3)

@@ -3,6 +3,7 @@ from typing import ClassVar, SupportsIndex, final
 import numpy as np
 from numpy.typing import NDArray
 from tem00.beam import Emitter, LineProfile, NextEvent
+from tem00.coherence import SpectralLine
 from tem00.decorrelation import RigidMotion
 from tem00._typing import Counts, FloatArray, Numbers, Values, Vector, Vectors
 
@@ -46,7 +47,7 @@ class Camera:
 class Laser:
     @staticmethod
     def spot(
-        wavelength: float,
+        wavelength: float | SpectralLine,
         waist_radius: Numbers,
         *,
         origin: Vector,
@@ -55,10 +56,11 @@ class Laser:
         power: float = ...,
         focused_at: float | None = None,
         m_squared: float = ...,
+        source_half_angle: float = ...,
     ) -> Laser: ...
     @staticmethod
     def line(
-        wavelength: float,
+        wavelength: float | SpectralLine,
         thickness: float,
         fan_angle: float,
         *,
@@ -69,6 +71,7 @@ class Laser:
         power: float = ...,
         focused_at: float | None = None,
         m_squared: float = ...,
+        source_half_angle: float = ...,
     ) -> Laser: ...
     def next_event(self, points: Vectors) -> NextEvent: ...
     @property
@@ -96,6 +99,8 @@ class Speckle:
         memory: SupportsIndex | None = None,
         looks: SupportsIndex | None = None,
         polarisation: float = ...,
+        rms_height: float = ...,
+        correlation_length: float = ...,
     ) -> Speckle: ...
     def frame(
         self,
@@ -114,6 +119,7 @@ class Speckle:
 class SpeckleFrame:
     def factor(self, points: Vectors, normals: Vectors) -> Values: ...
     def factor_at(self, pixels: Vectors, points: Vectors, normals: Vectors) -> Values: ...
+    def factor_in_wave(self, points: Vectors, normals: Vectors, wave: Numbers) -> Values: ...
     def average(self, points: Vectors, normals: Vectors) -> Values: ...
     def amplitude(self, points: Vectors, normals: Vectors) -> complex | NDArray[np.complex128]: ...
     def shift(self, points: Vectors, normals: Vectors) -> SpeckleShift: ...

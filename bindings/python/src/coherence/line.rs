@@ -16,7 +16,7 @@ use crate::{
 ///     Full width at half maximum in metres, at most a tenth of the wavelength; 0 for light of one wavelength.
 #[pyclass(frozen, eq, module = "tem00.coherence")]
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct SpectralLine(pub(super) physics::SpectralLine);
+pub(crate) struct SpectralLine(pub(crate) physics::SpectralLine);
 
 #[pymethods]
 impl SpectralLine {

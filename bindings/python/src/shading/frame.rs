@@ -4,7 +4,7 @@ use tem00_shading::{self as physics, DVec2, DVec3, Motion};
 
 use super::arguments::{any, vectors};
 use crate::{
-    arrays::{Column, Values, Vectors, evaluate},
+    arrays::{Column, Numbers, Values, Vectors, evaluate},
     beam::records::record,
     decorrelation::RigidMotion,
 };
@@ -97,6 +97,38 @@ impl SpeckleFrame {
             for (i, out) in out.iter_mut().enumerate() {
                 let pixel = DVec2::new(x[i], y[i]);
                 *out = self.frame.factor_at(pixel, points[i], normals[i]);
+            }
+        })?;
+        Ok(factors)
+    }
+
+    /// Return the factors in light of one wave number of the laser's line each, for a renderer that draws one for each of
+    /// its samples; ``factor`` is their mean over the line.
+    ///
+    /// Parameters
+    /// ----------
+    /// points, normals : array_like, shape (..., 3)
+    ///     As for ``factor``.
+    /// wave : array_like, shape (...)
+    ///     Quantiles of the wave numbers in the line, from 0 to 1.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Factors, in the common shape.
+    fn factor_in_wave<'py>(
+        &self,
+        py: Python<'py>,
+        points: Vectors<'py>,
+        normals: Vectors<'py>,
+        wave: Numbers<'py>,
+    ) -> PyResult<Values<'py>> {
+        let ([a, b, c], [d, e, f]) = (any("points", &points)?, any("normals", &normals)?);
+        let columns = [a, b, c, d, e, f, Column::new(("wave", &wave), 1.0)?];
+        let [factors] = evaluate(py, columns, [&[]], |[a, b, c, d, e, f, wave], [out]| {
+            let (points, normals) = (vectors([a, b, c]), vectors([d, e, f]));
+            for (i, out) in out.iter_mut().enumerate() {
+                *out = self.frame.factor_in_wave(points[i], normals[i], wave[i]);
             }
         })?;
         Ok(factors)

@@ -1,14 +1,38 @@
 use pyo3::prelude::*;
+use tem00_coherence::{SourceExtent, SpectralLine as Line};
 use tem00_shading::{self as physics, DVec3, LaserBuilder};
 
 use super::arguments::vector;
 use crate::{
     arrays::{Column, Components, Numbers, Vectors, wavelength_of_light},
     beam::{Emitter, LineProfile, NextEvent, light_of},
-    error::{IntoPython, refused},
+    coherence::SpectralLine,
+    error::{IntoPython, OrRaise, refused},
 };
 
-/// A laser in the scene: a spot or a line, placed, with its power, in light of one wavelength.
+/// A wavelength, or a whole spectrum.
+#[derive(FromPyObject)]
+enum Spectrum<'py> {
+    Line(PyRef<'py, SpectralLine>),
+    One(f64),
+}
+
+impl Spectrum<'_> {
+    fn line(&self) -> PyResult<Line> {
+        match self {
+            Self::Line(line) => Ok(line.0.clone()),
+            Self::One(wavelength) => {
+                Line::monochromatic(wavelength_of_light("wavelength", *wavelength)?).or_raise()
+            }
+        }
+    }
+}
+
+fn disc(source_half_angle: f64) -> PyResult<SourceExtent> {
+    SourceExtent::disc(source_half_angle).or_raise()
+}
+
+/// A laser in the scene: a spot or a line, placed, with its power and the spectrum of its light.
 ///
 /// Made by ``spot`` or ``line``.
 #[pyclass(frozen, eq, module = "tem00.shading")]
@@ -21,8 +45,8 @@ impl Laser {
     ///
     /// Parameters
     /// ----------
-    /// wavelength : float
-    ///     Vacuum wavelength, in metres.
+    /// wavelength : float or SpectralLine
+    ///     Vacuum wavelength, in metres, or the spectrum of the light.
     /// waist_radius : float or array_like, shape (2,)
     ///     Waist radius, in metres: of an elliptic spot that along ``line_direction`` and that across it.
     /// origin : array_like, shape (3,)
@@ -37,14 +61,16 @@ impl Laser {
     ///     Distance of the waist from the aperture, in metres, negative behind it; that of the target if left out.
     /// m_squared : float, optional
     ///     Beam quality factor M².
+    /// source_half_angle : float, optional
+    ///     Half angle of the disc as which a surface sees the source, in radians; 0 for a point. It acts on speckle only.
     #[staticmethod]
     #[pyo3(signature = (
         wavelength, waist_radius, *, origin, target, line_direction = None, power = 1e-3,
-        focused_at = None, m_squared = 1.0,
+        focused_at = None, m_squared = 1.0, source_half_angle = 0.0,
     ))]
     #[expect(clippy::too_many_arguments, reason = "most go by their names")]
     fn spot(
-        wavelength: f64,
+        wavelength: Spectrum<'_>,
         waist_radius: Numbers<'_>,
         origin: Components<'_>,
         target: Components<'_>,
@@ -52,14 +78,16 @@ impl Laser {
         power: f64,
         focused_at: Option<f64>,
         m_squared: f64,
+        source_half_angle: f64,
     ) -> PyResult<Self> {
         let radii = match waist_radius {
             Numbers::One(radius) => [radius; 2],
             radii => radii.vector("waist_radius")?,
         };
-        let wavelength = wavelength_of_light("wavelength", wavelength)?;
-        let builder = physics::Laser::spot(wavelength, radii[0]).waist_radii(radii);
-        let builder = builder.power(power).m_squared(m_squared);
+        let spectrum = wavelength.line()?;
+        let builder = physics::Laser::spot(spectrum.wavelength(), radii[0]).waist_radii(radii);
+        let builder = builder.power(power).m_squared(m_squared).spectrum(spectrum);
+        let builder = builder.source_extent(disc(source_half_angle)?);
         Self::placed(builder, [origin, target], line_direction, focused_at, &[])
     }
 
@@ -67,8 +95,8 @@ impl Laser {
     ///
     /// Parameters
     /// ----------
-    /// wavelength : float
-    ///     Vacuum wavelength, in metres.
+    /// wavelength : float or SpectralLine
+    ///     Vacuum wavelength, in metres, or the spectrum of the light.
     /// thickness : float
     ///     Thickness in focus (1/e², full width), in metres.
     /// fan_angle : float
@@ -87,14 +115,16 @@ impl Laser {
     ///     Distance along the axis at which the line is thinnest, in metres; that of the target if left out.
     /// m_squared : float, optional
     ///     Beam quality factor M² across the line.
+    /// source_half_angle : float, optional
+    ///     Half angle of the disc as which a surface sees the source, in radians; 0 for a point. It acts on speckle only.
     #[staticmethod]
     #[pyo3(signature = (
         wavelength, thickness, fan_angle, *, origin, target, line_direction = None, profile = None,
-        power = 1e-3, focused_at = None, m_squared = 1.0,
+        power = 1e-3, focused_at = None, m_squared = 1.0, source_half_angle = 0.0,
     ))]
     #[expect(clippy::too_many_arguments, reason = "most go by their names")]
     fn line(
-        wavelength: f64,
+        wavelength: Spectrum<'_>,
         thickness: f64,
         fan_angle: f64,
         origin: Components<'_>,
@@ -104,10 +134,12 @@ impl Laser {
         power: f64,
         focused_at: Option<f64>,
         m_squared: f64,
+        source_half_angle: f64,
     ) -> PyResult<Self> {
-        let wavelength = wavelength_of_light("wavelength", wavelength)?;
-        let mut builder = physics::Laser::line(wavelength, thickness, fan_angle);
-        builder = builder.power(power).m_squared(m_squared);
+        let spectrum = wavelength.line()?;
+        let mut builder = physics::Laser::line(spectrum.wavelength(), thickness, fan_angle);
+        builder = builder.power(power).m_squared(m_squared).spectrum(spectrum);
+        builder = builder.source_extent(disc(source_half_angle)?);
         if let Some(profile) = profile {
             builder = builder.profile(profile.0.clone());
         }

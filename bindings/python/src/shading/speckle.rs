@@ -1,4 +1,5 @@
 use pyo3::prelude::*;
+use tem00_coherence::Relief;
 use tem00_shading::{self as physics, Motion, Pose};
 
 use super::{
@@ -31,13 +32,17 @@ use crate::{
 ///     bodies that move, those of one after those of another.
 /// at_points : (array_like, array_like), shape (..., 3) each, optional
 ///     Points of surfaces in the reference state, and their unit normals: there the largest shift of the speckle is
-///     looked for. Without them it is where the light of the laser crosses the plane in focus.
+///     looked for. Without them it is where the light of the laser crosses the plane in focus. A laser with a linewidth
+///     or an extent needs them.
 /// memory : int, optional
 ///     Bytes that the patterns may take; 256 MiB if left out.
 /// looks : int, optional
 ///     Number of equal independent patterns that add up, which lowers the contrast to 1/√looks; 1 if left out.
 /// polarisation : float, optional
 ///     Degree of polarisation of the light at the sensor, from 0 to 1: 1 behind a polariser.
+/// rms_height, correlation_length : float, optional
+///     Root mean square height of the relief that is finer than a resolution cell, and the distance at which the
+///     correlation of the heights falls to 1/e, in metres: they count in light that has a linewidth.
 #[pyclass(frozen, module = "tem00.shading")]
 #[derive(Clone, Debug)]
 pub(crate) struct Speckle(physics::PreparedSpeckle);
@@ -47,7 +52,8 @@ impl Speckle {
     #[new]
     #[pyo3(signature = (
         camera, laser, seed, *, poses = None, camera_poses = None, laser_poses = None,
-        at_points = None, memory = None, looks = None, polarisation = 1.0,
+        at_points = None, memory = None, looks = None, polarisation = 1.0, rms_height = 0.0,
+        correlation_length = 0.0,
     ))]
     #[expect(clippy::too_many_arguments, reason = "most go by their names")]
     fn new(
@@ -62,10 +68,16 @@ impl Speckle {
         memory: Option<Whole<'_>>,
         looks: Option<Whole<'_>>,
         polarisation: f64,
+        rms_height: f64,
+        correlation_length: f64,
     ) -> PyResult<Self> {
         let mut speckle = physics::Speckle::new(&camera.0, &laser.0, seed.unsigned("seed")?)
             .for_motions(motions([poses, camera_poses, laser_poses])?)
-            .polarisation(polarisation);
+            .polarisation(polarisation)
+            .relief(Relief {
+                rms_height,
+                correlation_length,
+            });
         if let Some([points, normals]) = at_points {
             let ([a, b, c], [d, e, f]) = (any("at_points", &points)?, any("at_points", &normals)?);
             let mut pairs = Vec::new();

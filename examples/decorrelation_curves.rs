@@ -7,8 +7,8 @@
 //!
 //! Compares the correlation of intensity after a pupil displacement, after an axial displacement,
 //! and after both: what looking the pattern up at the slice of Bergmann et al. 2016 gives, as
-//! printed; the product of both laws; and the integral over the pupil, with the first state in focus
-//! or the defocus followed to the peak.
+//! printed; and the integral over the pupil, with the first state in focus or the defocus followed to
+//! the peak.
 
 #![expect(clippy::print_stdout, reason = "an example prints its answer")]
 
@@ -18,9 +18,7 @@ use std::{error::Error, io};
 
 use kuva::prelude::{LinePlot, Plot};
 use tem00::{
-    decorrelation::{
-        CorrelationLaw, axial_correlation, correlation, motion_multiple, pupil_overlap_correlation,
-    },
+    decorrelation::{CorrelationLaw, axial_correlation, pupil_overlap_correlation},
     numerics::circular_path_overlap,
 };
 
@@ -48,7 +46,7 @@ fn slanted(law: CorrelationLaw) -> impl Fn(f64) -> f64 {
 
 fn table() {
     use CorrelationLaw::{AtImageDisplacement, AtPeak};
-    println!("   s   |   x   | printed | product | first in focus | peak");
+    println!("   s   |   x   | printed | first in focus | peak");
     for (s, x) in [
         (0.1, 0.0),
         (0.25, 0.0),
@@ -60,13 +58,13 @@ fn table() {
         (0.26, 0.66),
     ] {
         let [focus, peak] = [AtImageDisplacement, AtPeak].map(|law| law.correlation(s, x));
-        let (paper, product) = (printed(s, x), correlation(s, x));
-        println!(" {s:5.2} | {x:5.2} |{paper:8.4} |{product:8.4} |{focus:15.4} |{peak:8.4}");
+        let paper = printed(s, x);
+        println!(" {s:5.2} | {x:5.2} |{paper:8.4} |{focus:15.4} |{peak:8.4}");
     }
 }
 
 fn plots() -> io::Result<()> {
-    use CorrelationLaw::{AtImageDisplacement, AtPeak, Product};
+    use CorrelationLaw::{AtImageDisplacement, AtPeak};
     let shift = vec![
         curve("correct", "steelblue", 1.2, pupil_overlap_correlation),
         curve("as printed", "crimson", 1.2, |s| printed(s, 0.0)),
@@ -76,7 +74,6 @@ fn plots() -> io::Result<()> {
         curve("as printed", "crimson", 2.5, |x| printed(0.0, x)),
     ];
     let both = vec![
-        curve("product", "steelblue", 1.5, slanted(Product)),
         curve(
             "first in focus",
             "darkorange",
@@ -116,11 +113,6 @@ fn plots() -> io::Result<()> {
 fn main() -> Result<(), Box<dyn Error>> {
     println!("Correlation left by s pupil diameters and x axial decorrelation lengths 8λ(L/D)²");
     table();
-    let half = motion_multiple(0.5, 0.4, 1.0)?.ok_or("the motion leaves the pattern as it is")?;
-    println!(
-        "half is left after s = {:.3}, x = {half:.3} on the way to (0.4, 1)",
-        0.4 * half
-    );
     plots()?;
     Ok(())
 }

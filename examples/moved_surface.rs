@@ -7,8 +7,8 @@
 #![expect(clippy::print_stdout, reason = "an example prints its answer")]
 
 use tem00::decorrelation::{
-    CameraFrame, DVec2, DVec3, ImageOrientation, ImagingGeometry, LensData, LineOfSight, Motion,
-    SpeckleMotion, SurfacePoint, Wavefront,
+    CameraFrame, Configuration, ConfigurationData, DVec2, DVec3, Illumination, ImagingGeometry,
+    LensData, RigidMotion, RigidMotions, SpeckleMotion, Wavefront,
 };
 use tem00::numerics::circular_path_overlap;
 use tem00_paper as paper;
@@ -26,7 +26,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (laser, laser_distance) = (DVec3::new(-0.5, 0.0, 0.866), 0.2);
     // The waist of the line lies on the surface: its wavefront is curved along the fan only.
     let line = Wavefront::astigmatic(laser, DVec3::Y, 1.0 / laser_distance, 0.0)?;
-    let point = SurfacePoint::new(LineOfSight::new(&camera, eye)?, DVec3::Z, line)?;
+    let before = Configuration::new(ConfigurationData {
+        wavelength: geometry.wavelength(),
+        point: DVec3::ZERO,
+        normal: DVec3::Z,
+        illumination: Illumination::near(DVec3::ZERO, line)?,
+        camera,
+        pupil: eye,
+    })?;
     let (axes, angles) =
         paper::EulerAngles::between(&camera, DVec3::Z).ok_or("a normal of unit length")?;
     let emitter = paper::Emitter {
@@ -36,15 +43,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     println!("The surface moves by 0.25 mm");
     for (name, direction) in [("x", DVec3::X), ("y", DVec3::Y), ("z", DVec3::Z)] {
-        let motion = Motion {
-            surface: direction * 0.25e-3,
-            ..Motion::default()
-        };
-        let upright = ImageOrientation::ScreenUpright;
-        let ours = SpeckleMotion::new(&geometry, &point, &motion, upright);
-        let pixels = ours.image_displacement / geometry.pixel_pitch();
+        let displacement = direction * 0.25e-3;
+        let after = before.moved(&RigidMotions {
+            surface: RigidMotion::along(displacement)?,
+            ..RigidMotions::default()
+        })?;
+        let ours = SpeckleMotion::between(&geometry, &before, &after);
+        let pixels = ours.speckle_displacement() / geometry.pixel_pitch();
 
-        let a = axes.transpose() * motion.surface;
+        let a = axes.transpose() * displacement;
         let sensor = paper::image_displacement(geometry.magnification(), angles, a);
         let pupil = paper::pupil_displacement(angles, emitter, geometry.surface_to_pupil(), a);
         let pupil = pupil.unwrap_or(DVec2::ZERO);

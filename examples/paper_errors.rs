@@ -16,8 +16,8 @@ use std::{error::Error, ops::RangeInclusive};
 use kuva::prelude::{LinePlot, Plot};
 use tem00::{
     decorrelation::{
-        CameraFrame, DVec2, DVec3, ImageOrientation, ImagingGeometry, LensData, LineOfSight,
-        Motion, SurfacePoint, Wavefront, axial_correlation, pupil_overlap_correlation,
+        CameraFrame, Configuration, ConfigurationData, CorrelationLaw, DVec2, DVec3, Illumination,
+        ImagingGeometry, LensData, RigidMotion, RigidMotions, SpeckleMotion, Wavefront,
     },
     numerics::circular_path_overlap,
 };
@@ -39,17 +39,33 @@ fn row(name: &str, range: RangeInclusive<f64>, x: &str, pair: impl Fn(f64) -> Op
     }
 }
 
-/// A surface under a camera with the axis (sin q1, 0, cos q1), seen along `sight`.
-fn point(q1: f64, sight: DVec3, light: Wavefront) -> Option<SurfacePoint> {
+/// A surface under a camera with the axis (sin q1, 0, cos q1), seen along `sight`, that moves by 1 µm
+/// along `a`: what its speckle moves by in the image and in the pupil, in micrometres along x.
+fn moved(
+    geometry: &ImagingGeometry,
+    q1: f64,
+    sight: DVec3,
+    curvature: f64,
+    a: DVec3,
+) -> Option<[f64; 2]> {
+    const MICROMETRE: f64 = 1e-6;
     let camera = CameraFrame::look_at(DVec3::new(q1.sin(), 0.0, q1.cos()), DVec3::ZERO, DVec3::Y);
-    let sight = LineOfSight::new(&camera.ok()?, sight * DISTANCE);
-    SurfacePoint::new(sight.ok()?, DVec3::Z, light).ok()
-}
-
-/// A motion of the surface by one metre: all is linear in it.
-fn along(surface: DVec3) -> Motion {
-    let still = Motion::default();
-    Motion { surface, ..still }
+    let light = Wavefront::spherical(DVec3::Z, curvature).ok()?;
+    let before = Configuration::new(ConfigurationData {
+        wavelength: geometry.wavelength(),
+        point: DVec3::ZERO,
+        normal: DVec3::Z,
+        illumination: Illumination::near(DVec3::ZERO, light).ok()?,
+        camera: camera.ok()?,
+        pupil: sight * DISTANCE,
+    })
+    .ok()?;
+    let surface = RigidMotion::along(a * MICROMETRE).ok()?;
+    let still = RigidMotions::default();
+    let after = before.moved(&RigidMotions { surface, ..still }).ok()?;
+    let speckle = SpeckleMotion::between(geometry, &before, &after);
+    let both = [speckle.image_displacement, speckle.pupil_displacement?];
+    Some(both.map(|displacement| displacement.x / MICROMETRE))
 }
 
 /// What §6.4 prints for the displacement in the pupil, along x, in light from above.
@@ -68,30 +84,23 @@ fn displacements(geometry: &ImagingGeometry) {
     row("eq. (5): a_I / (m a_z)", 0.0..=60.0, "q1 / °", |q1| {
         let q1 = q1.to_radians();
         let seen = DVec3::new(q1.sin(), 0.0, q1.cos());
-        let seen = point(q1, seen, Wavefront::plane(DVec3::Z).ok()?)?;
-        let sensor = ImageOrientation::SensorInverted;
-        let correct = seen.image_displacement(geometry, &along(DVec3::Z), sensor);
+        let [correct, _] = moved(geometry, q1, seen, 0.0, DVec3::Z)?;
         let printed = paper::image_displacement(m, EulerAngles { q1, q2: 0.0 }, DVec3::Z);
-        Some([printed.x / m, correct.x / m])
+        // On the sensor, upside down.
+        Some([printed.x / m, -correct / m])
     });
     let name = "a_P^S off axis: a_P / a_z";
     row(name, 0.0..=0.5, "tan of sight line", |slope| {
         let sight = DVec3::new(slope, 0.0, 1.0);
-        let seen = point(0.0, sight, Wavefront::plane(DVec3::Z).ok()?)?;
-        let correct = seen.pupil_displacement(&along(DVec3::Z))?;
-        Some([printed_in_pupil(f64::INFINITY, DVec3::Z)?, correct.x])
+        let [_, correct] = moved(geometry, 0.0, sight, 0.0, DVec3::Z)?;
+        Some([printed_in_pupil(f64::INFINITY, DVec3::Z)?, correct])
     });
     // A helium–neon laser with a waist of 0.1 mm, its emitter 0.5 m from the surface.
     let name = "d_SL of a beam: a_P / a_x";
     row(name, -0.2..=0.2, "metres past the waist", |z| {
         let curvature = z / (z * z + 49.65e-3_f64.powi(2));
-        let seen = point(
-            0.0,
-            DVec3::Z,
-            Wavefront::spherical(DVec3::Z, curvature).ok()?,
-        )?;
-        let correct = seen.pupil_displacement(&along(DVec3::X))?;
-        Some([printed_in_pupil(0.5, DVec3::X)?, correct.x])
+        let [_, correct] = moved(geometry, 0.0, DVec3::Z, curvature, DVec3::X)?;
+        Some([printed_in_pupil(0.5, DVec3::X)?, correct])
     });
     row("camera moved with speckle", 0.0..=1.0, "a_P^C", |a| {
         let a = DVec2::new(a, 0.0);
@@ -111,7 +120,7 @@ fn left(geometry: &ImagingGeometry, s: f64, d_z: f64) -> [f64; 2] {
     let shift = DVec2::new(s * geometry.pupil_diameter(), 0.0);
     let printed_axial = d_z * paper::axial_decorrelation_length(geometry);
     let u = paper::slice_coordinate(geometry, shift, printed_axial, 1);
-    let correct = pupil_overlap_correlation(s) * axial_correlation(0.5 * d_z);
+    let correct = CorrelationLaw::AtPeak.correlation(s, 0.5 * d_z);
     [circular_path_overlap(u).powi(2), correct]
 }
 

@@ -224,10 +224,8 @@ fn every_type_of_decorrelation_crosses_threads() {
     use tem00::decorrelation::*;
     let names = names_of_shared! {
         CameraFrame, ChangedPoint, Configuration, ConfigurationData, CorrelationLaw, DMat3, DVec2, DVec3,
-        DecorrelationError, FieldLight<'static>, FieldPoints<'static>, FieldSetup,
-        FieldSlices<'static>, Focus, Illumination, ImageOrientation, ImagingGeometry,
-        LensData, LineOfSight, Motion, MotionField, PointChange, PupilDistances, RigidChange, RigidMotion,
-        RigidMotions, SpeckleMotion, SurfacePoint, ThickLensData, Wavefront,
+        DecorrelationError, Focus, Illumination, ImagingGeometry, LensData, LineOfSight, PointChange,
+        PupilDistances, RigidChange, RigidMotion, RigidMotions, SpeckleMotion, ThickLensData, Wavefront,
     };
     let listed: BTreeSet<_> = names.collect();
     assert_eq!(
@@ -285,10 +283,7 @@ fn vectors_of_other_libraries_pass_through_mint() {
         direction: theirs.into(),
         fan_axis: beam::DVec3::Z,
     };
-    let motion = decorrelation::Motion {
-        surface: theirs.into(),
-        ..decorrelation::Motion::default()
-    };
-    let back: [mint::Vector3<f64>; 2] = [placement.origin.into(), motion.surface.into()];
+    let motion = decorrelation::RigidMotion::along(theirs.into()).expect("a translation");
+    let back: [mint::Vector3<f64>; 2] = [placement.origin.into(), motion.translation().into()];
     assert_eq!(back, [theirs; 2], "there and back");
 }

@@ -1,4 +1,4 @@
-//! A stack of speckle patterns shows the correlations that a field of motions states.
+//! A stack of speckle patterns shows the correlations that the law of motion states.
 
 #![expect(
     clippy::expect_used,
@@ -7,8 +7,8 @@
 
 use tem00::{
     decorrelation::{
-        CameraFrame, DVec3, FieldLight, FieldPoints, FieldSetup, FieldSlices, ImageOrientation,
-        ImagingGeometry, LensData, MotionField,
+        CameraFrame, Configuration, ConfigurationData, DVec3, Illumination, ImagingGeometry,
+        LensData, RigidMotion, RigidMotions, SpeckleMotion,
     },
     numerics::{Grid, cast::to_f32},
     speckle::{PupilField, SlicePath, SpeckleStack},
@@ -36,46 +36,37 @@ fn standard_error() -> f64 {
     0.585_f64.sqrt() / DIAMETER as f64
 }
 
-/// The correlations that a field states after motions of one point across the line of sight.
+/// The correlations that the law states after motions of one point across the line of sight.
 fn correlations_of_motions<const N: usize>(motions: [f64; N]) -> [f64; N] {
-    let pupil_centre = DVec3::new(0.0, 0.0, 0.3);
-    let field = MotionField::new(FieldSetup {
-        geometry: ImagingGeometry::from_lens(LensData {
-            wavelength: 650e-9,
-            focal_length: 25e-3,
-            f_number: 8.0,
-            surface_to_pupil: 0.3,
-            pixel_pitch: 3.45e-6,
-        })
-        .expect("a valid lens"),
-        camera: CameraFrame::look_at(pupil_centre, DVec3::ZERO, DVec3::Y).expect("a valid view"),
-        pupil_centre,
-        orientation: ImageOrientation::ScreenUpright,
-        pattern_speckle_size: (SIZE / DIAMETER) as f64,
+    let pupil = DVec3::new(0.0, 0.0, 0.3);
+    let geometry = ImagingGeometry::from_lens(LensData {
+        wavelength: 650e-9,
+        focal_length: 25e-3,
+        f_number: 8.0,
+        surface_to_pupil: 0.3,
+        pixel_pitch: 3.45e-6,
     })
-    .expect("a valid field");
-    let (zero, one) = ([0.0; N], [1.0; N]);
-    let mut results = [[0.0; N]; 7];
-    let [a, b, c, d, correlation, e, f] = &mut results;
-    field.evaluate(
-        &FieldPoints {
-            position: [&zero; 3],
-            normal: [&zero, &zero, &one],
-            motion: [&motions, &zero, &zero],
-            light: FieldLight::Collimated,
-        },
-        FieldSlices {
-            speckle_displacement: [a, b],
-            pupil_displacement: [c, d],
-            correlation,
-            pattern_coordinate: [e, f],
-        },
-    );
-    results[4]
+    .expect("a valid lens");
+    let before = Configuration::new(ConfigurationData {
+        wavelength: 650e-9,
+        point: DVec3::ZERO,
+        normal: DVec3::Z,
+        illumination: Illumination::collimated(DVec3::Z).expect("a direction"),
+        camera: CameraFrame::look_at(pupil, DVec3::ZERO, DVec3::Y).expect("a valid view"),
+        pupil,
+    })
+    .expect("a visible point");
+    motions.map(|x| {
+        let after = before.moved(&RigidMotions {
+            surface: RigidMotion::along(DVec3::X * x).expect("a translation"),
+            ..RigidMotions::default()
+        });
+        SpeckleMotion::between(&geometry, &before, &after.expect("a visible point")).correlation
+    })
 }
 
 #[test]
-fn a_stack_shows_the_correlations_that_a_field_states() {
+fn a_stack_shows_the_correlations_that_the_law_states() {
     const PATTERNS: u64 = 4;
     // Up to two thirds of a pupil of 3.125 mm.
     let stated = correlations_of_motions([0.2e-3, 0.5e-3, 0.9e-3, 2.1e-3]);

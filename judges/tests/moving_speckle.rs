@@ -11,8 +11,8 @@ use std::{path::Path, sync::atomic::AtomicBool};
 use glam::{DVec2, DVec3};
 use tem00::{
     decorrelation::{
-        CameraFrame, ImageOrientation, ImagingGeometry, LensData, LineOfSight, Motion,
-        SpeckleMotion, SurfacePoint, Wavefront, axial_correlation, pupil_overlap_correlation,
+        CameraFrame, Configuration, ConfigurationData, Illumination, ImagingGeometry, LensData,
+        RigidMotion, RigidMotions, SpeckleMotion, axial_correlation, pupil_overlap_correlation,
     },
     numerics::{Grid, circular_path_overlap},
     scene::parse_scene,
@@ -32,16 +32,21 @@ const LENS: LensData = LensData {
 /// The motion of the speckle of a plate under a waist of a beam, seen head-on.
 fn speckle_motion(surface: DVec3) -> SpeckleMotion {
     let eye = DVec3::new(0.0, 0.0, LENS.surface_to_pupil);
-    let camera = CameraFrame::look_at(eye, DVec3::ZERO, DVec3::Y).expect("a camera");
-    let sight = LineOfSight::new(&camera, eye).expect("a visible point");
-    let wavefront = Wavefront::plane(DVec3::Z).expect("a direction");
-    let point = SurfacePoint::new(sight, DVec3::Z, wavefront).expect("a normal");
-    let motion = Motion {
-        surface,
-        ..Motion::default()
-    };
+    let before = Configuration::new(ConfigurationData {
+        wavelength: LENS.wavelength,
+        point: DVec3::ZERO,
+        normal: DVec3::Z,
+        illumination: Illumination::collimated(DVec3::Z).expect("a direction"),
+        camera: CameraFrame::look_at(eye, DVec3::ZERO, DVec3::Y).expect("a camera"),
+        pupil: eye,
+    });
+    let before = before.expect("a visible point");
+    let after = before.moved(&RigidMotions {
+        surface: RigidMotion::along(surface).expect("a translation"),
+        ..RigidMotions::default()
+    });
     let geometry = ImagingGeometry::from_lens(LENS).expect("a lens");
-    SpeckleMotion::new(&geometry, &point, &motion, ImageOrientation::ScreenUpright)
+    SpeckleMotion::between(&geometry, &before, &after.expect("a visible point"))
 }
 
 #[test]

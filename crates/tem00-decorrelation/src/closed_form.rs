@@ -1,7 +1,6 @@
 //! The law of speckle motion as source text for kernels.
 //!
-//! A kernel on a GPU cannot call this crate. It copies the rows of a
-//! [`MotionField`](crate::MotionField::to_rows) and evaluates the law itself.
+//! A kernel on a GPU cannot call this crate: it evaluates the law itself.
 //!
 //! # Examples
 //!

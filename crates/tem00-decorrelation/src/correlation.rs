@@ -5,7 +5,7 @@ mod joint;
 mod tests;
 
 pub use axial_loss::add_axial_shifts;
-pub use inverse::{equivalent_axial_shift, equivalent_pupil_shift, motion_multiple};
+pub use inverse::{equivalent_axial_shift, equivalent_pupil_shift};
 pub use joint::CorrelationLaw;
 
 use tem00_numerics::{disc_overlap, sinc_pi_squared};
@@ -70,31 +70,4 @@ pub fn pupil_overlap_correlation(shift: f64) -> f64 {
 #[inline]
 pub fn axial_correlation(shift: f64) -> f64 {
     sinc_pi_squared(shift)
-}
-
-/// Returns the intensity correlation left after a pupil displacement and an axial displacement
-/// together, as the product of [`pupil_overlap_correlation`] and [`axial_correlation`].
-///
-/// `pupil_shift` is in units of the pupil diameter, `axial_shift` in units of the axial
-/// decorrelation length.
-///
-/// # Validity
-///
-/// The product is exact where one of the two is zero. In between it deviates by at most 0.048 from
-/// the overlap integral of the defocused pupil taken at the displacement of the projected surface
-/// point, and by at most 0.121 from the peak of the cross-correlation, which defocus moves
-/// elsewhere. It takes ten nanoseconds where [`CorrelationLaw`] takes up to a microsecond for the
-/// integrals.
-///
-/// # Examples
-///
-/// ```
-/// use tem00_decorrelation::{axial_correlation, correlation, pupil_overlap_correlation};
-///
-/// let product = pupil_overlap_correlation(0.2) * axial_correlation(0.3);
-/// assert_eq!(correlation(0.2, 0.3), product);
-/// ```
-#[inline]
-pub fn correlation(pupil_shift: f64, axial_shift: f64) -> f64 {
-    pupil_overlap_correlation(pupil_shift) * axial_correlation(axial_shift)
 }

@@ -1,4 +1,4 @@
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DMat3, DVec3};
 
 use crate::{DecorrelationError, GRAZING_COSINE};
 
@@ -197,23 +197,6 @@ impl LineOfSight {
     /// Returns the depth `Z = d (l·b3)` of the surface point before the pupil plane, in metres.
     pub fn depth(&self) -> f64 {
         self.distance * self.axis_cosine()
-    }
-
-    /// Projects a vector along the line of sight onto the pupil plane and returns its components
-    /// along b1 and b2, in the unit of the vector.
-    ///
-    /// ```text
-    /// Π v = v − l (v·b3) / (l·b3)
-    /// ```
-    ///
-    /// What moves along the line of sight does not seem to move at all.
-    pub fn project(&self, vector: DVec3) -> DVec2 {
-        let along = vector.dot(self.camera.towards_camera()) / self.axis_cosine();
-        let in_plane = vector - self.direction * along;
-        DVec2::new(
-            in_plane.dot(self.camera.right()),
-            in_plane.dot(self.camera.up()),
-        )
     }
 
     fn axis_cosine(&self) -> f64 {

@@ -456,8 +456,7 @@ impl ImagingGeometry {
     /// `image_displacement` is the motion `a_I` of the speckle since the reference state to the right and
     /// *up*, in metres, as [`SpeckleMotion`](crate::SpeckleMotion) has it: the pattern moves across the
     /// image *by* `a_I`. `pattern_speckle_size` is `h_p`, the speckle size of the pattern in samples. The
-    /// result is that of a look-up, to the right and up, and not wrapped to the period of the pattern. For points
-    /// in space there is [`MotionField`](crate::MotionField).
+    /// result is that of a look-up, to the right and up, and not wrapped to the period of the pattern.
     ///
     /// Bergmann et al. 2016, §6.3, prints a plus sign, by which the pattern runs backwards.
     pub fn pattern_coordinate(

@@ -15,25 +15,15 @@
 //! |---|---|
 //! | How large are the speckles of this camera? | [`ImagingGeometry`] |
 //! | Which way is the camera turned, where does it see the point? | [`CameraFrame`], [`LineOfSight`] |
-//! | How is the point lit? | [`Wavefront`], [`SurfacePoint`] |
-//! | What moved a little? | [`Motion`] |
-//! | What moved or turned a lot, or has other light? | [`Configuration`], [`RigidMotions`], [`Illumination`] |
+//! | How is the point lit? | [`Illumination`], [`Wavefront`] |
+//! | What moved, turned, or has other light? | [`Configuration`], [`RigidMotions`] |
 //! | What happens to the speckle? | [`SpeckleMotion`] |
-//! | What happens at many points at once? | [`MotionField`] |
+//! | What happens at many points of a body? | [`RigidChange`] |
 //! | What does my kernel on a GPU compute? | [`closed_form`] |
 //! | Where do I look in the pattern? | [`ImagingGeometry::pattern_coordinate`] |
 //!
-//! # Two laws of motion
-//!
-//! | | [`SpeckleMotion::new`] | [`SpeckleMotion::between`] |
-//! |---|---|---|
-//! | input | a [`SurfacePoint`] and a [`Motion`] | two [`Configuration`]s of one point |
-//! | surface, camera, source | translate | translate and turn |
-//! | wavelength, direction of the light | stay | may change |
-//! | size of the motion | small beside distances and radii of curvature | any |
-//! | cost | a few products | some square roots more |
-//!
-//! For small translations the second becomes the first.
+//! There is one law of motion, between any two states of a surface point. A translation is a motion
+//! whose rotation is the identity: [`RigidMotion::along`].
 //!
 //! # Scope and non-goals
 //!
@@ -63,8 +53,6 @@ pub mod closed_form;
 mod configuration;
 mod correlation;
 mod error;
-mod field;
-mod finite;
 mod frame;
 mod geometry;
 mod illumination;
@@ -76,17 +64,16 @@ mod wavefront;
 
 pub use configuration::{Configuration, ConfigurationData};
 pub use correlation::{
-    CorrelationLaw, add_axial_shifts, axial_correlation, correlation, equivalent_axial_shift,
-    equivalent_pupil_shift, motion_multiple, pupil_overlap_correlation,
+    CorrelationLaw, add_axial_shifts, axial_correlation, equivalent_axial_shift,
+    equivalent_pupil_shift, pupil_overlap_correlation,
 };
 pub use error::DecorrelationError;
-pub use field::{FieldLight, FieldPoints, FieldSetup, FieldSlices, MotionField};
 pub use frame::{CameraFrame, LineOfSight};
 pub use geometry::ImagingGeometry;
 pub use glam::{DMat3, DVec2, DVec3};
 pub use illumination::Illumination;
 pub use lens::{Focus, LensData, PupilDistances, ThickLensData};
-pub use motion::{ImageOrientation, Motion, SpeckleMotion, SurfacePoint};
+pub use motion::SpeckleMotion;
 pub use rigid::{RigidMotion, RigidMotions};
 pub use rigid_change::{ChangedPoint, PointChange, RigidChange};
 pub use wavefront::Wavefront;

@@ -1,292 +1,297 @@
+use core::f64::consts::TAU;
+
 use glam::{DVec2, DVec3};
 
 use crate::{
-    CorrelationLaw, DecorrelationError, GRAZING_COSINE, ImagingGeometry, LineOfSight, Wavefront,
+    Configuration, CorrelationLaw, GRAZING_COSINE, ImagingGeometry, rigid_change::leaving,
 };
 
-/// Small translations since the reference state, in world coordinates and metres.
-///
-/// The reference state is the configuration whose pattern is known: the first frame of a sequence.
-///
-/// ```text
-///   source ☼ ──▶ s                ┃ ──▶ c   pupil of the camera
-///            ╲                    ┃
-///         l_S ╲                   │ l
-///              ╲                  │
-///   ════════════●═════════════════●═══════ ──▶ a   surface
-/// ```
-///
-/// Only differences count. The camera sees the point move by `surface − camera`, and the point
-/// moves by `surface − source` through the wave that lights it. If all three move together, nothing
-/// changes.
-///
-/// # Validity
-///
-/// The theory is of first order. Its relative error is about the motion divided by the distance to
-/// the pupil or by the radius of the wavefront, whichever is the shorter.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Motion {
-    /// Translation `a` of the surface, in metres.
-    pub surface: DVec3,
-    /// Translation `c` of the camera, in metres.
-    pub camera: DVec3,
-    /// Translation `s` of the light source and its wavefront, in metres.
-    pub source: DVec3,
-}
-
-impl Motion {
-    /// Returns `a − c`, how far the camera sees the surface move, in metres.
-    pub fn surface_seen_by_camera(&self) -> DVec3 {
-        self.surface - self.camera
-    }
-
-    /// Returns `a − s`, how far the surface moves through the illumination, in metres.
-    pub fn surface_within_illumination(&self) -> DVec3 {
-        self.surface - self.source
-    }
-}
-
-/// Orientation in which image displacements are counted.
-///
-/// Either way the axes are b1 and b2 of the camera: to the right and *upwards*. A renderer that
-/// counts its rows downwards flips the second component.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ImageOrientation {
-    /// The picture as shown on a screen: what moves to the right in the scene moves to the right.
-    ScreenUpright,
-    /// The picture on the sensor behind the lens, upside down and mirrored, as in eq. (5) of
-    /// Bergmann et al. 2016.
-    SensorInverted,
-}
-
-impl ImageOrientation {
-    pub(crate) fn of_upright(self, displacement: DVec2) -> DVec2 {
-        match self {
-            Self::ScreenUpright => displacement,
-            Self::SensorInverted => -displacement,
-        }
-    }
-}
-
-/// A point of a rough surface, as the camera sees it and as the laser lights it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfacePoint {
-    sight: LineOfSight,
-    normal: DVec3,
-    wavefront: Wavefront,
-}
-
-impl SurfacePoint {
-    /// Creates a surface point from the line of sight to it, its normal and the light on it.
-    ///
-    /// The normal may have any length and point to either side.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if the normal is zero or not finite.
-    pub fn new(
-        sight: LineOfSight,
-        normal: DVec3,
-        wavefront: Wavefront,
-    ) -> Result<Self, DecorrelationError> {
-        let normal = normal.try_normalize().ok_or(DecorrelationError::vector(
-            "normal",
-            normal,
-            "finite and not zero",
-        ))?;
-        Ok(Self {
-            sight,
-            normal,
-            wavefront,
-        })
-    }
-
-    /// Returns the line of sight to the point.
-    pub const fn sight(&self) -> &LineOfSight {
-        &self.sight
-    }
-
-    /// Returns the unit normal `n` of the surface.
-    pub const fn normal(&self) -> DVec3 {
-        self.normal
-    }
-
-    /// Returns the light on the point.
-    pub const fn wavefront(&self) -> &Wavefront {
-        &self.wavefront
-    }
-
-    /// Returns how far the speckle moves in the image, along b1 and b2, in metres on the sensor.
-    ///
-    /// In focus the speckle moves with the image of the surface:
-    ///
-    /// ```text
-    /// a_I = ± (C / Z) Π (a − c)        + screen upright, − sensor inverted
-    /// ```
-    ///
-    /// Π is [`LineOfSight::project`], Z the [depth](LineOfSight::depth) of the point and C the
-    /// [principal distance](ImagingGeometry::principal_distance) of the camera. On the
-    /// optical axis, this is eq. (5) of Bergmann et al. 2016 with the sign of sin q₁ in its
-    /// first row corrected: as printed, motion along the normal goes the wrong way at 30°.
-    pub fn image_displacement(
-        &self,
-        geometry: &ImagingGeometry,
-        motion: &Motion,
-        orientation: ImageOrientation,
-    ) -> DVec2 {
-        let magnification = geometry.principal_distance() / self.sight.depth();
-        orientation.of_upright(self.sight.project(motion.surface_seen_by_camera()) * magnification)
-    }
-
-    /// Returns how far the speckle field moves across the pupil, along b1 and b2, in metres.
-    ///
-    /// The light that arrives in phase at the pupil point A after the motion is that which arrived
-    /// at the centre before it:
-    ///
-    /// ```text
-    /// k   = K (a − s)                                  turn of the illumination
-    /// a_P = Π [(a − c) + d (k − n (k·l)/(n·l))]
-    /// ```
-    ///
-    /// with the curvature K of the wavefront, the normal n, the line of sight l, its length d and
-    /// the projection Π onto the pupil plane. For a line of sight along the optical axis and a
-    /// spherical wave this is the pair of Sjödahl 1995.
-    ///
-    /// Returns `None` where the surface is seen edge-on under a curved wave: the speckle then
-    /// rushes across the pupil, and the pattern counts as decorrelated.
-    ///
-    /// # Examples
-    ///
-    /// A point source at the distance of the camera doubles the motion of the speckle:
-    ///
-    /// ```
-    /// use tem00_decorrelation::{CameraFrame, DVec3, LineOfSight, Motion, SurfacePoint, Wavefront};
-    ///
-    /// let eye = DVec3::new(0.0, 0.0, 0.2);
-    /// let camera = CameraFrame::look_at(eye, DVec3::ZERO, DVec3::Y)?;
-    /// let sight = LineOfSight::new(&camera, eye)?;
-    /// let wave = Wavefront::spherical(DVec3::Z, 1.0 / 0.2)?;
-    /// let point = SurfacePoint::new(sight, DVec3::Z, wave)?;
-    ///
-    /// let motion = Motion { surface: DVec3::new(1e-3, 0.0, 0.0), ..Motion::default() };
-    /// let displacement = point.pupil_displacement(&motion).unwrap();
-    /// assert!((displacement.x - 2e-3).abs() < 1e-15);
-    /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
-    /// ```
-    pub fn pupil_displacement(&self, motion: &Motion) -> Option<DVec2> {
-        let turn = self.wavefront.curvature() * motion.surface_within_illumination();
-        let leverage = self.along_normal_onto_sight(turn)? * self.sight.distance();
-        let displacement = self
-            .sight
-            .project(motion.surface_seen_by_camera() + leverage);
-        displacement.is_finite().then_some(displacement)
-    }
-
-    /// Projects `turn` along the normal onto the plane across the line of sight: the scatterers of
-    /// a surface respond only to what lies in the surface.
-    fn along_normal_onto_sight(&self, turn: DVec3) -> Option<DVec3> {
-        let (n, l) = (self.normal, self.sight.direction());
-        let along = turn.dot(l);
-        if along == 0.0 {
-            return Some(turn);
-        }
-        let cosine = n.dot(l);
-        (cosine.abs() > GRAZING_COSINE).then(|| turn - n * (along / cosine))
-    }
-}
-
-/// Change of the speckle by a motion at one surface point: all that a renderer needs per hit.
+/// Change of the speckle at one surface point between two states, however far apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SpeckleMotion {
-    /// Motion of the image of the surface, along b1 and b2, in metres on the sensor:
-    /// [`SurfacePoint::image_displacement`].
+    /// Motion of the image of the surface, along b1 (right) and b2 (up) of the camera, in metres on
+    /// the sensor, upright as shown on a screen. In focus the speckle moves with it.
     ///
-    /// In focus the speckle moves with it.
+    /// A renderer that counts its rows downwards flips the second component.
     pub image_displacement: DVec2,
     /// Additional motion of the speckle of a point out of focus, along b1 and b2, in metres on the
     /// sensor.
     ///
-    /// ```text
-    /// ∓ C W a_P,    W = 1/Z − 1/L        − screen upright, + sensor inverted
-    /// ```
-    ///
-    /// A ray through the pupil point p meets the sensor `C W p` beside the image of the point. The
-    /// speckle field that has moved across the pupil by `a_P` is therefore found that much farther
+    /// A ray through the pupil point p meets the sensor `C W p` beside the image of the point, with
+    /// the defocus W. The speckle field that has moved across the pupil is found that much farther
     /// in the image. Zero for a point in focus, and where the pattern is decorrelated.
     pub defocus_displacement: DVec2,
-    /// Motion of the speckle field across the pupil, along b1 and b2, in metres, or `None` if it
-    /// left the pupil in a grazing view: [`SurfacePoint::pupil_displacement`].
+    /// Motion of the speckle field across the pupil, along b1 and b2, in metres, or `None` where the
+    /// pattern is decorrelated for [`Configuration::pupil_point_after`].
     pub pupil_displacement: Option<DVec2>,
-    /// Motion of the surface towards the camera along the optical axis, `(a − c)·b3`, in metres.
+    /// Motion of the surface towards the camera along the optical axis, in metres.
     pub axial_displacement: f64,
-    /// Correlation of the intensity with the old pattern, in [0, 1], where the pattern is
-    /// looked up at the [`speckle_displacement`](Self::speckle_displacement).
-    ///
-    /// That displacement decides on the [`CorrelationLaw`]: it is
-    /// [`AtImageDisplacement`](CorrelationLaw::AtImageDisplacement) in [`new`](Self::new), which keeps
-    /// the defocus of the reference state, and [`AtPeak`](CorrelationLaw::AtPeak) in
-    /// [`between`](Self::between), which takes the mean of both states.
+    /// Correlation γ of the intensity with the old pattern, in [0, 1], where the pattern is looked
+    /// up at the [`speckle_displacement`](Self::speckle_displacement): that of
+    /// [`CorrelationLaw::AtPeak`].
     pub correlation: f64,
 }
 
-impl SpeckleMotion {
-    /// Returns the motion of the speckle pattern in the image, along b1 and b2, in metres on the
-    /// sensor: the sum of [`image_displacement`](Self::image_displacement) and
-    /// [`defocus_displacement`](Self::defocus_displacement).
-    pub fn speckle_displacement(&self) -> DVec2 {
-        self.image_displacement + self.defocus_displacement
-    }
-
-    /// Computes the motion of the speckle at `point` since the reference state.
+/// The law of speckle motion.
+impl Configuration {
+    /// Returns the point of the pupil after a change where the speckle field is what it was at
+    /// `pupil_point` before, both along b1 and b2 of the camera as it stands, in metres from the
+    /// centre of the pupil.
     ///
-    /// `geometry` is that of the camera, for the distance in focus; the point may lie nearer or
-    /// farther and brings its own depth.
+    /// The light of all scatterers of the surface arrives there with the same phase differences as
+    /// before. To first order in the distance between scatterers that is
+    ///
+    /// ```text
+    /// (R T)ᵀ (l_S' + l') / λ'  =  Tᵀ (l_S + l) / λ
+    /// ```
+    ///
+    /// with the tangents T of the surface, its rotation R, and the unit vectors `l_S` to the source
+    /// and l to the pupil point. The law fixes the part of l' along the surface; its length fixes the
+    /// rest. The line along l' meets the pupil at the point in question.
     ///
     /// # Validity
     ///
-    /// At first order. The defocus is that of the reference state: its change by the motion matters
-    /// at second order, which [`between`](Self::between) takes in.
-    pub fn new(
-        geometry: &ImagingGeometry,
-        point: &SurfacePoint,
-        motion: &Motion,
-        orientation: ImageOrientation,
-    ) -> Self {
-        let sight = point.sight();
-        let seen = motion.surface_seen_by_camera();
-        let axial_displacement = seen.dot(sight.camera().towards_camera());
-        let axial_shift =
-            axial_displacement / geometry.axial_decorrelation_length_at(sight.depth());
-        let pupil_displacement = point.pupil_displacement(motion);
-        let correlation = pupil_displacement.map_or(0.0, |displacement| {
-            let pupil_shift = displacement.length() / geometry.pupil_diameter();
-            CorrelationLaw::AtImageDisplacement.correlation(pupil_shift, axial_shift)
-        });
-        let defocus = geometry.defocus_at(sight.depth());
-        let defocus = defocus_displacement(geometry, defocus, pupil_displacement);
-        Self {
-            image_displacement: point.image_displacement(geometry, motion, orientation),
-            defocus_displacement: orientation.of_upright(defocus),
-            pupil_displacement,
-            axial_displacement,
-            correlation,
+    /// No motion is too large. The law holds at the point itself, for a lit patch that is small
+    /// beside its distances to source and pupil. It says nothing of what is lost: see
+    /// [`SpeckleMotion::between`] and [`height_phase_change`](Self::height_phase_change).
+    ///
+    /// Returns `None` where there is no such point and the pattern counts as decorrelated: the
+    /// surface is seen edge-on, it is lit from its other side, or the light that kept its phases
+    /// leaves away from the pupil plane or, being longer than the pattern, not at all.
+    ///
+    /// # Examples
+    ///
+    /// With twice the wavelength the pattern in the pupil is twice as large about the direction of
+    /// specular reflection:
+    ///
+    /// ```
+    /// use tem00_decorrelation::{
+    ///     CameraFrame, Configuration, ConfigurationData, DVec2, DVec3, Illumination,
+    /// };
+    ///
+    /// let pupil = DVec3::new(0.0, 0.0, 0.3);
+    /// let green = Configuration::new(ConfigurationData {
+    ///     wavelength: 532e-9,
+    ///     point: DVec3::ZERO,
+    ///     normal: DVec3::Z,
+    ///     illumination: Illumination::collimated(DVec3::Z)?,
+    ///     camera: CameraFrame::look_at(pupil, DVec3::ZERO, DVec3::Y)?,
+    ///     pupil,
+    /// })?;
+    /// let infrared = green.with_wavelength(1064e-9)?;
+    ///
+    /// let moved = green.pupil_point_after(&infrared, DVec2::new(1e-3, 0.0)).unwrap();
+    /// assert!((moved - DVec2::new(2e-3, 0.0)).length() < 1e-7);
+    /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+    /// ```
+    ///
+    /// # References
+    ///
+    /// - I. Yamaguchi, *Fringe formations in deformation and vibration measurements using laser
+    ///   light*, 1985. The limit of small motions.
+    pub fn pupil_point_after(&self, after: &Self, pupil_point: DVec2) -> Option<DVec2> {
+        let direction = self.direction_to(pupil_point)?;
+        after.pupil_point_along(self.direction_after(after, direction)?)
+    }
+
+    /// Returns by how much a change alters the phase that a scatterer gains with its height above
+    /// the surface, for the light to the centre of the pupil, in radians per metre of height.
+    ///
+    /// ```text
+    /// Δq = 2π [n'·(l_S' + l') / λ' − n·(l_S + l) / λ]
+    /// ```
+    ///
+    /// l' is the direction to [the point](Self::pupil_point_after) that the field at the centre has
+    /// moved to. Where that motion has been followed, the heights of the surface are all that still
+    /// tells the patterns apart, and the loss is that of roughness and not of geometry. Heights with
+    /// a normal distribution of the standard deviation σ leave
+    ///
+    /// ```text
+    /// γ = exp(−σ² Δq²)
+    /// ```
+    ///
+    /// in the intensity, to be multiplied with the correlation of the geometry. It is mostly felt
+    /// under a change of wavelength or of the direction of illumination; translations and small
+    /// rotations change q in second order.
+    ///
+    /// Returns `None` where `pupil_point_after` does.
+    ///
+    /// # Examples
+    ///
+    /// Two modes of a laser diode, 0.3 nm apart, on a surface with a roughness of 3 µm. The loss is
+    /// 7 × 10⁻⁴:
+    ///
+    /// ```
+    /// use tem00_decorrelation::{
+    ///     CameraFrame, Configuration, ConfigurationData, DVec3, Illumination,
+    /// };
+    ///
+    /// let pupil = DVec3::new(0.0, 0.0, 0.3);
+    /// let before = Configuration::new(ConfigurationData {
+    ///     wavelength: 650e-9,
+    ///     point: DVec3::ZERO,
+    ///     normal: DVec3::Z,
+    ///     illumination: Illumination::collimated(DVec3::Z)?,
+    ///     camera: CameraFrame::look_at(pupil, DVec3::ZERO, DVec3::Y)?,
+    ///     pupil,
+    /// })?;
+    /// let after = before.with_wavelength(650.3e-9)?;
+    ///
+    /// let change = before.height_phase_change(&after).unwrap(); // −4π Δλ / λ²
+    /// assert!((change + 8.92e3).abs() < 0.01e3);
+    /// let loss = 1.0 - (-(3e-6 * change).powi(2)).exp();
+    /// assert!((loss - 7.2e-4).abs() < 0.1e-4);
+    /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+    /// ```
+    ///
+    /// # References
+    ///
+    /// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007. Speckle in light of several wavelengths.
+    pub fn height_phase_change(&self, after: &Self) -> Option<f64> {
+        let direction = self.sight.direction();
+        let direction_after = self.direction_after(after, direction)?;
+        let before = self.normal().dot(self.to_source + direction) / self.wavelength;
+        let since = after.normal().dot(after.to_source + direction_after) / after.wavelength;
+        let change = TAU * (since - before);
+        change.is_finite().then_some(change)
+    }
+
+    /// The unit vector from the surface point to a point of the pupil.
+    fn direction_to(&self, pupil_point: DVec2) -> Option<DVec3> {
+        let camera = self.sight.camera();
+        let offset = camera.right() * pupil_point.x + camera.up() * pupil_point.y;
+        (self.pupil - self.point + offset).try_normalize()
+    }
+
+    /// The direction in which the field leaves after the change that left in `direction` before.
+    fn direction_after(&self, after: &Self, direction: DVec3) -> Option<DVec3> {
+        let side = self.normal().dot(direction);
+        let turned =
+            after.surface_axes * (self.surface_axes.transpose() * (self.to_source + direction));
+        let sum = turned * (after.wavelength / self.wavelength) - after.to_source;
+        let (leaves, rest) = leaving(after.normal(), sum, side);
+        let lit_side = self.normal().dot(self.to_source) * after.normal().dot(after.to_source);
+        // NaN fails every comparison.
+        (rest > 0.0 && side.abs() > GRAZING_COSINE && lit_side >= 0.0).then_some(leaves)
+    }
+
+    /// The point of the pupil that a line from the surface point meets.
+    fn pupil_point_along(&self, direction: DVec3) -> Option<DVec2> {
+        let camera = self.sight.camera();
+        let cosine = direction.dot(camera.towards_camera());
+        if cosine <= GRAZING_COSINE {
+            return None;
         }
+        let from_pupil = direction * (self.sight.depth() / cosine) - (self.pupil - self.point);
+        let point = DVec2::new(from_pupil.dot(camera.right()), from_pupil.dot(camera.up()));
+        point.is_finite().then_some(point)
+    }
+
+    /// Position of the image of the point, along b1 and b2 from the axis, upright, in units of the
+    /// principal distance.
+    fn tangents(&self) -> DVec2 {
+        let (camera, direction) = (self.sight.camera(), self.sight.direction());
+        let across = DVec2::new(direction.dot(camera.right()), direction.dot(camera.up()));
+        across / -direction.dot(camera.towards_camera())
     }
 }
 
-/// `−C W A`, upright: the displacement in the image for one in the pupil at the defocus W.
-pub(crate) fn defocus_displacement(
-    geometry: &ImagingGeometry,
-    defocus: f64,
-    pupil_displacement: Option<DVec2>,
-) -> DVec2 {
-    let displacement = pupil_displacement.unwrap_or(DVec2::ZERO);
-    let shift = displacement * (-geometry.principal_distance() * defocus);
-    if shift.is_finite() {
-        shift
-    } else {
-        DVec2::ZERO
+impl SpeckleMotion {
+    /// Computes the motion of the speckle between two states of the same surface point.
+    ///
+    /// ```text
+    /// image     C (t' − t)                 t: tangents of the viewing angles
+    /// pupil     A = pupil_point_after(0)
+    /// defocus   −C A (W + W') / 2          W = 1/Z − 1/L
+    /// along     Z − Z'
+    /// left      γ of |A| / D and of (W'/λ' − W/λ) D²/8, at the peak
+    /// ```
+    ///
+    /// `geometry` is that of the camera in both states. Its wavelength does not count here, those of
+    /// the states do.
+    ///
+    /// # Validity
+    ///
+    /// The image displacement and the pupil displacement are exact for the centre of the pupil. The
+    /// correlation takes the field to move across the pupil as a whole. After a large change it also
+    /// stretches; the error is about the difference of
+    /// [`pupil_point_after`](Configuration::pupil_point_after) across the pupil beyond the motion of
+    /// its centre, over the pupil diameter.
+    ///
+    /// What a *rough surface* loses under another wavelength or direction of illumination is not
+    /// geometric and not included: see
+    /// [`height_phase_change`](Configuration::height_phase_change).
+    ///
+    /// # Examples
+    ///
+    /// A camera that turns by 1 mrad about its own pupil sees the picture move and the speckle with
+    /// it, unchanged:
+    ///
+    /// ```
+    /// use tem00_decorrelation::{
+    ///     CameraFrame, Configuration, ConfigurationData, DVec3, Illumination, ImagingGeometry,
+    ///     LensData, RigidMotion, RigidMotions, SpeckleMotion,
+    /// };
+    ///
+    /// let geometry = ImagingGeometry::from_lens(LensData {
+    ///     wavelength: 650e-9,
+    ///     focal_length: 25e-3,
+    ///     f_number: 8.0,
+    ///     surface_to_pupil: 0.3,
+    ///     pixel_pitch: 3.45e-6,
+    /// })?;
+    /// let pupil = DVec3::new(0.0, 0.0, 0.3);
+    /// let before = Configuration::new(ConfigurationData {
+    ///     wavelength: 650e-9,
+    ///     point: DVec3::ZERO,
+    ///     normal: DVec3::Z,
+    ///     illumination: Illumination::collimated(DVec3::new(1.0, 0.0, 1.0))?,
+    ///     camera: CameraFrame::look_at(pupil, DVec3::ZERO, DVec3::Y)?,
+    ///     pupil,
+    /// })?;
+    /// let after = before.moved(&RigidMotions {
+    ///     camera: RigidMotion::about(pupil, DVec3::Y, 1e-3)?,
+    ///     ..RigidMotions::default()
+    /// })?;
+    ///
+    /// let speckle = SpeckleMotion::between(&geometry, &before, &after);
+    /// // The camera turns to the left: the picture moves to the right, by 27.3 µm.
+    /// assert!((speckle.image_displacement.x - 27.27e-6).abs() < 0.01e-6);
+    /// assert!((speckle.correlation - 1.0).abs() < 1e-9);
+    /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+    /// ```
+    pub fn between(
+        geometry: &ImagingGeometry,
+        before: &Configuration,
+        after: &Configuration,
+    ) -> Self {
+        let depths = [before, after].map(|state| state.sight.depth());
+        let [w0, w1] = depths.map(|depth| geometry.defocus_at(depth));
+        let diameter = geometry.pupil_diameter();
+        let axial_shift =
+            (w1 / after.wavelength - w0 / before.wavelength) * 0.125 * diameter * diameter;
+        let image = (after.tangents() - before.tangents()) * geometry.principal_distance();
+        let pupil = before.pupil_point_after(after, DVec2::ZERO);
+        let beside = -0.5 * geometry.principal_distance() * (w0 + w1);
+        let defocus = pupil.map(|pupil| pupil * beside);
+        Self {
+            image_displacement: image,
+            defocus_displacement: defocus.filter(|v| v.is_finite()).unwrap_or_default(),
+            pupil_displacement: pupil,
+            axial_displacement: depths[0] - depths[1],
+            correlation: pupil.map_or(0.0, |pupil| {
+                CorrelationLaw::AtPeak.correlation(pupil.length() / diameter, axial_shift)
+            }),
+        }
+    }
+
+    /// Returns the motion of the speckle pattern in the image, along b1 and b2, in metres on the
+    /// sensor: the sum of [`image_displacement`](Self::image_displacement) and
+    /// [`defocus_displacement`](Self::defocus_displacement). There the correlation of both patterns
+    /// peaks.
+    pub fn speckle_displacement(&self) -> DVec2 {
+        self.image_displacement + self.defocus_displacement
     }
 }
 

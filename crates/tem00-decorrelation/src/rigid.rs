@@ -149,7 +149,6 @@ impl Default for RigidMotion {
 
 /// Motions of surface, camera and light source since the reference state, each as a rigid body.
 ///
-/// It is the counterpart of [`Motion`](crate::Motion) for motions that are large or turn a body.
 /// Only differences count: if all three move as one, nothing changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RigidMotions {

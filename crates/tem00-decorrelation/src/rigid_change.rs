@@ -209,8 +209,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        Configuration, ConfigurationData, Illumination, ImageOrientation, ImagingGeometry,
-        LensData, SpeckleMotion,
+        Configuration, ConfigurationData, Illumination, ImagingGeometry, LensData, SpeckleMotion,
     };
 
     fn unit_vectors() -> impl Strategy<Value = DVec3> {
@@ -270,8 +269,7 @@ mod tests {
                 surface_to_pupil: 0.3,
                 pixel_pitch: 3.45e-6,
             }).unwrap();
-            let upright = ImageOrientation::ScreenUpright;
-            let law = SpeckleMotion::between(&geometry, &before, &after, upright);
+            let law = SpeckleMotion::between(&geometry, &before, &after);
             let tangents = law.image_displacement / geometry.principal_distance();
             prop_assert!(close(found.tangent_displacement, tangents, 1.0), "{found:?}, not {tangents}");
             let [from, to] = found.per_depth.map(f64::recip);

@@ -44,18 +44,29 @@ use crate::{DecorrelationError, GRAZING_COSINE};
 /// 80 mm before it:
 ///
 /// ```
-/// use tem00_decorrelation::{CameraFrame, DVec3, LineOfSight, Motion, SurfacePoint, Wavefront};
+/// use tem00_decorrelation::{
+///     CameraFrame, Configuration, ConfigurationData, DVec2, DVec3, Illumination, RigidMotion,
+///     RigidMotions, Wavefront,
+/// };
 ///
 /// let eye = DVec3::new(0.0, 0.0, 0.2);
-/// let sight = LineOfSight::new(&CameraFrame::look_at(eye, DVec3::ZERO, DVec3::Y)?, eye)?;
-/// let motion = Motion { surface: DVec3::new(1e-3, 0.0, 0.0), ..Motion::default() };
-///
+/// let motions = RigidMotions {
+///     surface: RigidMotion::along(DVec3::new(1e-3, 0.0, 0.0))?,
+///     ..RigidMotions::default()
+/// };
 /// for (z, ratio) in [(50e-3, 3.014), (0.0, 1.0), (-80e-3, -0.805)] {
 ///     let curvature = z / (z * z + 49.65e-3_f64.powi(2));
 ///     let beam = Wavefront::spherical(DVec3::Z, curvature)?;
-///     let point = SurfacePoint::new(sight, DVec3::Z, beam)?;
-///     let displacement = point.pupil_displacement(&motion).unwrap();
-///     assert!((displacement.x / 1e-3 - ratio).abs() < 1e-3);
+///     let before = Configuration::new(ConfigurationData {
+///         wavelength: 632.8e-9,
+///         point: DVec3::ZERO,
+///         normal: DVec3::Z,
+///         illumination: Illumination::near(DVec3::ZERO, beam)?,
+///         camera: CameraFrame::look_at(eye, DVec3::ZERO, DVec3::Y)?,
+///         pupil: eye,
+///     })?;
+///     let moved = before.pupil_point_after(&before.moved(&motions)?, DVec2::ZERO).unwrap();
+///     assert!((moved.x / 1e-3 - ratio).abs() < 1e-3);
 /// }
 /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
 /// ```

@@ -1,8 +1,8 @@
 //! A refusal names the parameter, its value and what is allowed.
 
 use tem00_decorrelation::{
-    CameraFrame, DMat3, DVec3, Focus, Illumination, ImagingGeometry, LensData, LineOfSight,
-    PupilDistances, RigidMotion, SurfacePoint, ThickLensData, Wavefront,
+    CameraFrame, Configuration, ConfigurationData, DMat3, DVec3, Focus, Illumination,
+    ImagingGeometry, LensData, LineOfSight, PupilDistances, RigidMotion, ThickLensData, Wavefront,
 };
 
 const LENS: LensData = LensData {
@@ -81,8 +81,6 @@ fn refused_vectors_name_the_parameter_the_value_and_what_is_allowed() {
     let (x, y, zero) = (DVec3::X, DVec3::Y, DVec3::ZERO);
     let skew = DMat3::from_cols(x, x, x);
     let camera = CameraFrame::look_at(DVec3::Z, zero, y).expect("a view");
-    let sight = LineOfSight::new(&camera, DVec3::Z).expect("in view");
-    let wave = Wavefront::plane(DVec3::Z).expect("a wave");
     let columns = "[[1, 0, 0], [1, 0, 0], [1, 0, 0]]";
     let axes = CameraFrame::from_axes(skew).expect_err("skew").to_string();
     assert_eq!(
@@ -97,7 +95,14 @@ fn refused_vectors_name_the_parameter_the_value_and_what_is_allowed() {
         LineOfSight::new(&camera, -DVec3::Z) =>
             "to_pupil":
             "finite, in metres, and lead from a point in front of the camera, got [-0, -0, -1]",
-        SurfacePoint::new(sight, zero, wave) =>
+        Configuration::new(ConfigurationData {
+            wavelength: 650e-9,
+            point: zero,
+            normal: zero,
+            illumination: Illumination::collimated(DVec3::Z).expect("light"),
+            camera,
+            pupil: DVec3::Z,
+        }) =>
             "normal": "finite and not zero, got [0, 0, 0]",
         Wavefront::plane(zero) =>
             "direction_to_source": "finite and not zero, got [0, 0, 0]",

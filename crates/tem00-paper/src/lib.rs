@@ -18,10 +18,10 @@
 //!
 //! | printed | here | instead of | printed, correct |
 //! |---|---|---|---|
-//! | eq. (5) | [`image_displacement`] | [`SurfacePoint::image_displacement`] | 200 %: the wrong way for motion along the normal |
-//! | `a_P^S`, §6.4 | [`pupil_displacement`] | [`SurfacePoint::pupil_displacement`] | none on the optical axis; off it, 0 instead of −tan of the angle, times `a_z` |
+//! | eq. (5) | [`image_displacement`] | [`SpeckleMotion`], image displacement | 200 %: the wrong way for motion along the normal |
+//! | `a_P^S`, §6.4 | [`pupil_displacement`] | [`Configuration::pupil_point_after`] | none on the optical axis; off it, 0 instead of −tan of the angle, times `a_z` |
 //! | `d_SL`, §6.4 | [`Emitter`] | [`Wavefront`] | any factor, and the sign, in a Gaussian beam or a fan |
-//! | `a_P^C + a_P^S`, §6.4 | [`relative_pupil_displacement`] | [`Motion`] | twice `a_P^C` instead of 0, unless that is *minus* the camera motion |
+//! | `a_P^C + a_P^S`, §6.4 | [`relative_pupil_displacement`] | [`RigidMotions`] | twice `a_P^C` instead of 0, unless that is *minus* the camera motion |
 //! | `d_z⁰`, §6.4 | [`axial_decorrelation_length`] | [`ImagingGeometry::axial_decorrelation_length`] | a factor of 2; γ = 0.405 is left |
 //! | u in the plane, §6.4 | [`slice_coordinate`] | [`SpeckleStack::coordinate_of`](tem00_speckle::SpeckleStack::coordinate_of) of the correlation | γ = 0.236, 0.431 at 0.27 D |
 //! | u along the axis | the same | the same | γ = 0.067, 0.856 at 0.43 `d_z⁰` |
@@ -37,9 +37,9 @@
 //! - S. Bergmann et al., *A Phenomenological Approach to Integrating Gaussian Beam Properties and
 //!   Speckle into a Physically-Based Renderer*, VMV 2016, sections 4 and 6.
 //!
-//! [`SurfacePoint::image_displacement`]: tem00_decorrelation::SurfacePoint::image_displacement
-//! [`SurfacePoint::pupil_displacement`]: tem00_decorrelation::SurfacePoint::pupil_displacement
-//! [`Motion`]: tem00_decorrelation::Motion
+//! [`SpeckleMotion`]: tem00_decorrelation::SpeckleMotion
+//! [`Configuration::pupil_point_after`]: tem00_decorrelation::Configuration::pupil_point_after
+//! [`RigidMotions`]: tem00_decorrelation::RigidMotions
 //! [`Wavefront`]: tem00_decorrelation::Wavefront
 //! [`ImagingGeometry::axial_decorrelation_length`]: tem00_decorrelation::ImagingGeometry::axial_decorrelation_length
 //! [`ImagingGeometry::pattern_coordinate`]: tem00_decorrelation::ImagingGeometry::pattern_coordinate

@@ -7,8 +7,8 @@ use tem00_coherence::{
     CellGeometry, PatternSum, PolychromaticSpeckle, Relief, ResolutionCell, SpectralLine,
 };
 use tem00_decorrelation::{
-    CameraFrame, Configuration, ConfigurationData, Illumination, ImageOrientation, ImagingGeometry,
-    SpeckleMotion, pupil_overlap_correlation,
+    CameraFrame, Configuration, ConfigurationData, Illumination, ImagingGeometry, SpeckleMotion,
+    pupil_overlap_correlation,
 };
 use tem00_speckle::Complex;
 
@@ -81,8 +81,7 @@ impl SpectralLaw<'_> {
         let on_axis = self.geometry;
         let pixels_per_tangent = on_axis.principal_distance() / on_axis.pixel_pitch();
         let geometry = &self.perspective.geometry(on_axis, point.pixel);
-        let speckle =
-            SpeckleMotion::between(geometry, &mean, &other, ImageOrientation::ScreenUpright);
+        let speckle = SpeckleMotion::between(geometry, &mean, &other);
         let tangents = speckle.speckle_displacement() / geometry.principal_distance();
         let upright = tangents * pixels_per_tangent;
         Some(SpectralShift {

@@ -2,8 +2,8 @@ use std::{path::Path, sync::atomic::AtomicBool};
 
 use tem00::{
     decorrelation::{
-        CameraFrame, Configuration, ConfigurationData, DVec2, DVec3, Illumination,
-        ImageOrientation, ImagingGeometry, LensData, RigidMotion, RigidMotions, SpeckleMotion,
+        CameraFrame, Configuration, ConfigurationData, DVec2, DVec3, Illumination, ImagingGeometry,
+        LensData, RigidMotion, RigidMotions, SpeckleMotion,
     },
     numerics::Grid,
     scene::parse_scene,
@@ -98,8 +98,7 @@ impl Setting {
         });
         let before = before.expect("a point before the camera");
         let after = before.moved(motions).expect("a point before the camera");
-        let screen = ImageOrientation::ScreenUpright;
-        SpeckleMotion::between(&self.geometry(), &before, &after, screen)
+        SpeckleMotion::between(&self.geometry(), &before, &after)
     }
 }
 

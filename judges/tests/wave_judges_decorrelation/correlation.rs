@@ -4,9 +4,8 @@ use core::f64::consts::{PI, TAU};
 
 use tem00::{
     decorrelation::{
-        self, CameraFrame, Configuration, ConfigurationData, CorrelationLaw, ImageOrientation,
-        ImagingGeometry, LineOfSight, Motion, PupilDistances, SpeckleMotion, SurfacePoint,
-        Wavefront, axial_correlation, pupil_overlap_correlation,
+        self, CameraFrame, Configuration, ConfigurationData, ImagingGeometry, PupilDistances,
+        SpeckleMotion, axial_correlation, pupil_overlap_correlation,
     },
     numerics::Fft2,
     wave::{
@@ -17,7 +16,7 @@ use tem00::{
 
 use crate::{
     geometries::v,
-    scene::{States, WAVELENGTH},
+    scene::{Motion, States, WAVELENGTH},
 };
 
 const DISTANCE: f64 = 0.3;
@@ -71,8 +70,7 @@ impl Bench {
         .expect("a camera")
     }
 
-    /// The laws of small motions and of any.
-    fn laws(&self, motion: &Motion) -> [SpeckleMotion; 2] {
+    fn law(&self, motion: &Motion) -> SpeckleMotion {
         let eye = v(0.0, 0.0, DISTANCE);
         let before = Configuration::new(ConfigurationData {
             wavelength: WAVELENGTH,
@@ -84,14 +82,7 @@ impl Bench {
         })
         .expect("a configuration");
         let after = States::from(*motion).after(&before);
-        let sight = LineOfSight::new(before.sight().camera(), eye).expect("a line of sight");
-        let wave = Wavefront::plane(self.to_source).expect("a plane wave");
-        let point = SurfacePoint::new(sight, DVec3::Z, wave).expect("a point");
-        let upright = ImageOrientation::ScreenUpright;
-        [
-            SpeckleMotion::new(&self.geometry(), &point, motion, upright),
-            SpeckleMotion::between(&self.geometry(), &before, &after, upright),
-        ]
+        SpeckleMotion::between(&self.geometry(), &before, &after)
     }
 
     fn camera(&self) -> Camera {
@@ -319,31 +310,41 @@ fn motion_along_the_axis_leaves_a_squared_sinc_with_its_zero_at_twice_the_printe
 }
 
 #[test]
-fn motion_aside_and_along_the_axis_leaves_what_the_law_of_its_displacement_says() {
+fn motion_aside_and_along_the_axis_leaves_what_the_law_says() {
     let bench = Bench {
         pupil_diameter: 30e-3,
         to_source: DVec3::Z,
     };
-    let [s, x] = [0.2, 0.65];
     let length = bench.geometry().axial_decorrelation_length();
-    let motion = Motion {
-        surface: v(s * bench.pupil_diameter, 0.0, x * length),
+    let shifts = [
+        [0.2, 0.0, 0.65],
+        [0.1, 0.2, -0.5],
+        [0.0, -0.4, 0.8],
+        [-0.3, 0.1, 0.3],
+    ];
+    let motions = shifts.map(|[x, y, along]| Motion {
+        surface: v(
+            x * bench.pupil_diameter,
+            y * bench.pupil_diameter,
+            along * length,
+        ),
         ..Motion::default()
-    };
-    let laws = bench.laws(&motion);
-    let asides = laws.map(|law| law.defocus_displacement / bench.speckle_size());
-    // The pattern of an approaching surface moves against its displacement on the pupil, by 4 s x:
-    // at second order.
-    let expected = [DVec2::ZERO, DVec2::new(-4.0 * s * x, 0.0)];
-    for (aside, expected) in asides.into_iter().zip(expected) {
-        assert!((aside - expected).length() < 0.02, "{aside}");
+    });
+    let laws = motions.map(|motion| bench.law(&motion));
+    let states = [0, 1, 2, 3].map(|i| State {
+        motion: motions[i],
+        aside: laws[i].defocus_displacement / bench.speckle_size(),
+    });
+    // The pattern of an approaching surface moves against its displacement on the pupil, by 4 s x.
+    for (state, [x, y, along]) in states.iter().zip(shifts) {
+        let expected = -4.0 * along * DVec2::new(x, y);
+        assert!((state.aside - expected).length() < 0.02, "{}", state.aside);
     }
-    let states = asides.map(|aside| State { motion, aside });
     let measured = bench.intensity_correlations(&states, 16);
-    let names = ["first order", "any motion"];
-    for ((name, law), measured) in names.into_iter().zip(laws).zip(&measured) {
-        assert_agrees(name, *measured, law.correlation);
+    for ((shift, law), measured) in shifts.iter().zip(laws).zip(&measured) {
+        assert_agrees(&format!("{shift:?}"), *measured, law.correlation);
     }
-    let product = CorrelationLaw::Product.correlation(s, x);
-    assert_refutes("product at the peak", measured[1], product);
+    // Beside its peak less is left: the product of the laws of either motion is that of neither place.
+    let product = pupil_overlap_correlation(0.2) * axial_correlation(0.65);
+    assert_refutes("product at the peak", measured[0], product);
 }

@@ -8,7 +8,7 @@ use crate::{
     scene::{Body, Scene, States, plane, plane_of, point_source},
 };
 
-/// The displacement of the finite law and, in speckles, how far the measured one is from it.
+/// The displacement of the law and, in speckles, how far the measured one is from it.
 fn judged(scene: &Scene, states: &States) -> (DVec2, f64) {
     let before = scene.configuration();
     let law = before.pupil_point_after(&states.after(&before), DVec2::ZERO);
@@ -50,7 +50,7 @@ fn source(body: Body) -> States {
 const ORIGIN: DVec3 = DVec3::ZERO;
 
 #[test]
-fn rotations_move_the_speckle_as_the_finite_law_says() {
+fn rotations_move_the_speckle_as_the_law_says() {
     let collimated = plane(v(0.5, 0.2, 1.0));
     let near = point_source(v(-0.12, 0.05, 0.2));
     let level = frontal(DVec3::Z, plane(DVec3::Z));
@@ -109,7 +109,7 @@ fn rotations_move_the_speckle_as_the_finite_law_says() {
 }
 
 #[test]
-fn changes_of_light_move_the_speckle_as_the_finite_law_says() {
+fn changes_of_light_move_the_speckle_as_the_law_says() {
     let lit = |to_source| frontal(tilted(-20.0, 10.0), plane(to_source));
     let changed = |light| States {
         light: Some(light),
@@ -135,7 +135,7 @@ fn changes_of_light_move_the_speckle_as_the_finite_law_says() {
 }
 
 #[test]
-fn long_ways_move_the_speckle_as_the_finite_law_says() {
+fn long_ways_move_the_speckle_as_the_law_says() {
     let source = point_source(v(0.1, 0.05, 0.25));
     judge(&[(
         "5 mm in the light of a source",

@@ -1,8 +1,8 @@
 //! The geometries in which displacements are judged.
 
-use tem00::{decorrelation::Motion, wave::DVec3};
+use tem00::wave::DVec3;
 
-use crate::scene::{Beam, Fan, Light, Scene, beam, fan, plane, point_source};
+use crate::scene::{Beam, Fan, Light, Motion, Scene, beam, fan, plane, point_source};
 
 /// A scene, what moves in it, and on how many surfaces it is measured.
 pub(crate) struct Case {

@@ -2,10 +2,7 @@
 
 use tem00::{
     beam::GaussianBeam,
-    decorrelation::{
-        self, CameraFrame, Configuration, ConfigurationData, LineOfSight, Motion, RigidMotions,
-        SurfacePoint, Wavefront,
-    },
+    decorrelation::{self, CameraFrame, Configuration, ConfigurationData, RigidMotions, Wavefront},
     wave::{
         Amplitudes, Arrangement, BeamDescription, Camera, DVec2, DVec3, FanDescription,
         Illumination, Lens, LitSurface, PatchDescription, RigidMotion, RoughSurface, Roughness,
@@ -158,17 +155,12 @@ impl Scene {
         CameraFrame::look_at(self.eye, self.target, DVec3::Y).expect("a frame")
     }
 
-    pub(crate) fn point(&self) -> SurfacePoint {
-        let sight = LineOfSight::new(&self.frame(), self.eye).expect("a line of sight");
-        SurfacePoint::new(sight, self.normal, self.light.wavefront).expect("a point")
-    }
-
     /// The speckle on the pupil is as wide as the finest fringe across the patch.
     pub(crate) fn pupil_speckle(&self) -> f64 {
         WAVELENGTH * self.eye.length() / self.size[0].max(self.size[1])
     }
 
-    /// The scene in its first state, as the finite law describes it.
+    /// The scene in its first state, as the law describes it.
     pub(crate) fn configuration(&self) -> Configuration {
         Configuration::new(ConfigurationData {
             wavelength: self.light.wave.wavelength(),
@@ -230,6 +222,14 @@ pub(crate) struct States {
     pub(crate) window: DVec2,
 }
 
+/// Translations.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Motion {
+    pub(crate) surface: DVec3,
+    pub(crate) camera: DVec3,
+    pub(crate) source: DVec3,
+}
+
 impl From<Motion> for States {
     fn from(motion: Motion) -> Self {
         Self {
@@ -242,7 +242,7 @@ impl From<Motion> for States {
 }
 
 impl States {
-    /// The second state, as the finite law describes it.
+    /// The second state, as the law describes it.
     pub(crate) fn after(&self, before: &Configuration) -> Configuration {
         let lit = self.light.map_or(Ok(*before), |light| {
             let changed = before.with_wavelength(light.wave.wavelength())?;

@@ -2,7 +2,7 @@ use core::f64::consts::{PI, TAU};
 
 use tem00_numerics::{quadrature::for_each_node, sinc};
 
-use super::correlation;
+use super::{axial_correlation, pupil_overlap_correlation};
 
 /// Law of the correlation after a pupil displacement and an axial displacement together.
 ///
@@ -15,10 +15,10 @@ use super::correlation;
 /// with the pupil displacement s in pupil diameters, the axial displacement x in axial
 /// decorrelation lengths and the speckle size h: against the pupil displacement where the surface
 /// has come nearer, along it where it has gone away. Whether that shift is followed decides what is
-/// left: a renderer that looks the pattern up at the projected displacement of the surface point
-/// needs [`AtImageDisplacement`](Self::AtImageDisplacement), one that adds Δr needs
-/// [`AtPeak`](Self::AtPeak). [`SpeckleMotion`](crate::SpeckleMotion) returns the one that belongs to
-/// its displacement. Without defocus, or without pupil displacement, all three are the same.
+/// left: [`SpeckleMotion`](crate::SpeckleMotion) follows it, to [`AtPeak`](Self::AtPeak); who looks
+/// the pattern up at the projected displacement of the surface point has
+/// [`AtImageDisplacement`](Self::AtImageDisplacement). Without defocus, or without pupil
+/// displacement, both are [`pupil_overlap_correlation`] times [`axial_correlation`].
 ///
 /// Both integrals run over the lens ℓ that two discs of radius 1, with centres at ±s, share:
 ///
@@ -47,7 +47,6 @@ use super::correlation;
 /// use tem00_decorrelation::CorrelationLaw;
 ///
 /// let left = |law: CorrelationLaw| law.correlation(0.1, 0.625);
-/// assert!((left(CorrelationLaw::Product) - 0.1687).abs() < 5e-5);
 /// assert!((left(CorrelationLaw::AtImageDisplacement) - 0.2166).abs() < 5e-5);
 /// assert!((left(CorrelationLaw::AtPeak) - 0.2484).abs() < 5e-5);
 /// ```
@@ -58,24 +57,18 @@ use super::correlation;
 /// - S. Bergmann et al. 2016, §6.4.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CorrelationLaw {
-    /// The product of both laws, [`correlation`](crate::correlation): some fifty times as fast as
-    /// the integrals, at most 0.048 from `AtImageDisplacement` and 0.121 from `AtPeak`.
-    ///
-    /// The largest errors lie at s = 0.10, x = 0.62 and at s = 0.26, x = 0.66; there the product is
-    /// too small.
-    #[default]
-    Product,
-    /// The correlation at the displacement of the projected surface point, with the reference state
-    /// (or the moved one) in focus; out of focus, at the displacement that the defocus of that state
-    /// alone gives.
-    AtImageDisplacement,
     /// The correlation at Δr from the displacement of the projected point, where it is largest as
     /// long as it is large: around the first zero the field of correlation breaks up, and there is
     /// no one peak to follow.
     ///
     /// It is also the correlation at the displacement of the projected point itself if the focus
     /// lies midway, so that reference and moved state are out of focus by ∓x/2.
+    #[default]
     AtPeak,
+    /// The correlation at the displacement of the projected surface point, with the reference state
+    /// (or the moved one) in focus; out of focus, at the displacement that the defocus of that state
+    /// alone gives.
+    AtImageDisplacement,
 }
 
 impl CorrelationLaw {
@@ -84,16 +77,16 @@ impl CorrelationLaw {
     ///
     /// It is even in both. The integrals are exact to 1e−8. From an axial displacement of 3e−5 lengths
     /// up to one of 3200 they are found by Gauss–Legendre quadrature: in half a microsecond to one at first,
-    /// and in a time proportional to the displacement beyond a few lengths. The product is returned for
-    /// less, where all three laws agree, and farther out, where they are below 4/β² = 1e−8.
+    /// and in a time proportional to the displacement beyond a few lengths. The product of the laws of
+    /// either displacement is returned for less, where it is as exact, and farther out, where all are
+    /// below 4/β² = 1e−8.
     pub fn correlation(self, pupil_shift: f64, axial_shift: f64) -> f64 {
         let (s, x) = (pupil_shift.abs(), axial_shift.abs());
-        // Elsewhere the product is as exact. NaN counts as decorrelated in it.
-        let axial = x > SMALLEST_AXIAL_SHIFT && x < LARGEST_AXIAL_SHIFT;
-        let both = s > 0.0 && s < 1.0 && axial;
-        match self {
-            Self::AtImageDisplacement | Self::AtPeak if both => self.integral(s, x),
-            _ => correlation(s, x),
+        // NaN counts as decorrelated in the product.
+        if s > 0.0 && s < 1.0 && x > SMALLEST_AXIAL_SHIFT && x < LARGEST_AXIAL_SHIFT {
+            self.integral(s, x)
+        } else {
+            pupil_overlap_correlation(s) * axial_correlation(x)
         }
     }
 
@@ -102,7 +95,7 @@ impl CorrelationLaw {
         let beta = TAU * x;
         let [re, im] = match self {
             Self::AtImageDisplacement => sum(arc(s, beta, 0.0), arc(s, beta, 2.0 * s)),
-            Self::AtPeak | Self::Product => arc(s, beta, s).map(|part| 2.0 * part),
+            Self::AtPeak => arc(s, beta, s).map(|part| 2.0 * part),
         };
         // Rounding may end a unit above 1.
         (re * re + im * im).min(1.0)

@@ -1,6 +1,5 @@
 use tem00_decorrelation::{
-    Configuration, ConfigurationData, Illumination, ImageOrientation, SpeckleMotion,
-    equivalent_pupil_shift,
+    Configuration, ConfigurationData, Illumination, SpeckleMotion, equivalent_pupil_shift,
 };
 
 use super::{super::upright, *};
@@ -131,8 +130,7 @@ fn speckle_shifts_are_those_of_the_theory_between_two_states() {
         );
         let new = old.moved(&relative).unwrap();
         let new = new.with_illumination(lit.unwrap()).unwrap();
-        let upright_image = ImageOrientation::ScreenUpright;
-        let law = SpeckleMotion::between(&geometry, &old, &new, upright_image);
+        let law = SpeckleMotion::between(&geometry, &old, &new);
 
         let speckle_shift = speckle_shift(&scene, frame, place);
         let expected = upright(law.speckle_displacement() / geometry.pixel_pitch());

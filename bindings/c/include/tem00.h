@@ -129,24 +129,6 @@ typedef enum {
 } tem00_interpolation;
 
 /**
- * The light on the points of a field, by the curvature of its wavefront there.
- */
-typedef enum {
-    /**
-     * Plane waves.
-     */
-    TEM00_FIELD_LIGHT_COLLIMATED = 0,
-    /**
-     * Spherical waves that diverge from `source`.
-     */
-    TEM00_FIELD_LIGHT_POINT_SOURCE = 1,
-    /**
-     * Waves of the curvature tensor `curvature`.
-     */
-    TEM00_FIELD_LIGHT_CURVATURE = 2,
-} tem00_field_light;
-
-/**
  * Meaning of `focus` of a description: the position of the surface in focus before a lens.
  */
 typedef enum {
@@ -177,20 +159,6 @@ typedef enum {
      */
     TEM00_FOCUS_CURVE_EQUAL_PLANE = 1,
 } tem00_focus_curve;
-
-/**
- * Orientation in which image displacements are counted: along `right` and `up` of the camera.
- */
-typedef enum {
-    /**
-     * The picture as shown on a screen.
-     */
-    TEM00_IMAGE_ORIENTATION_SCREEN_UPRIGHT = 0,
-    /**
-     * The picture on the sensor behind the lens, upside down and mirrored.
-     */
-    TEM00_IMAGE_ORIENTATION_SENSOR_INVERTED = 1,
-} tem00_image_orientation;
 
 /**
  * Distribution of the power of a laser line along the fan.
@@ -1279,197 +1247,6 @@ typedef struct {
     double axial_decorrelation_length;
 } tem00_imaging_info;
 
-/**
- * The axes of a camera in world coordinates: right-handed and orthonormal within 1e-6.
- */
-typedef struct {
-    /**
-     * To the right in the image.
-     */
-    double right[3];
-    /**
-     * Upwards in the image.
-     */
-    double up[3];
-    /**
-     * From the scene towards the camera, against the direction of view.
-     */
-    double towards_camera[3];
-} tem00_camera_axes;
-
-/**
- * The light on a point: where it comes from and how its wavefront is curved.
- */
-typedef struct {
-    /**
-     * From the surface to the source, of any length.
-     */
-    double direction_to_source[3];
-    /**
-     * A principal axis of the curvature, of any length and not along the direction to the source;
-     * not read if both curvatures are equal.
-     */
-    double axis[3];
-    /**
-     * Curvature 1/R along that axis, in 1/m: positive where the wave diverges, 0 for a plane wave.
-     */
-    double curvature_along;
-    /**
-     * Curvature 1/R across that axis, in 1/m.
-     */
-    double curvature_across;
-} tem00_wavefront;
-
-/**
- * A point of a rough surface, as the camera sees it and as the laser lights it.
- */
-typedef struct {
-    /**
-     * The axes of the camera.
-     */
-    tem00_camera_axes camera;
-    /**
-     * From the point to the centre of the entrance pupil, in metres.
-     */
-    double to_pupil[3];
-    /**
-     * Normal of the surface, of any length and to either side.
-     */
-    double normal[3];
-    /**
-     * The light on the point.
-     */
-    tem00_wavefront wavefront;
-} tem00_surface_point;
-
-/**
- * Small translations since the reference state, in world coordinates and metres. Only differences
- * count.
- */
-typedef struct {
-    /**
-     * Translation of the surface.
-     */
-    double surface[3];
-    /**
-     * Translation of the camera.
-     */
-    double camera[3];
-    /**
-     * Translation of the light source and its wavefront.
-     */
-    double source[3];
-} tem00_motion;
-
-/**
- * Effect of a motion on the speckle at one surface point.
- */
-typedef struct {
-    /**
-     * Motion of the image of the surface along right and up, in metres on the sensor.
-     */
-    double image_displacement[2];
-    /**
-     * Additional displacement of the speckle of a point out of focus, in metres on the sensor.
-     */
-    double defocus_displacement[2];
-    /**
-     * Motion of the speckle field across the pupil along right and up, in metres; infinite if it
-     * left the pupil in a grazing view.
-     */
-    double pupil_displacement[2];
-    /**
-     * Motion of the surface towards the camera along the optical axis, in metres.
-     */
-    double axial_displacement;
-    /**
-     * Correlation of intensity with the pattern before, in [0, 1], where it is looked up
-     * at the sum of both displacements in the image.
-     */
-    double correlation;
-} tem00_speckle_motion;
-
-/**
- * Settings common to all points of a field.
- */
-typedef struct {
-    /**
-     * The axes of the camera.
-     */
-    tem00_camera_axes camera;
-    /**
-     * Centre of the pupil in world coordinates, in metres.
-     */
-    double pupil_centre[3];
-    /**
-     * Orientation in which image displacements are counted: a `tem00_image_orientation`.
-     */
-    uint32_t orientation;
-    /**
-     * Speckle size of the pattern, in samples.
-     */
-    double pattern_speckle_size;
-    /**
-     * Motion of camera, source and all surfaces, added to those of the points.
-     */
-    tem00_motion shared_motion;
-} tem00_field_setup;
-
-/**
- * Points of rough surfaces: pointers to as many numbers as there are points, in world coordinates.
- */
-typedef struct {
-    /**
-     * Positions x, y, z in the reference state, in metres.
-     */
-    const double *position[3];
-    /**
-     * Surface normals x, y, z of any length, to either side.
-     */
-    const double *normal[3];
-    /**
-     * Translations x, y, z of the surface since the reference state, in metres.
-     */
-    const double *motion[3];
-    /**
-     * The light on the points: a `tem00_field_light`.
-     */
-    uint32_t light;
-    /**
-     * The point source in world coordinates, in metres; not read for other lights.
-     */
-    double source[3];
-    /**
-     * Components xx, xy, xz, yy, yz, zz of the curvature tensors, in 1/m; not read for other lights.
-     */
-    const double *curvature[6];
-} tem00_field_points;
-
-/**
- * Destination of the results of a field: pointers to as many numbers as there are points.
- */
-typedef struct {
-    /**
-     * Motion of the speckle in the image to the right and upwards, in metres on the sensor.
-     */
-    double *speckle_displacement[2];
-    /**
-     * Motion of the speckle field across the pupil, in metres; infinite where it left the pupil.
-     */
-    double *pupil_displacement[2];
-    /**
-     * Correlation of intensity with the pattern before, in [0, 1]; for
-     * `tem00_stack_coordinate_of`.
-     */
-    double *correlation;
-    /**
-     * Coordinates at which to look the pattern up, in pattern samples from the optical axis, to the
-     * right and upwards, not wrapped: at the images of the points in the reference state, less what
-     * their speckle moves beside them out of focus. 0 out of sight.
-     */
-    double *pattern_coordinate[2];
-} tem00_field_results;
-
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -2234,48 +2011,6 @@ tem00_status tem00_imaging_create_distances(const tem00_pupil_distances *distanc
 tem00_status tem00_imaging_describe(const tem00_imaging *imaging, tem00_imaging_info *info);
 
 /**
- * Computes the axes of a camera at `position` that looks at `target`, with `up` upwards in the image
- * as far as possible.
- *
- * `position`, `target` and `up` hold x, y, z.
- *
- * The pointers are null or valid, those to numbers for three.
- */
-tem00_status tem00_camera_axes_look_at(const double *position,
-                                       const double *target,
-                                       const double *up,
-                                       tem00_camera_axes *axes);
-
-/**
- * Computes the curvature tensor of a wave, in 1/m, from how the direction to its source turns along a
- * surface, as a renderer has it from its ray differentials: after mirrors and lenses, too.
- *
- * `direction_to_source`, of any length, holds x, y, z. `dp` holds the differentials of the surface point
- * by two parameters, in metres, one after the other, `dl` those of the unit vector to the source.
- * `curvature` receives xx, xy, xz, yy, yz, zz, as `tem00_field_points` takes them.
- *
- * The pointers are null or valid, those of the differentials and of the result for six numbers.
- */
-tem00_status tem00_curvature_from_differentials(const double *direction_to_source,
-                                                const double *dp,
-                                                const double *dl,
-                                                double *curvature);
-
-/**
- * Computes the motion of the speckle at a surface point since the reference state, at first order in
- * the motion.
- *
- * `orientation` is a `tem00_image_orientation`.
- *
- * The pointers are null or valid.
- */
-tem00_status tem00_imaging_speckle_motion(const tem00_imaging *imaging,
-                                          const tem00_surface_point *point,
-                                          const tem00_motion *motion,
-                                          uint32_t orientation,
-                                          tem00_speckle_motion *speckle);
-
-/**
  * Computes where in a speckle pattern a pixel lies, in pattern samples, not wrapped to its period.
  *
  * `pixel` holds its position in pixels, x to the right and y down as rows count, from any origin;
@@ -2291,38 +2026,9 @@ tem00_status tem00_imaging_pattern_coordinate(const tem00_imaging *imaging,
                                               double *coordinate);
 
 /**
- * Computes what motions do to the speckle at `count` surface points, such as those behind the pixels
- * of an image, at first order in the motion.
- *
- * A point that the camera cannot see is decorrelated. The columns of `results` are written; they must
- * not overlap with each other nor with those of `points`.
- *
- * The pointers are null or valid, those to columns for `count` numbers.
- */
-tem00_status tem00_imaging_motion_field(const tem00_imaging *imaging,
-                                        const tem00_field_setup *setup,
-                                        const tem00_field_points *points,
-                                        size_t count,
-                                        const tem00_field_results *results);
-
-/**
- * Computes where in a speckle pattern a surface point at rest lies, in pattern samples from the optical
- * axis, to the right and upwards, not wrapped: what `tem00_imaging_motion_field` makes of a point that
- * has not moved.
- *
- * `position` holds x, y, z in metres; it is refused where the camera cannot see it. Of the setup,
- * orientation and motion play no part.
- *
- * The pointers are null or valid, `position` for three numbers and `coordinate` for two.
- */
-tem00_status tem00_imaging_field_coordinate(const tem00_imaging *imaging,
-                                            const tem00_field_setup *setup,
-                                            const double *position,
-                                            double *coordinate);
-
-/**
  * Computes the intensity correlation left after a pupil displacement, in pupil diameters, and an
- * axial displacement, in axial decorrelation lengths.
+ * axial displacement, in axial decorrelation lengths, where it is largest: looked up at the
+ * displacement of the speckle.
  *
  * The pointer is null or valid.
  */

@@ -513,13 +513,6 @@ private:
     std::unique_ptr<tem00_bandwidth, destroy> handle_;
 };
 
-/** The axes of a camera at `position` that looks at `target`. */
-inline tem00_camera_axes look_at(const vec3 &position, const vec3 &target, const vec3 &up) {
-    tem00_camera_axes axes;
-    check(tem00_camera_axes_look_at(position.data(), target.data(), up.data(), &axes));
-    return axes;
-}
-
 /** A camera focused on a surface. Any number of threads may ask it at once. */
 class imaging {
 public:
@@ -542,16 +535,6 @@ public:
         return info;
     }
 
-    /** Motion of the speckle at a surface point since the reference state. */
-    tem00_speckle_motion speckle_motion(
-        const tem00_surface_point &point, const tem00_motion &motion,
-        tem00_image_orientation orientation = TEM00_IMAGE_ORIENTATION_SCREEN_UPRIGHT) const {
-        tem00_speckle_motion speckle;
-        check(tem00_imaging_speckle_motion(get(), &point, &motion,
-                                           static_cast<std::uint32_t>(orientation), &speckle));
-        return speckle;
-    }
-
     /** Where in a speckle pattern a pixel lies, in pattern samples. */
     vec2 pattern_coordinate(const vec2 &pixel, const vec2 &displacement,
                             double pattern_speckle_size) const {
@@ -559,19 +542,6 @@ public:
         check(tem00_imaging_pattern_coordinate(get(), pixel.data(), displacement.data(),
                                                pattern_speckle_size, coordinate.data()));
         return coordinate;
-    }
-
-    /** Where in a speckle pattern a surface point at rest lies, in pattern samples from the axis. */
-    vec2 field_coordinate(const tem00_field_setup &setup, const vec3 &position) const {
-        vec2 coordinate{};
-        check(tem00_imaging_field_coordinate(get(), &setup, position.data(), coordinate.data()));
-        return coordinate;
-    }
-
-    /** What motions do to the speckle at `count` surface points. */
-    void motion_field(const tem00_field_setup &setup, const tem00_field_points &points,
-                      std::size_t count, const tem00_field_results &results) const {
-        check(tem00_imaging_motion_field(get(), &setup, &points, count, &results));
     }
 
     /** The handle, for what is called in C. */
@@ -585,17 +555,7 @@ private:
     std::unique_ptr<tem00_imaging, destroy> handle_;
 };
 
-/** Curvature tensor xx, xy, xz, yy, yz, zz of a wave from differentials of its point and direction. */
-inline std::array<double, 6> curvature_from_differentials(const vec3 &direction_to_source,
-                                                          const std::array<double, 6> &dp,
-                                                          const std::array<double, 6> &dl) {
-    std::array<double, 6> curvature{};
-    check(tem00_curvature_from_differentials(direction_to_source.data(), dp.data(), dl.data(),
-                                             curvature.data()));
-    return curvature;
-}
-
-/** Intensity correlation after a displacement in pupil diameters and in axial lengths. */
+/** Intensity correlation at the peak, after a displacement in pupil diameters and in axial lengths. */
 inline double correlation(double pupil_shift, double axial_shift) {
     double correlation = 0;
     check(tem00_correlation(pupil_shift, axial_shift, &correlation));

@@ -1,18 +1,12 @@
-//! Cameras, and what motion does to the speckle that they see.
+//! Cameras as optics, and the laws of the speckle that they see.
 
 // The order of the header.
 mod camera;
 
-mod motion;
-
-mod field;
-
 mod laws;
 
 pub use camera::*;
-pub use field::*;
 pub use laws::*;
-pub use motion::*;
 
 use tem00_decorrelation::ImagingGeometry;
 

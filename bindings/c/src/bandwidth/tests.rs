@@ -4,8 +4,8 @@
 use core::{f64::consts::TAU, ptr, slice};
 
 use tem00_decorrelation::{
-    CameraFrame, Configuration, ConfigurationData, DVec3, Illumination, ImageOrientation,
-    ImagingGeometry, PupilDistances, SpeckleMotion,
+    CameraFrame, Configuration, ConfigurationData, DVec3, Illumination, ImagingGeometry,
+    PupilDistances, SpeckleMotion,
 };
 
 use super::*;
@@ -191,8 +191,7 @@ fn the_field_moves_over_the_pupil_as_a_change_of_wavelength_says() {
         pupil_diameter: diameter,
         pixel_pitch: 3e-6,
     });
-    let upright = ImageOrientation::ScreenUpright;
-    let moved = SpeckleMotion::between(&geometry.unwrap(), &mean, &other, upright);
+    let moved = SpeckleMotion::between(&geometry.unwrap(), &mean, &other);
     let [x, y] = (moved.pupil_displacement.unwrap() / diameter).to_array();
     let tilt = wave.pupil_shift * DVec3::from_array(info.tilt);
     for (ours, theirs) in [(tilt.dot(camera.right()), x), (tilt.dot(camera.up()), y)] {

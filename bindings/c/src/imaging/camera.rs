@@ -1,9 +1,9 @@
-use tem00_decorrelation::{DecorrelationError, ImagingGeometry, LensData, ThickLensData};
+use tem00_decorrelation::{DVec2, DecorrelationError, ImagingGeometry, LensData, ThickLensData};
 
 use super::Imaging;
 use crate::{
-    numbers::code,
-    pointers::{borrow, create, write},
+    numbers::{check_coordinates, check_result, check_size, code},
+    pointers::{borrow, create, read, write},
     status::{Failure, Status, call},
 };
 
@@ -234,5 +234,40 @@ pub unsafe extern "C" fn tem00_imaging_describe(
         let Imaging(geometry) = unsafe { borrow("imaging", imaging) }?;
         // SAFETY: by the contract of this function.
         unsafe { write("info", info, ImagingInfo::new(geometry)) }
+    })
+}
+
+/// Computes where in a speckle pattern a pixel lies, in pattern samples, not wrapped to its period.
+///
+/// `pixel` holds its position in pixels, x to the right and y down as rows count, from any origin;
+/// `displacement` the motion of the speckle since the reference state to the right and up, in metres on
+/// the sensor; `pattern_speckle_size` is the speckle size of the pattern in samples.
+///
+/// # Safety
+///
+/// The pointers are null or valid, those to numbers for two.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_imaging_pattern_coordinate(
+    imaging: *const Imaging,
+    pixel: *const f64,
+    displacement: *const f64,
+    pattern_speckle_size: f64,
+    coordinate: *mut f64,
+) -> Status {
+    call(|| {
+        // SAFETY: by the contract of this function.
+        let Imaging(geometry) = unsafe { borrow("imaging", imaging) }?;
+        // SAFETY: by the contract of this function.
+        let pixel: [f64; 2] = unsafe { read("pixel", pixel) }?;
+        // SAFETY: by the contract of this function.
+        let displacement: [f64; 2] = unsafe { read("displacement", displacement) }?;
+        check_coordinates("pixel", &pixel)?;
+        check_coordinates("displacement", &displacement)?;
+        check_size("pattern_speckle_size", pattern_speckle_size)?;
+        let [pixel, displacement] = [pixel, displacement].map(DVec2::from_array);
+        let result = geometry.pattern_coordinate(pixel, displacement, pattern_speckle_size);
+        check_result("coordinate", &result.to_array())?;
+        // SAFETY: by the contract of this function.
+        unsafe { write("coordinate", coordinate.cast(), result.to_array()) }
     })
 }

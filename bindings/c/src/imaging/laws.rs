@@ -1,3 +1,5 @@
+use tem00_decorrelation::CorrelationLaw;
+
 use crate::{
     numbers::check_finite,
     pointers::write,
@@ -5,7 +7,8 @@ use crate::{
 };
 
 /// Computes the intensity correlation left after a pupil displacement, in pupil diameters, and an
-/// axial displacement, in axial decorrelation lengths.
+/// axial displacement, in axial decorrelation lengths, where it is largest: looked up at the
+/// displacement of the speckle.
 ///
 /// # Safety
 ///
@@ -19,7 +22,7 @@ pub unsafe extern "C" fn tem00_correlation(
     call(|| {
         check_finite("pupil_shift", &[pupil_shift])?;
         check_finite("axial_shift", &[axial_shift])?;
-        let result = tem00_decorrelation::correlation(pupil_shift, axial_shift);
+        let result = CorrelationLaw::AtPeak.correlation(pupil_shift, axial_shift);
         // SAFETY: by the contract of this function.
         unsafe { write("correlation", correlation, result) }
     })

@@ -3,7 +3,10 @@
 
 use core::{f64::consts::FRAC_PI_4, ffi::CStr, ptr};
 
-use tem00_decorrelation::pupil_overlap_correlation;
+use tem00_decorrelation::{
+    CameraFrame, Configuration, ConfigurationData, Illumination, ImagingGeometry, LensData,
+    RigidMotions, SpeckleMotion, pupil_overlap_correlation,
+};
 use tem00_shading::{BeamShape, DMat3, DVec2, Laser, LaserDescription, Motion};
 
 use super::*;
@@ -146,12 +149,21 @@ fn line(description: &LineDescription) -> Owned<Light> {
 
 /// Speckle of a light for these motions.
 fn speckle(light: &Owned<Light>, motions: &[BodyMotion]) -> Owned<Speckle> {
+    seen_by(&CAMERA, light, motions)
+}
+
+/// The same by another camera.
+fn seen_by(
+    lens: &CameraDescription,
+    light: &Owned<Light>,
+    motions: &[BodyMotion],
+) -> Owned<Speckle> {
     let description = &SpeckleDescription {
         motions: motions.as_ptr(),
         motion_count: motions.len(),
         ..DESCRIPTION
     };
-    let camera = camera(&CAMERA);
+    let camera = camera(lens);
     // SAFETY: the pointers are valid.
     let create = |out| unsafe { tem00_speckle_create(camera.0, light.0, description, out) };
     Owned(answer(ptr::null_mut(), create), tem00_speckle_destroy)
@@ -161,6 +173,14 @@ fn frame(speckle: &Owned<Speckle>, motion: &BodyMotion) -> Owned<SpeckleFrame> {
     // SAFETY: the pointers are valid.
     let create = |out| unsafe { tem00_speckle_frame_create(speckle.0, motion, out) };
     Owned(answer(ptr::null_mut(), create), tem00_speckle_frame_destroy)
+}
+
+fn shift(frame: &Owned<SpeckleFrame>, point: &[f64; 3], normal: &[f64; 3]) -> SpeckleShift {
+    let (point, normal) = (point.as_ptr(), normal.as_ptr());
+    // SAFETY: the pointers are valid.
+    answer(SpeckleShift::default(), |out| unsafe {
+        tem00_speckle_frame_shift(frame.0, point, normal, out)
+    })
 }
 
 /// A body that slides, beside a camera and a light that stand still.
@@ -366,6 +386,96 @@ fn answers_are_those_of_the_library_to_the_last_bit() {
             assert_eq!(shift.correlation, left, "at {point:?}");
         }
     }
+}
+
+#[test]
+fn shifts_are_those_of_the_law_between_two_states() {
+    // At f/2 one axial decorrelation length is 3 mm; the light diverges, and the focus lies behind.
+    let description = CameraDescription {
+        f_number: 2.0,
+        focus_distance: 0.31,
+        resolution: [16, 12],
+        ..CAMERA
+    };
+    let spot = SpotDescription {
+        waist_radius: 30e-6,
+        waist_distance: 0.0,
+        ..SPOT
+    };
+    let light = made(tem00_light_create_spot, &spot, tem00_light_destroy);
+    let laser = Laser::spot(650e-9, 30e-6)
+        .focused_at(0.0)
+        .placed(spot.placement.origin.into(), DVec3::ZERO, DVec3::X)
+        .unwrap();
+    let geometry = ImagingGeometry::from_lens(LensData {
+        wavelength: 650e-9,
+        focal_length: 25e-3,
+        f_number: 2.0,
+        surface_to_pupil: 0.31,
+        pixel_pitch: 3.45e-6,
+    });
+    let geometry = geometry.unwrap();
+    let mut k = 0.0;
+    // Squares times the golden ratio: even, and independent of each other.
+    let mut draw = |limit: f64| {
+        k += 1.0;
+        limit * (2.0 * f64::fract(k * k * 0.618_033_988_749_894_9) - 1.0)
+    };
+    let mut pose = |slide: f64, turn: f64| {
+        let axis = DVec3::new(draw(1.0), draw(1.0), 1.0);
+        let turned = tem00_shading::Pose::about(DVec3::ZERO, axis, draw(turn)).unwrap();
+        let along = DVec3::new(draw(slide), draw(slide), draw(slide));
+        turned.then(&tem00_shading::Pose::along(along).unwrap())
+    };
+    let of_c = |pose: &tem00_shading::Pose| Pose {
+        rotation: pose.rotation().transpose().to_cols_array_2d(),
+        translation: pose.translation().to_array(),
+    };
+    let mut told = 0;
+    for _ in 0..24 {
+        let [surface, camera, source] = [pose(2e-3, 5e-3), pose(2e-4, 1e-3), pose(1e-3, 1e-3)];
+        let motion = BodyMotion {
+            body: 0,
+            surface: of_c(&surface),
+            camera: of_c(&camera),
+            light: of_c(&source),
+        };
+        let place = 0.1 * pose(0.03, 0.0).translation();
+        let normal = (pose(0.5, 0.0).translation() + DVec3::Z).normalize();
+        let seen = surface.point(place);
+        let lit = |laser: &Laser, point| {
+            Illumination::collimated(laser.wave_direction_at(point)).unwrap()
+        };
+        let before = Configuration::new(ConfigurationData {
+            wavelength: 650e-9,
+            point: place,
+            normal,
+            illumination: lit(&laser, place),
+            camera: CameraFrame::look_at(CAMERA.position.into(), DVec3::ZERO, DVec3::Y).unwrap(),
+            pupil: CAMERA.position.into(),
+        });
+        let before = before.unwrap();
+        let motions = RigidMotions {
+            surface,
+            camera,
+            ..RigidMotions::default()
+        };
+        let after = before
+            .moved_into(&motions, lit(&laser.moved(&source), seen))
+            .unwrap();
+        let law = SpeckleMotion::between(&geometry, &before, &after);
+        let normal = surface.direction(normal).to_array();
+        let speckle = seen_by(&description, &light, &[motion]);
+        let found = shift(&frame(&speckle, &motion), &seen.to_array(), &normal);
+        let [x, y] = (law.speckle_displacement() / 3.45e-6).to_array();
+        let error = (found.displacement[0] - x).hypot(found.displacement[1] + y);
+        assert!(error < 1e-8, "{error} pixels off: {found:?}, {law:?}");
+        // The polynomial of what a motion along the axis takes.
+        let error = found.correlation - law.correlation;
+        assert!(error.abs() < 1e-5, "off by {error}: {found:?}, {law:?}");
+        told += i32::from((0.1..0.9).contains(&law.correlation));
+    }
+    assert!(told > 12, "only {told} tell anything");
 }
 
 #[test]

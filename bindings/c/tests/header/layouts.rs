@@ -21,7 +21,7 @@ macro_rules! structs {
     };
 }
 
-const STRUCTS: [(&str, usize, &str, usize); 39] = structs![
+const STRUCTS: [(&str, usize, &str, usize); 31] = structs![
     Placement "placement" fan_axis,
     SpotDescription "spot_description" m_squared,
     EllipticDescription "elliptic_description" rotation,
@@ -53,18 +53,10 @@ const STRUCTS: [(&str, usize, &str, usize); 39] = structs![
     LensDescription "lens_description" pixel_pitch,
     PupilDistances "pupil_distances" pixel_pitch,
     ImagingInfo "imaging_info" axial_decorrelation_length,
-    CameraAxes "camera_axes" towards_camera,
-    Wavefront "wavefront" curvature_across,
-    SurfacePoint "surface_point" wavefront,
-    Motion "motion" source,
-    SpeckleMotion "speckle_motion" correlation,
-    FieldSetup "field_setup" shared_motion,
-    FieldPoints "field_points" curvature,
-    FieldResults "field_results" pattern_coordinate,
 ];
 
 /// The last constant of each enumeration, and its number.
-const CONSTANTS: [(&str, u32); 10] = [
+const CONSTANTS: [(&str, u32); 8] = [
     ("STATUS_PANIC", Status::Panic as u32),
     ("FOCUS_CURVE_EQUAL_PLANE", FocusCurve::EqualPlane as u32),
     ("LINE_SHAPE_RECTANGULAR", LineShape::Rectangular as u32),
@@ -73,11 +65,6 @@ const CONSTANTS: [(&str, u32); 10] = [
     ("SLICE_PATH_STRAIGHT", SlicePath::Straight as u32),
     ("INTERPOLATION_NEAREST", Interpolation::Nearest as u32),
     ("FOCUS_MAGNIFICATION", Focus::Magnification as u32),
-    (
-        "IMAGE_ORIENTATION_SENSOR_INVERTED",
-        ImageOrientation::SensorInverted as u32,
-    ),
-    ("FIELD_LIGHT_CURVATURE", FieldLight::Curvature as u32),
 ];
 
 /// A program that prints what the header makes of structs and constants.

@@ -8,9 +8,7 @@ const ARGUMENTS: &[(&str, &str)] = &[
     ("boundary", "Boundary"),
     ("correlation", "Callable[[float], float]"),
     ("cumulative", "Cumulative"),
-    ("curvature", "Sequence[Numbers]"),
     ("interpolation", "Interpolation"),
-    ("orientation", "Orientation"),
     ("patterns", "Iterable[SpecklePattern]"),
     ("phasors", "Phasors"),
     ("plans", "Sequence[StackPlan]"),
@@ -19,7 +17,6 @@ const ARGUMENTS: &[(&str, &str)] = &[
 /// Choices by name as results, by class and attribute.
 const RESULTS: &[(&str, &str)] = &[
     ("FanGeometry.focus_curve", "FocusCurve"),
-    ("FieldSetup.orientation", "Orientation"),
     (
         "Pupil.kind",
         "Literal[\"circle\", \"annulus\", \"rectangle\", \"gaussian\", \"sampled\"]",

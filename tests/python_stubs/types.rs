@@ -95,12 +95,7 @@ fn sequence(array: &TypeArray, class: &str) -> Python {
     });
     let inner = depth.clone().last().map(|ty| argument(ty, class));
     let text = match (inner, depth.count()) {
-        (Some(Python::Either(..)), _) => {
-            return match array.len.to_token_stream().to_string().as_str() {
-                "2" => Python::Either("tuple[float, float]", "Pair"),
-                _ => Python::Either("tuple[float, float, float]", "Triple"),
-            };
-        }
+        (Some(Python::Either(..)), _) => return Python::Either("tuple[float, float]", "Pair"),
         (Some(Python::One(text)), 1) if text == "float" => "Vector".to_owned(),
         (Some(Python::One(text)), 2) if text == "float" => "Table".to_owned(),
         (Some(Python::One(text)), 4) if text == "float" => "Nested".to_owned(),

@@ -1,11 +1,9 @@
 mod configuration;
 mod correlations;
-mod field;
 mod frame;
 mod geometry;
 mod illumination;
 mod lens;
-mod motion;
 mod rigid;
 mod speckle_motion;
 mod vectors;
@@ -26,15 +24,13 @@ pub(crate) mod decorrelation {
     use super::{
         configuration::Configuration,
         correlations::{
-            CorrelationLaw, axial_correlation, correlation, equivalent_axial_shift,
-            equivalent_pupil_shift, motion_multiple, pupil_overlap_correlation,
+            CorrelationLaw, axial_correlation, equivalent_axial_shift, equivalent_pupil_shift,
+            pupil_overlap_correlation,
         },
-        field::{FieldLight, FieldSetup, FieldSlices, MotionField},
         frame::{CameraFrame, LineOfSight},
         geometry::ImagingGeometry,
         illumination::Illumination,
         lens::{Focus, LensData, PupilDistances, ThickLensData},
-        motion::{Motion, SurfacePoint},
         rigid::{RigidMotion, RigidMotions},
         speckle_motion::SpeckleMotion,
         wavefront::Wavefront,

@@ -12,6 +12,7 @@ import pytest
 import tem00
 from numpy.typing import NDArray
 from tem00 import beam
+from tem00 import decorrelation as dc
 from tem00._typing import FloatArray
 
 ROOT = Path(__file__).parents[3]
@@ -90,6 +91,51 @@ def test_a_fixed_case_has_the_values_of_the_rust_crate() -> None:
     assert repr(speckle) == f"<Speckle: {speckle}>"
     assert speckle.memory_bytes >> 20 == 20
     assert f"{speckle.speckle_size:.2f}" == "1.64"
+
+
+def test_shifts_are_those_of_the_law_between_two_states() -> None:
+    # At f/2 one axial decorrelation length is 3 mm; the light diverges, and the focus lies behind.
+    camera = tem00.Camera(position=[-0.05, 0.01, 0.3], f_number=2, focus_distance=0.31, resolution=(16, 12))
+    laser = tem00.Laser.spot(650e-9, 30e-6, origin=ORIGIN, target=TARGET, focused_at=0.0)
+    axes = dc.CameraFrame.look_at(camera.position, TARGET, [0, 1, 0])
+    lens = dc.LensData(
+        wavelength=650e-9, focal_length=25e-3, f_number=2, surface_to_pupil=0.31, pixel_pitch=3.45e-6
+    )
+    geometry = dc.ImagingGeometry.from_lens(lens)
+    random = np.random.default_rng(5)
+
+    def pose(slide: float, turn: float) -> tem00.Pose:
+        turned = tem00.Pose.about(TARGET, random.normal(size=3), random.uniform(-turn, turn))
+        return turned.then(tem00.Pose.along(random.uniform(-slide, slide, 3)))
+
+    left = []
+    for _ in range(24):
+        body, eye, source = pose(2e-3, 5e-3), pose(2e-4, 1e-3), pose(1e-3, 1e-3)
+        speckle = tem00.Speckle(
+            camera, laser, 1, poses=[body], camera_poses=[eye], laser_poses=[source], memory=64 << 20
+        )
+        point, normal = random.uniform(-3e-3, 3e-3, 3), random.normal(size=3) / 4 + UP
+        normal /= np.linalg.norm(normal)
+        seen = body.point(point)
+        before = dc.Configuration(
+            wavelength=650e-9,
+            point=point,
+            normal=normal,
+            illumination=dc.Illumination.collimated(laser.next_event(point).wi),
+            camera=axes,
+            pupil=camera.position,
+        )
+        lit = source.direction(laser.next_event(source.inverse().point(seen)).wi)
+        after = before.moved(dc.RigidMotions(surface=body, camera=eye))
+        after = after.with_illumination(dc.Illumination.collimated(lit))
+        law = dc.SpeckleMotion.between(geometry, before, after)
+        shift = speckle.frame(body, eye, source).shift(seen, body.direction(normal))
+        expected = law.speckle_displacement * [1, -1] / 3.45e-6
+        np.testing.assert_allclose(shift.displacement, expected, rtol=1e-9)
+        # The polynomial of what a motion along the axis takes.
+        assert abs(shift.correlation - law.correlation) < 1e-5
+        left.append(law.correlation)
+    assert sum(0.1 < gamma < 0.9 for gamma in left) > 12, left
 
 
 def test_rays_are_those_of_a_pinhole() -> None:

@@ -72,7 +72,7 @@ def structures() -> None:
     frame = decorrelation.CameraFrame.look_at([0, 0, 1], np.zeros(3), (0.0, 1.0, 0.0))
     decorrelation.CameraFrame.look_at(1.0, [0, 0, 0], [0, 1, 0])  # type: ignore[arg-type]
     assert_type(frame.right, FloatArray)
-    decorrelation.Motion(surfaces=[0, 0, 1])  # type: ignore[call-arg]
+    decorrelation.RigidMotions(surfaces=None)  # type: ignore[call-arg]
 
 
 def errors() -> None:

@@ -24,9 +24,6 @@ Vector: TypeAlias = NDArray[np.floating] | NDArray[np.integer] | Sequence[float]
 Pair: TypeAlias = tuple[Numbers, Numbers] | Sequence[Numbers] | FloatArray
 """Two numbers, or two arrays."""
 
-Triple: TypeAlias = tuple[Numbers, Numbers, Numbers] | Sequence[Numbers] | FloatArray
-"""Three numbers, or three arrays."""
-
 ComplexArray: TypeAlias = NDArray[np.complexfloating] | NDArray[np.floating]
 """An array of complex numbers."""
 
@@ -61,6 +58,5 @@ Dtype: TypeAlias = Literal["float64", "float32"] | type[np.float64] | type[np.fl
 Errors: TypeAlias = Literal["relative", "equal"] | Vector
 FocusCurve: TypeAlias = Literal["equal_distance", "equal_plane"]
 Interpolation: TypeAlias = Literal["cubic_spline", "bilinear", "nearest"]
-Orientation: TypeAlias = Literal["screen_upright", "sensor_inverted"]
 Phasors: TypeAlias = Literal["unit", "gaussian"]
 Purpose: TypeAlias = Literal["laser", "body"]

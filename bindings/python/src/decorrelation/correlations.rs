@@ -3,7 +3,7 @@ use tem00_decorrelation as physics;
 
 use crate::{
     arrays::{Numbers, Values, map, try_map},
-    error::{IntoPython, OrRaise},
+    error::IntoPython,
     pickling::{Recipe, by_constructor},
 };
 
@@ -15,7 +15,6 @@ pub(crate) struct CorrelationLaw(physics::CorrelationLaw);
 impl CorrelationLaw {
     const fn name(self) -> &'static str {
         match self.0 {
-            physics::CorrelationLaw::Product => "product",
             physics::CorrelationLaw::AtImageDisplacement => "at_image_displacement",
             physics::CorrelationLaw::AtPeak => "at_peak",
         }
@@ -24,12 +23,6 @@ impl CorrelationLaw {
 
 #[pymethods]
 impl CorrelationLaw {
-    /// Return the product of both laws, the fastest.
-    #[staticmethod]
-    fn product() -> Self {
-        Self(physics::CorrelationLaw::Product)
-    }
-
     /// Return the law at the displacement of the projected surface point.
     #[staticmethod]
     fn at_image_displacement() -> Self {
@@ -54,7 +47,7 @@ impl CorrelationLaw {
 methods! {
     impl CorrelationLaw as this: this.0;
 
-    unmade "product, at_image_displacement or at_peak";
+    unmade "at_image_displacement or at_peak";
 
     /// Return the intensity correlation left, in [0, 1].
     ///
@@ -83,16 +76,6 @@ functions! {
     /// shift : float or array_like
     ///     Axial displacement in axial decorrelation lengths.
     map axial_correlation(shift);
-
-    /// Return the product of the laws for a pupil and an axial displacement.
-    ///
-    /// Parameters
-    /// ----------
-    /// pupil_shift : float or array_like
-    ///     Displacement across the pupil in pupil diameters.
-    /// axial_shift : float or array_like
-    ///     Displacement along the axis in axial decorrelation lengths.
-    map correlation(pupil_shift, axial_shift);
 }
 
 /// Return the pupil displacement, in pupil diameters, that alone would leave a correlation.
@@ -133,28 +116,4 @@ pub(super) fn equivalent_axial_shift<'py>(
         physics::equivalent_axial_shift,
         IntoPython::into_python,
     )
-}
-
-/// Return the multiple of a motion at which the product law first leaves a correlation.
-///
-/// Parameters
-/// ----------
-/// correlation : float
-///     Intensity correlation, from 0 to 1.
-/// pupil_shift : float
-///     Displacement across the pupil in pupil diameters.
-/// axial_shift : float
-///     Displacement along the axis in axial decorrelation lengths.
-///
-/// Returns
-/// -------
-/// float or None
-///     ``None`` if the motion leaves the pattern as it is.
-#[pyfunction]
-pub(super) fn motion_multiple(
-    correlation: f64,
-    pupil_shift: f64,
-    axial_shift: f64,
-) -> PyResult<Option<f64>> {
-    physics::motion_multiple(correlation, pupil_shift, axial_shift).or_raise()
 }

@@ -93,22 +93,6 @@ impl LineOfSight {
         Ok(Self(sight.or_raise()?))
     }
 
-    /// Return the components along b1 and b2 of a vector projected along the line of sight.
-    ///
-    /// Parameters
-    /// ----------
-    /// vector : array_like, shape (3,)
-    ///     Vector of the world.
-    ///
-    /// Returns
-    /// -------
-    /// ndarray, shape (2,)
-    ///     Components in the unit of the vector.
-    fn project<'py>(&self, py: Python<'py>, vector: Components<'py>) -> PyResult<Array2<'py>> {
-        let projected = self.0.project(vec3("vector", &vector)?);
-        array2(py, "vector", projected)
-    }
-
     pub(super) fn __repr__(&self) -> String {
         let direction = shown(self.0.direction());
         format!(

@@ -1,6 +1,6 @@
 use numpy::PyArray1;
 use pyo3::prelude::*;
-use tem00_decorrelation::{DMat3, DVec2, DVec3, ImageOrientation};
+use tem00_decorrelation::{DMat3, DVec2, DVec3};
 
 use crate::{
     arrays::{Numbers, vector_array},
@@ -75,28 +75,6 @@ pub(super) fn numbers(name: &'static str, vector: DVec2) -> PyResult<DVec2> {
         return Err(refused(name, message));
     }
     Ok(vector)
-}
-
-/// Returns which way up image displacements are counted.
-pub(super) fn orientation_of(orientation: &str) -> PyResult<ImageOrientation> {
-    match orientation {
-        "screen_upright" => Ok(ImageOrientation::ScreenUpright),
-        "sensor_inverted" => Ok(ImageOrientation::SensorInverted),
-        _ => {
-            let message = format!(
-                "orientation must be \"screen_upright\" or \"sensor_inverted\", got {orientation:?}"
-            );
-            Err(refused("orientation", message))
-        }
-    }
-}
-
-/// Returns the name of an orientation.
-pub(super) const fn orientation_name(orientation: ImageOrientation) -> &'static str {
-    match orientation {
-        ImageOrientation::ScreenUpright => "screen_upright",
-        ImageOrientation::SensorInverted => "sensor_inverted",
-    }
 }
 
 /// Writes a vector as Python does.

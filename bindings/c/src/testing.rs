@@ -11,6 +11,18 @@ pub(crate) fn last_parameter() -> String {
     text.to_str().unwrap().to_owned()
 }
 
+/// What a call of the interface that must succeed writes over `result`.
+#[track_caller]
+pub(crate) fn answer<R>(mut result: R, question: impl FnOnce(*mut R) -> Status) -> R {
+    assert_eq!(
+        question(&raw mut result),
+        Status::Ok,
+        "{}",
+        last_parameter()
+    );
+    result
+}
+
 /// The status of a call that has just failed, and the parameter that it refused.
 pub(crate) fn refusal(status: Status) -> (Status, String) {
     (status, last_parameter())

@@ -13,7 +13,7 @@ use super::*;
 use crate::{
     light::*,
     status::{Status, tem00_last_error},
-    testing::{each_is_refused, number_is_refused, pointer_is_refused, refusal},
+    testing::{answer, each_is_refused, number_is_refused, pointer_is_refused, refusal},
 };
 
 /// Looks straight down at the origin, through a lens that distorts, at a sensor that is tilted.
@@ -105,13 +105,6 @@ impl<T> Drop for Owned<T> {
         // SAFETY: it was created by the interface and is not used again.
         unsafe { (self.1)(self.0) };
     }
-}
-
-/// What a call of the interface that must succeed writes.
-fn answer<R>(mut result: R, question: impl FnOnce(*mut R) -> Status) -> R {
-    let status = question(&raw mut result);
-    assert_eq!(status, Status::Ok, "{}", message());
-    result
 }
 
 fn message() -> String {

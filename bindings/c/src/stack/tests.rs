@@ -11,7 +11,9 @@ use core::ptr;
 use super::*;
 use crate::{
     status::Status,
-    testing::{each_is_refused, last_parameter, number_is_refused, pointer_is_refused, refusal},
+    testing::{
+        answer, each_is_refused, last_parameter, number_is_refused, pointer_is_refused, refusal,
+    },
 };
 
 const DESCRIPTION: StackDescription = StackDescription {
@@ -61,17 +63,6 @@ impl Owned {
         // SAFETY: the stack lives as long as this.
         unsafe { &(*self.0).0 }
     }
-}
-
-/// Asks the interface, which must succeed.
-fn answer<R>(mut result: R, question: impl FnOnce(*mut R) -> Status) -> R {
-    assert_eq!(
-        question(&raw mut result),
-        Status::Ok,
-        "{}",
-        last_parameter()
-    );
-    result
 }
 
 #[test]

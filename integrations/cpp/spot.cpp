@@ -37,29 +37,23 @@ tem00::light laser() {
     return tem00::light(spot);
 }
 
-// A lens of 25 mm at f/4, whose speckle is about as large as a pixel.
-tem00::imaging camera() {
-    tem00_lens_description lens = {};
-    lens.wavelength = wavelength;
-    lens.focal_length = 25e-3;
+// The speckle that a lens of 25 mm at f/4 sees from above: it is about as large as a pixel.
+tem00::speckle speckle(const tem00::light &light) {
+    const double focal_length = 25e-3, distance = focal_length * (1 + 1 / magnification);
+    tem00_camera_description lens = {};
+    lens.position[2] = lens.focus_distance = distance;
+    lens.up[1] = 1;
+    lens.focal_length = focal_length;
     lens.f_number = 4;
-    lens.pupil_magnification = 1;
-    lens.focus_kind = TEM00_FOCUS_MAGNIFICATION;
-    lens.focus = magnification;
     lens.pixel_pitch = pixel_pitch;
-    return tem00::imaging(lens);
-}
-
-tem00::stack speckle(double speckle_size) {
-    tem00_stack_needs needs = {};
-    needs.image[0] = needs.region[0] = width;
-    needs.image[1] = needs.region[1] = height;
-    needs.speckle_size = speckle_size;
-    needs.frames = 1;
-    needs.memory_limit = std::uint64_t{64} << 20;
-    tem00_stack_description description = tem00::plan(needs);
-    description.seed = 1;
-    return tem00::stack(description);
+    lens.resolution[0] = width;
+    lens.resolution[1] = height;
+    tem00_speckle_description wanted = {};
+    wanted.seed = 1;
+    wanted.memory_limit = std::uint64_t{64} << 20;
+    wanted.looks = 1;
+    wanted.polarisation = 1;
+    return tem00::speckle(tem00::camera(lens), light, wanted);
 }
 
 // What the loop over the pixels leaves.
@@ -69,19 +63,17 @@ struct picture {
     std::vector<double> over_pixel;  // its mean over the pixel
 };
 
-picture render(const tem00::light &light, const tem00::stack &stack, double speckle_size) {
-    const double samples = stack.info().speckle_size / speckle_size;  // per pixel
+picture render(const tem00::light &light, const tem00::speckle_frame &speckle) {
+    const tem00::vec3 normal = {0, 0, 1};
     picture result;
     for (int row = 0; row < height; ++row) {
         for (int column = 0; column < width; ++column) {
-            const tem00::vec2 place = {column + 0.5, row + 0.5};
-            const tem00::vec3 point = {(place[0] - width / 2.0) * pixel,
-                                       (height / 2.0 - place[1]) * pixel, 0};
+            const tem00::vec3 point = {(column + 0.5 - width / 2.0) * pixel,
+                                       (height / 2.0 - row - 0.5) * pixel, 0};
             const auto event = light.next_event(point);
             result.irradiance.push_back(event ? event->e_perp * std::abs(event->wi[2]) : 0);
-            const tem00::vec2 centre = {samples * place[0], -samples * place[1]};
-            result.at_centre.push_back(stack.intensity(centre[0], centre[1], 0));
-            result.over_pixel.push_back(stack.average(centre, {samples, samples}, 0));
+            result.at_centre.push_back(speckle.factor(point, normal));
+            result.over_pixel.push_back(speckle.average(point, normal));
         }
     }
     return result;
@@ -161,8 +153,10 @@ bool agree(const char *what, double measured, double theory, double tolerance) {
 }
 
 bool run(const char *path) {
-    const double speckle_size = camera().info().speckle_size_in_pixels;
-    const picture picture = render(laser(), speckle(speckle_size), speckle_size);
+    const tem00::light light = laser();
+    const tem00::speckle prepared = speckle(light);
+    const double speckle_size = prepared.info().speckle_size;
+    const picture picture = render(light, prepared.frame());
 
     std::puts("                               measured |     theory");
     // The spot is smooth over a pixel: the sum errs by what the cut-off leaves out.

@@ -1,7 +1,7 @@
 use pyo3::prelude::*;
 use tem00_shading::{self as physics, CameraDescription, DVec2, ShadingError};
 
-use super::arguments::vector;
+use super::arguments::{any, vector, vectors};
 use crate::{
     arrays::{Array, Column, Components, Vector, Vectors, Whole, evaluate},
     error::OrRaise,
@@ -130,6 +130,29 @@ impl Camera {
             }
         })?;
         Ok((self.0.position().into(), direction))
+    }
+
+    /// Return the image points at which points are seen through the centre of the lens.
+    ///
+    /// Parameters
+    /// ----------
+    /// points : array_like, shape (..., 3)
+    ///     Points, in metres.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, shape (..., 2)
+    ///     Image points, in pixels with y down, also beside the image; infinite where the camera cannot see.
+    fn project<'py>(&self, py: Python<'py>, points: Vectors<'py>) -> PyResult<Array<'py>> {
+        let points = any("points", &points)?;
+        let [pixels] = evaluate(py, points, [&[2]], |points, [out]| {
+            let (pixels, _) = out.as_chunks_mut();
+            for (pixel, point) in pixels.iter_mut().zip(vectors(points)) {
+                let seen = self.0.project(point).filter(|pixel| pixel.is_finite());
+                *pixel = seen.unwrap_or(DVec2::INFINITY).to_array();
+            }
+        })?;
+        Ok(pixels)
     }
 
     fn __repr__(&self) -> String {

@@ -193,7 +193,7 @@ def test_samples_in_focus_see_a_point_where_the_middle_of_the_lens_does() -> Non
     frame = MOVED.frame(SLIDE)
     pixels, points = image(), seen(image())
     np.testing.assert_allclose(CAMERA.project(points), pixels, rtol=0, atol=1e-9)
-    np.testing.assert_array_equal(CAMERA.project([[0, 0, 1], [0, math.nan, 0]]), np.inf)
+    np.testing.assert_array_equal(CAMERA.project([[0.0, 0.0, 1.0], [0.0, math.nan, 0.0]]), np.inf)
     at_samples = frame.factor_at(pixels, points, UP)
     # The same look-ups but for rounding, which the edge-free patterns hardly tell.
     np.testing.assert_allclose(at_samples, frame.factor(points, UP), rtol=0, atol=1e-6)

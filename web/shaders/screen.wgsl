@@ -7,7 +7,7 @@
 fn screen(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
     let place = scene.centre * scene.size + (at.xy - scene.centre * scene.size) / scene.zoom;
     let light = textureLoad(film_, vec2<i32>(clamp(place, vec2<f32>(0.0), scene.size - 1.0)), 0);
-    var linear = scene.exposure * (light.x * scene.colour.rgb + vec3<f32>(light.z));
+    var linear = scene.exposure * (light.x * scene.colour + vec3<f32>(light.z));
     if scene.false_colour > 0.5 {
         linear = heat(scene.exposure * (light.x + light.z));
     }

@@ -2,6 +2,7 @@
 //!
 //! All but the canvas runs elsewhere too, where tests hold it to the reference tracer.
 
+mod code;
 mod colour;
 pub mod measure;
 pub mod optics;

@@ -2,14 +2,13 @@
 
 use core::f64::consts::PI;
 
-use glam::{DVec3, Vec3};
-use tem00_beam::{
-    BeamError, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight, LineProfile, Placement,
-    SpotLight,
-};
-use tem00_decorrelation::{CameraFrame, DecorrelationError, ImagingGeometry, LensData};
+use glam::{DQuat, DVec3, Vec3};
+use tem00_beam::{FanGeometry, FocusCurve, LineProfile};
+use tem00_camera::{Camera, CameraDescription, CameraError};
+use tem00_coherence::SpectralLine;
+use tem00_decorrelation::{DecorrelationError, ImagingGeometry};
 use tem00_numerics::cast::{to_f32, to_usize};
-use tem00_speckle::{SpeckleError, StackNeeds, StackPlan};
+use tem00_shading::{BeamShape, Laser, LaserDescription, Pose, ShadingError};
 
 use crate::settings::Values;
 
@@ -30,90 +29,72 @@ pub const FAN: FanGeometry = FanGeometry {
 };
 /// The boxes that a part has at most.
 pub const BOXES: usize = 4;
-/// The slices may take so many bytes: what every card lets a kernel see of one buffer.
-const MEMORY: u64 = 128 << 20;
-/// The largest motion of the pupil over the speckle that is looked up, in its diameters.
-const MOTION: f64 = 1.0;
-
-/// Lens, place and axes of the camera.
-#[derive(Clone, Copy, Debug)]
-pub struct View {
-    /// The lens and its pupil.
-    pub geometry: ImagingGeometry,
-    /// The axes.
-    pub frame: CameraFrame,
-    /// The centre of the pupil, in metres.
-    pub eye: DVec3,
-}
-
-impl View {
-    /// The camera looks at the middle of the part.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if the settings make no lens.
-    pub fn new(values: &Values) -> Result<Self, DecorrelationError> {
-        let distance = 1e-3 * values.distance;
-        let (sin, cos) = values.elevation.to_radians().sin_cos();
-        let (y, x) = values.azimuth.to_radians().sin_cos();
-        let eye = distance * DVec3::new(cos * x, cos * y, sin);
-        Ok(Self {
-            geometry: ImagingGeometry::from_lens(LensData {
-                wavelength: 1e-9 * values.wavelength,
-                focal_length: FOCAL_LENGTH,
-                f_number: values.f_number,
-                surface_to_pupil: distance,
-                pixel_pitch: PITCH,
-            })?,
-            frame: CameraFrame::look_at(eye, DVec3::ZERO, DVec3::Z)?,
-            eye,
-        })
-    }
-}
-
-/// Sizes of the speckle that repeats nothing on the sensor.
+/// Returns the camera, which looks at the middle of the part.
 ///
 /// # Errors
 ///
-/// Returns an error if the image holds more speckles than the largest pattern.
-pub fn plan(view: &View) -> Result<StackPlan, SpeckleError> {
-    let image = SENSOR.map(f64::from);
-    StackPlan::new(&StackNeeds {
-        image,
-        region: image,
-        speckle_size: view.geometry.speckle_size_in_pixels(),
-        motion: Some(MOTION),
-        frames: 2,
-        memory_limit: MEMORY,
+/// Returns an error if the settings make no camera.
+pub fn camera(values: &Values) -> Result<Camera, CameraError> {
+    let distance = 1e-3 * values.distance;
+    let (sin, cos) = values.elevation.to_radians().sin_cos();
+    let (y, x) = values.azimuth.to_radians().sin_cos();
+    Camera::new(CameraDescription {
+        position: distance * DVec3::new(cos * x, cos * y, sin),
+        look_at: DVec3::ZERO,
+        up: DVec3::Z,
+        focal_length: FOCAL_LENGTH,
+        f_number: values.f_number,
+        focus_distance: distance,
+        pixel_pitch: PITCH,
+        resolution: SENSOR.map(|n| n as usize),
+        depth_of_field: false,
+        ..CameraDescription::default()
     })
 }
 
-/// Both lights above the part.
+/// Returns the imaging geometry of the camera in the light of the laser.
+///
+/// # Errors
+///
+/// Returns an error if the settings make no camera.
+pub fn geometry(values: &Values) -> Result<ImagingGeometry, CameraError> {
+    camera(values)?.imaging_geometry(1e-9 * values.wavelength)
+}
+
+/// Returns the laser above the part: a line or a spot.
 ///
 /// # Errors
 ///
 /// Returns an error if the settings make no beam or no line.
-pub fn lights(values: &Values) -> Result<(LineLight<f32>, SpotLight<f32>), BeamError> {
-    let (wavelength, width) = (1e-9 * values.wavelength, 1e-3 * values.line_width);
-    let power = 1e-3 * values.power;
+pub fn laser(values: &Values) -> Result<Laser, ShadingError> {
+    let waist_radius = 0.5e-3 * values.line_width;
     // A corner is lit across, from the side of its floor.
-    let [direction, fan_axis] = match to_usize(values.part) {
+    let [direction, line_direction] = match to_usize(values.part) {
         3 => [
             DVec3::new(0.0, 0.5, -0.75_f64.sqrt()),
             DVec3::new(0.0, 0.75_f64.sqrt(), 0.5),
         ],
         _ => [DVec3::NEG_Z, DVec3::X],
     };
-    let placement = Placement {
-        origin: -LASER_DISTANCE * direction,
-        direction,
-        fan_axis,
+    let spot = BeamShape::Spot {
+        waist_radius: [waist_radius; 2],
+        waist_distance: [LASER_DISTANCE; 2],
+        m_squared: [1.0; 2],
     };
-    let beam = GaussianBeam::from_waist(wavelength, 0.5 * width)?;
-    let line = LaserLine::new(beam, FAN, LineProfile::Powell { edge: 0.05 })?;
-    let line = LineLight::place(&line, &placement, power)?.to_f32()?;
-    let spot = SpotLight::place(&beam, LASER_DISTANCE, &placement, power)?.to_f32()?;
-    Ok((line, spot))
+    let line = BeamShape::Line {
+        waist_radius,
+        m_squared: 1.0,
+        fan: FAN,
+        profile: LineProfile::Powell { edge: 0.05 },
+    };
+    Laser::new(LaserDescription {
+        line: SpectralLine::monochromatic(1e-9 * values.wavelength)?,
+        power: 1e-3 * values.power,
+        position: -LASER_DISTANCE * direction,
+        look_at: DVec3::ZERO,
+        line_direction,
+        shape: if values.light > 0.5 { spot } else { line },
+    })
 }
 
 /// Boxes and a sphere that make a part, in its own frame, in metres.
@@ -137,14 +118,22 @@ pub fn part(values: &Values) -> (Vec<[Vec3; 2]>, [f32; 4]) {
     (boxes, sphere)
 }
 
-/// The rotation of the part since its reference state, as a quaternion, and its translation in metres.
-pub fn pose(values: &Values) -> [[f32; 4]; 2] {
-    let (sin, cos) = (0.5e-3 * values.tilt).sin_cos();
-    let [slide, lift] = [values.slide, values.lift].map(|micrometres| to_f32(1e-6 * micrometres));
-    [
-        [0.0, to_f32(sin), 0.0, to_f32(cos)],
-        [slide, 0.0, lift, 0.0],
-    ]
+/// Returns the motion of the part since its reference state.
+///
+/// # Errors
+///
+/// Returns an error if a setting is not finite.
+pub fn pose(values: &Values) -> Result<Pose, DecorrelationError> {
+    let along = 1e-6 * DVec3::new(values.slide, 0.0, values.lift);
+    let tilt = Pose::about(DVec3::ZERO, DVec3::Y, 1e-3 * values.tilt)?;
+    Ok(tilt.then(&Pose::along(along)?))
+}
+
+/// The rotation of a motion, as a quaternion, and its translation in metres.
+pub fn rows_of(pose: &Pose) -> [[f32; 4]; 2] {
+    let rotation = DQuat::from_mat3(&pose.rotation()).to_array();
+    let translation = pose.translation().extend(0.0).to_array();
+    [rotation, translation].map(|row| row.map(to_f32))
 }
 
 /// The part of the sensor's range, at 10,000 electrons and half of all photons found, that a radiance of 1 W/(m² sr) fills.

@@ -15,7 +15,7 @@ use wgpu::{
 use crate::{
     Passes,
     measure::{self, SAMPLES},
-    optics::{SENSOR, View},
+    optics::{self, SENSOR},
     scene,
     settings::{self, Changes, Values},
     speckle::Speckle,
@@ -109,15 +109,12 @@ impl Page {
         self.passes.show(&self.gpu, &rows);
         let mut encoder = self.encoder();
         if self.changed >= Changes::Frame || samples != self.samples {
-            self.passes.expose(&self.gpu, &mut encoder, &self.speckle);
+            self.passes.expose(&mut encoder, &self.speckle);
         }
         let canvas = match self.surface.get_current_texture() {
             wgpu::CurrentSurfaceTexture::Success(canvas) => canvas,
-            other => {
-                return Err(JsError::new(&format!(
-                    "the canvas takes no picture: {other:?}"
-                )));
-            }
+            // Naming the state would bring the names of all formats of textures.
+            _ => return Err(JsError::new("the canvas takes no picture now")),
         };
         let screen = canvas
             .texture
@@ -141,7 +138,7 @@ impl Page {
     /// Promises what is measured in the picture: a `Measured`, or `undefined` where too few pixels are lit.
     pub fn measure(&self) -> Promise {
         let film = self.film(None);
-        let size = View::new(&self.values).map(|view| view.geometry.speckle_size_in_pixels());
+        let size = optics::geometry(&self.values).map(|geometry| geometry.speckle_size_in_pixels());
         future_to_promise(async move {
             let film = read(film).await?;
             let found = measure::measure(&film, SENSOR[0] as usize, size.map_err(refused)?);
@@ -176,7 +173,7 @@ impl Page {
     fn film(&self, speckle: Option<&Speckle>) -> wgpu::Buffer {
         let mut encoder = self.encoder();
         if let Some(speckle) = speckle {
-            self.passes.expose(&self.gpu, &mut encoder, speckle);
+            self.passes.expose(&mut encoder, speckle);
         }
         let buffer = self.passes.copy(&self.gpu, &mut encoder);
         self.gpu.queue().submit([encoder.finish()]);

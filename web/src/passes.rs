@@ -9,10 +9,14 @@ use wgpu::{
     RenderPassDescriptor, RenderPipeline, RenderPipelineDescriptor, ShaderModuleDescriptor,
     ShaderSource, ShaderStages, StoreOp, Texture, TextureDescriptor, TextureDimension,
     TextureFormat, TextureUsages, TextureView, VertexState,
-    util::{BufferInitDescriptor, DeviceExt},
 };
 
-use crate::{optics::SENSOR, scene, speckle::Speckle};
+use crate::{
+    code::{FUNCTIONS, code},
+    optics::SENSOR,
+    scene,
+    speckle::Speckle,
+};
 
 const FILM: TextureFormat = TextureFormat::Rgba32Float;
 
@@ -25,9 +29,9 @@ const _: () = assert!(ROW_BYTES.is_multiple_of(256), "rows are read as they lie"
 pub struct Passes {
     scene: Buffer,
     film: Texture,
-    layout_of_scene: BindGroupLayout,
     onto_film: RenderPipeline,
     onto_screen: RenderPipeline,
+    scene_of_film: BindGroup,
     scene_of_screen: BindGroup,
 }
 
@@ -39,11 +43,10 @@ impl Passes {
             label: Some("page"),
             source: ShaderSource::Wgsl(
                 [
-                    tem00_beam::closed_form::WGSL,
-                    tem00_decorrelation::closed_form::WGSL,
+                    FUNCTIONS.concat().as_str(),
                     &GpuStack::wgsl(1),
-                    include_str!("../shaders/page.wgsl"),
-                    include_str!("../shaders/screen.wgsl"),
+                    code!(include_str!("../shaders/page.wgsl")),
+                    code!(include_str!("../shaders/screen.wgsl")),
                 ]
                 .join("\n")
                 .into(),
@@ -91,6 +94,11 @@ impl Passes {
         });
         let film = film(device);
         let view = film.create_view(&wgpu::TextureViewDescriptor::default());
+        let scene_of_film = device.create_bind_group(&BindGroupDescriptor {
+            label: Some("scene"),
+            layout: &layout_of_scene,
+            entries: &[entry(0, scene.as_entire_binding())],
+        });
         let scene_of_screen = device.create_bind_group(&BindGroupDescriptor {
             label: Some("scene and film"),
             layout: &onto_screen.get_bind_group_layout(0),
@@ -102,9 +110,9 @@ impl Passes {
         Self {
             scene,
             film,
-            layout_of_scene,
             onto_film,
             onto_screen,
+            scene_of_film,
             scene_of_screen,
         }
     }
@@ -116,26 +124,13 @@ impl Passes {
     }
 
     /// Draws the film.
-    pub fn expose(&self, gpu: &Gpu, encoder: &mut CommandEncoder, speckle: &Speckle) {
-        let overlaps = gpu.device().create_buffer_init(&BufferInitDescriptor {
-            label: Some("overlaps"),
-            contents: bytemuck::cast_slice(&speckle.overlaps),
-            usage: BufferUsages::STORAGE,
-        });
-        let scene = gpu.device().create_bind_group(&BindGroupDescriptor {
-            label: Some("scene and overlaps"),
-            layout: &self.layout_of_scene,
-            entries: &[
-                entry(0, self.scene.as_entire_binding()),
-                entry(2, overlaps.as_entire_binding()),
-            ],
-        });
+    pub fn expose(&self, encoder: &mut CommandEncoder, speckle: &Speckle) {
         let view = self
             .film
             .create_view(&wgpu::TextureViewDescriptor::default());
         let mut pass = begin(encoder, &view);
         pass.set_pipeline(&self.onto_film);
-        pass.set_bind_group(0, &scene, &[]);
+        pass.set_bind_group(0, &self.scene_of_film, &[]);
         pass.set_bind_group(1, speckle.stack.bind_group(), &[]);
         pass.draw(0..3, 0..1);
     }
@@ -181,24 +176,19 @@ fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
     BindGroupEntry { binding, resource }
 }
 
-/// The scene, and the overlaps of the stack.
 fn scene_layout(device: &wgpu::Device) -> BindGroupLayout {
-    let of = |binding, ty| BindGroupLayoutEntry {
-        binding,
-        visibility: ShaderStages::FRAGMENT,
-        ty: BindingType::Buffer {
-            ty,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
-    };
     device.create_bind_group_layout(&BindGroupLayoutDescriptor {
-        label: Some("scene and overlaps"),
-        entries: &[
-            of(0, BufferBindingType::Uniform),
-            of(2, BufferBindingType::Storage { read_only: true }),
-        ],
+        label: Some("scene"),
+        entries: &[BindGroupLayoutEntry {
+            binding: 0,
+            visibility: ShaderStages::FRAGMENT,
+            ty: BindingType::Buffer {
+                ty: BufferBindingType::Uniform,
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+            count: None,
+        }],
     })
 }
 

@@ -1,88 +1,121 @@
-//! What a renderer in JavaScript needs to call the function files itself: their text, lights and stacks.
+//! What a renderer in JavaScript needs to call the function files itself: their text, a light, frames and a stack.
 
 use glam::DVec3;
-use tem00_beam::{GaussianBeam, Placement, SpotLight};
-use tem00_speckle::{PupilField, SlicePath, SpeckleStack};
+use tem00_camera::{Camera, CameraDescription};
+use tem00_coherence::SpectralLine;
+use tem00_numerics::cast::to_usize;
+use tem00_shading::{BeamShape, KernelFrame, Laser, LaserDescription, PlacedLight, Pose};
+use tem00_speckle::{SpeckleStack, StackOptions, StackPlan};
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
 
-/// Returns the functions of lights, speckle and its motion in WGSL.
+use crate::{code::FUNCTIONS, speckle};
+
+/// The bytes that the slices may take.
+const MEMORY: u64 = 32 << 20;
+
+/// Returns the functions of lights, of the factor of a hit and what this calls in WGSL.
 #[wasm_bindgen]
 pub fn functions() -> String {
-    [
-        tem00_beam::closed_form::WGSL,
-        tem00_decorrelation::closed_form::WGSL,
-        tem00_speckle::closed_form::WGSL,
-    ]
-    .join("\n")
+    FUNCTIONS.concat() + tem00_speckle::closed_form::WGSL
 }
 
-/// Returns a laser spot from `origin` along `direction`, as the numbers of `Tem00SpotLight`: a beam of this wavelength in metres
-/// and this power in watts, with its waist radius at that distance, both in metres.
-///
-/// # Errors
-///
-/// Returns an error unless `origin` and `direction` are three numbers each, and where the beam or its place is refused.
-#[wasm_bindgen]
-pub fn spot(
-    wavelength: f64,
-    power: f64,
-    waist_radius: f64,
-    waist_distance: f64,
-    origin: &[f64],
-    direction: &[f64],
-) -> Result<Vec<f32>, JsError> {
-    let direction = vector("direction", direction)?;
-    let placement = Placement {
-        origin: vector("origin", origin)?,
-        direction,
-        fan_axis: direction.any_orthogonal_vector(),
-    };
-    let beam = GaussianBeam::from_waist(wavelength, waist_radius)?;
-    let light = SpotLight::place(&beam, waist_distance, &placement, power)?.to_f32()?;
-    Ok(light.to_rows().as_flattened().to_vec())
-}
-
-fn vector(name: &str, numbers: &[f64]) -> Result<DVec3, JsError> {
-    let numbers: [f64; 3] = numbers.try_into().map_err(|_| {
-        let count = numbers.len();
-        JsError::new(&format!("`{name}` has {count} numbers: it must have 3"))
-    })?;
-    Ok(DVec3::from(numbers))
-}
-
-/// A stack made by the library, for look-ups in a shader.
+/// A laser spot and its speckle in the image of a camera, all lengths in metres.
 #[wasm_bindgen]
 #[derive(Debug)]
-pub struct Stack {
+pub struct SpotSpeckle {
+    camera: Camera,
+    laser: Laser,
+    plan: StackPlan,
     stack: SpeckleStack,
 }
 
 #[wasm_bindgen]
-impl Stack {
-    /// Makes a square pattern of `size` samples with a pupil of `diameter` lattice points from a seed, and as many slices as
-    /// twice `half_period`; one, that never changes, for 0.
+impl SpotSpeckle {
+    /// Makes the speckle of a `beam` from `origin` that is in focus at `target`, on a part in the image of a `lens` at `eye`
+    /// that looks at `look_at`, with y up, and is in focus there.
+    ///
+    /// The beam has a wavelength, a power in watts and a waist radius; the lens a focal length, an f-number, a field of view
+    /// from edge to edge in degrees, and as many pixels along each edge.
     ///
     /// # Errors
     ///
-    /// Returns an error where the sizes are refused.
+    /// Returns an error where an array has another length, or the beam, the camera or the memory is refused.
     #[wasm_bindgen(constructor)]
     pub fn new(
-        size: usize,
-        diameter: usize,
-        half_period: usize,
+        beam: &[f64],
+        origin: &[f64],
+        target: &[f64],
+        lens: &[f64],
+        eye: &[f64],
+        look_at: &[f64],
         seed: u32,
     ) -> Result<Self, JsError> {
-        let field = PupilField::new(size, diameter, u64::from(seed))?;
-        let path = match half_period {
-            0 => SlicePath::Still,
-            half_period => SlicePath::Straight {
-                half_period,
-                length: 2,
+        let [wavelength, power, waist_radius] = numbers("beam", beam)?;
+        let [focal_length, f_number, field_of_view, pixels] = numbers("lens", lens)?;
+        let [origin, target] = [vector("origin", origin)?, vector("target", target)?];
+        let [eye, look_at] = [vector("eye", eye)?, vector("look_at", look_at)?];
+        let laser = Laser::new(LaserDescription {
+            line: SpectralLine::monochromatic(wavelength)?,
+            power,
+            position: origin,
+            look_at: target,
+            line_direction: (target - origin).any_orthogonal_vector(),
+            shape: BeamShape::Spot {
+                waist_radius: [waist_radius; 2],
+                waist_distance: [origin.distance(target); 2],
+                m_squared: [1.0; 2],
             },
-        };
+        })?;
+        let focus_distance = eye.distance(look_at);
+        let image_distance = focal_length * focus_distance / (focus_distance - focal_length);
+        let edge = 2.0 * image_distance * (0.5 * field_of_view).to_radians().tan();
+        let camera = Camera::new(CameraDescription {
+            position: eye,
+            look_at,
+            focal_length,
+            f_number,
+            focus_distance,
+            pixel_pitch: edge / pixels,
+            resolution: [to_usize(pixels); 2],
+            ..CameraDescription::default()
+        })?;
+        let geometry = camera.imaging_geometry(wavelength)?;
+        let plan = speckle::plan([pixels; 2], &geometry, MEMORY)?;
+        let stack = plan.stack(seed.into(), StackOptions::default())?;
         Ok(Self {
-            stack: SpeckleStack::generate(&field, path)?,
+            camera,
+            laser,
+            plan,
+            stack,
         })
+    }
+
+    /// Returns the light as the numbers of `Tem00SpotLight`.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if a number overflows in single precision.
+    pub fn light(&self) -> Result<Vec<f32>, JsError> {
+        let PlacedLight::Spot(light) = self.laser.placed() else {
+            return Ok(Vec::new());
+        };
+        Ok(light.to_f32()?.to_rows().as_flattened().to_vec())
+    }
+
+    /// Returns the speckle of a part that has moved by `step`, as the numbers of `Tem00SpeckleFrame`.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error unless `step` is three finite numbers.
+    pub fn frame(&self, step: &[f64]) -> Result<Vec<f32>, JsError> {
+        let frame = KernelFrame {
+            camera: &self.camera,
+            laser: &self.laser,
+            motion: &Pose::along(vector("step", step)?)?.into(),
+            plan: &self.plan,
+            reach: self.plan.reach(),
+        };
+        Ok(frame.to_rows()?.as_flattened().to_vec())
     }
 
     /// Returns the coefficients of all slices, row by row: real and imaginary parts.
@@ -99,9 +132,20 @@ impl Stack {
         rows.flatten().collect()
     }
 
-    /// Returns the number of slices.
+    /// Returns the samples along an edge of the pattern.
     #[wasm_bindgen(getter)]
-    pub fn slices(&self) -> usize {
-        self.stack.slice_count()
+    pub fn size(&self) -> usize {
+        self.stack.size()[0]
     }
+}
+
+fn vector(name: &str, values: &[f64]) -> Result<DVec3, JsError> {
+    numbers(name, values).map(DVec3::from_array)
+}
+
+fn numbers<const N: usize>(name: &str, values: &[f64]) -> Result<[f64; N], JsError> {
+    values.try_into().map_err(|_| {
+        let count = values.len();
+        JsError::new(&format!("`{name}` has {count} numbers: it must have {N}"))
+    })
 }

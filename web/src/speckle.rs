@@ -1,24 +1,48 @@
 //! The speckle of a lens at its distance, on the card.
 
+use tem00_decorrelation::ImagingGeometry;
 use tem00_gpu::{Gpu, GpuStack};
 use tem00_numerics::cast::to_usize;
-use tem00_speckle::{PupilField, SlicePath, SpeckleStack};
+use tem00_shading::KernelFrame;
+use tem00_speckle::{PupilField, SlicePath, SpeckleError, SpeckleStack, StackNeeds, StackPlan};
 
 use crate::{
     AnyError,
-    optics::{self, View},
+    optics::{self, SENSOR},
     settings::Values,
 };
 
-/// A stack, and what turns a correlation into its slices.
+/// The slices may take so many bytes: what every card lets a kernel see of one buffer.
+const MEMORY: u64 = 128 << 20;
+/// The largest motion of the pupil over the speckle that is looked up, in its diameters.
+const MOTION: f64 = 1.0;
+
+/// A stack, and its sizes.
 #[derive(Debug)]
 pub struct Speckle {
     /// The stack.
     pub stack: GpuStack,
-    /// The width of a speckle, in samples.
-    pub size: f64,
-    /// The overlaps of the pupils of its slices with the first and with the next, up to the first without.
-    pub overlaps: Vec<[f32; 2]>,
+    plan: StackPlan,
+}
+
+/// Sizes of the speckle that repeats nothing in an image of so many pixels.
+///
+/// # Errors
+///
+/// Returns an error if the image holds more speckles than the largest pattern.
+pub fn plan(
+    image: [f64; 2],
+    geometry: &ImagingGeometry,
+    memory_limit: u64,
+) -> Result<StackPlan, SpeckleError> {
+    StackPlan::new(&StackNeeds {
+        image,
+        region: image,
+        speckle_size: geometry.speckle_size_in_pixels(),
+        motion: Some(MOTION),
+        frames: 2,
+        memory_limit,
+    })
 }
 
 /// A part at rest needs one slice.
@@ -58,21 +82,35 @@ impl Speckle {
         values: &Values,
         make: impl FnOnce(&PupilField, SlicePath) -> Result<GpuStack, AnyError>,
     ) -> Result<Self, AnyError> {
-        let plan = optics::plan(&View::new(values)?)?;
+        let geometry = optics::geometry(values)?;
+        let plan = plan(SENSOR.map(f64::from), &geometry, MEMORY)?;
         let field = plan.field(to_usize(values.seed) as u64)?;
         let path = match is_at_rest(values) {
             true => SlicePath::Still,
             false => plan.path(),
         };
-        Ok(Self {
-            stack: make(&field, path)?,
-            size: field.speckle_size(),
-            overlaps: path.overlaps(field.pupil())?,
-        })
+        let stack = make(&field, path)?;
+        Ok(Self { stack, plan })
     }
 
     /// Whether these settings, of the same lens and seed, find their slices here.
     pub fn suffices(&self, values: &Values) -> bool {
         is_at_rest(values) || self.stack.slice_count() > 1
+    }
+
+    /// The rows of the struct `Tem00SpeckleFrame`.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the settings make no camera, no laser or no pose.
+    pub fn rows(&self, values: &Values) -> Result<[[f32; 4]; 14], AnyError> {
+        let frame = KernelFrame {
+            camera: &optics::camera(values)?,
+            laser: &optics::laser(values)?,
+            motion: &optics::pose(values)?.into(),
+            plan: &self.plan,
+            reach: self.plan.reach(),
+        };
+        Ok(frame.to_rows()?)
     }
 }

@@ -8,15 +8,14 @@
 use std::sync::atomic::AtomicBool;
 
 use glam::DVec3;
-use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
 use tem00_gpu::{Gpu, wgpu};
 use tem00_tracer::{
-    BeamShape, Frame, Laser, LaserDescription, LineProfile, Material, Rectangle, RenderOptions,
-    Scene, Shape, SpeckleModel, SpecklePlan, SpectralLine, Surface, Trajectory, render_frame,
+    Frame, Material, Rectangle, RenderOptions, Scene, Shape, SpeckleModel, SpecklePlan, Surface,
+    Trajectory, render_frame,
 };
 use tem00_web::{
     Passes, measure,
-    optics::{self, SENSOR, View},
+    optics::{self, SENSOR},
     scene,
     settings::Values,
     speckle::Speckle,
@@ -48,40 +47,15 @@ fn film_of_the_page(gpu: &Gpu, values: &Values) -> Film {
     assert_eq!(rows.len() as u64, scene::COUNT, "as many as the struct has");
     passes.show(gpu, &rows);
     let mut encoder = gpu.device().create_command_encoder(&<_>::default());
-    passes.expose(gpu, &mut encoder, &speckle);
+    passes.expose(&mut encoder, &speckle);
     let buffer = passes.copy(gpu, &mut encoder);
     gpu.queue().submit([encoder.finish()]);
     gpu.read(&buffer).unwrap()
 }
 
 fn frames_of_the_tracer(values: &Values) -> [Film; 2] {
-    let view = View::new(values).unwrap();
-    let mut scene = Scene::new(
-        Camera::new(CameraDescription {
-            position: view.eye,
-            look_at: DVec3::ZERO,
-            up: DVec3::Z,
-            focal_length: view.geometry.focal_length(),
-            f_number: values.f_number,
-            focus_distance: 1e-3 * values.distance,
-            pixel_pitch: view.geometry.pixel_pitch(),
-            resolution: SENSOR.map(|n| n as usize),
-            principal_point: None,
-            tilt: SensorTilt::default(),
-            distortion: RadialDistortion::default(),
-            depth_of_field: false,
-        })
-        .unwrap(),
-    );
-    let laser = Laser::new(LaserDescription {
-        line: SpectralLine::monochromatic(1e-9 * values.wavelength).unwrap(),
-        power: 1e-3 * values.power,
-        position: optics::LASER_DISTANCE * DVec3::Z,
-        look_at: DVec3::ZERO,
-        line_direction: DVec3::X,
-        shape: shape(values),
-    });
-    scene.lasers.push(laser.unwrap());
+    let mut scene = Scene::new(optics::camera(values).unwrap());
+    scene.lasers.push(optics::laser(values).unwrap());
     let plate = Rectangle::new(DVec3::ZERO, 0.035 * DVec3::X, 0.025 * DVec3::Y).unwrap();
     scene.surfaces.push(Surface {
         trajectory: Trajectory::steady(1e-6 * SLIDE * DVec3::X).unwrap(),
@@ -103,23 +77,6 @@ fn frames_of_the_tracer(values: &Values) -> [Film; 2] {
         let end = AtomicBool::new(false);
         film_of(&render_frame(&scene, Some(&speckle), frame, &options, |_| (), &end).unwrap())
     })
-}
-
-fn shape(values: &Values) -> BeamShape {
-    let waist_radius = 0.5e-3 * values.line_width;
-    if values.light > 0.5 {
-        return BeamShape::Spot {
-            waist_radius: [waist_radius; 2],
-            waist_distance: [optics::LASER_DISTANCE; 2],
-            m_squared: [1.0; 2],
-        };
-    }
-    BeamShape::Line {
-        fan: optics::FAN,
-        waist_radius,
-        m_squared: 1.0,
-        profile: LineProfile::Powell { edge: 0.05 },
-    }
 }
 
 fn film_of(frame: &Frame) -> Film {
@@ -195,10 +152,7 @@ fn agree(at_rest: Values) {
         "width {width}, not {width_there}"
     );
 
-    let size = View::new(&at_rest)
-        .unwrap()
-        .geometry
-        .speckle_size_in_pixels();
+    let size = optics::geometry(&at_rest).unwrap().speckle_size_in_pixels();
     let [here, there] =
         [&page[0], &tracer[0]].map(|film| measure::measure(film, WIDTH, size).unwrap());
     // A speckle covers some size² pixels. Both samples scatter by about √(2 / speckles).

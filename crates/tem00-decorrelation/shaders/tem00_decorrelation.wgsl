@@ -1,63 +1,19 @@
-// Motion and change of speckle at a surface point, for a renderer's own kernels.
+// Motion and change of speckle at a surface point between two states of a scene, of any size: the law
+// that `tem00_factor` of tem00-shading looks up by.
 //
-// Functions and structs only: no bindings, no entry points, no imports, no extensions. Every name
-// begins with `tem00_` or `Tem00`; those that end in `_` are not for the caller.
+// Functions and structs only: no bindings, no entry points, no imports, no extensions; names that end in
+// `_` are not for the caller.
 //
-// The law is that between two states of a scene, of any size: `SpeckleMotion::between` of the crate,
-// with the correlation that belongs to the displacement that it returns. The camera stands still:
-// motions are relative to it, so for a camera that moves by c give the motion a − c.
-//
-// A part turns about a pivot and slides, under a point source. A kernel that sees its point `seen`, of
-// the normal `n`, takes both back to where they were, and asks for the motion from there:
-//
-//     let turned = seen - translation - pivot;
-//     let backwards = vec4(-rotation.xyz, rotation.w);
-//     let change = tem00_rotation_change(backwards, turned);
-//     let p = pivot + turned + change;
-//     let normal = n + tem00_rotation_change(backwards, n);
-//     let motion = translation - change;
-//     let light = tem00_point_source(source - p, motion);
-//     let moved = tem00_speckle_motion(imaging, pupil_centre - p, normal, motion, rotation, light);
-//     let u = tem00_slice_coordinate(moved.correlation, entries);
-//     // … the intensity of the stack at moved.pattern_coordinate, u
-//
-// The host defines one function, a table of the stack's overlaps, `SlicePath::overlaps`:
-//
-//     fn tem00_slice_overlaps(slice: u32) -> vec2<f32> { return table[slice]; }
-//
-// Lengths are in metres, vectors in world coordinates. A rotation is a unit quaternion x, y, z, w,
+// Vectors have the components right, up and towards the camera, in the axes of a camera that stands
+// still: motions are relative to it. Lengths are in metres. A rotation is a unit quaternion x, y, z, w,
 // (0, 0, 0, 1) for none.
 //
 // Validity: lengths from 1e-9 m to 1e9 m. No difference of near-equal numbers is formed: with the
 // distance L to the pupil, the angle φ by which the light turns and the motion a, displacements in the
-// pupil are off by about 4 ε (|a| + L φ), ε = 1.2e-7, which is 7e-8 of the pupil diameter in rms and 5e-7
-// at worst while the speckle stays in the pupil, however far away that is; γ is off by 1e-5 at worst. Positions enter at second order only.
-// Pattern coordinates are off by 4 ε of the principal distance in samples. A cosine below 2⁻¹² counts as
-// grazing.
+// pupil are off by about 4 ε (|a| + L φ), ε = 1.2e-7. Positions enter at second order only. γ is off by
+// 1e-5 at worst. A cosine below 2⁻¹² counts as grazing.
 
-/// Camera and pattern that all points share: `MotionField::to_rows` in the crate.
-struct Tem00Imaging {
-    /// Unit vector to the right in the pupil plane.
-    right: vec3<f32>,
-    /// Length of the image of a unit tangent, in metres: positive if the image is upright.
-    signed_principal_distance: f32,
-    /// Unit vector up in the pupil plane.
-    up: vec3<f32>,
-    /// Reciprocal distance of the surface in focus from the pupil, in 1/m.
-    per_surface_to_pupil: f32,
-    /// Unit vector along the optical axis, from the scene towards the camera.
-    towards_camera: vec3<f32>,
-    /// Reciprocal diameter of the pupil, in 1/m.
-    per_pupil_diameter: f32,
-    /// Reciprocal axial decorrelation length at a depth of 1 m, in 1/m.
-    per_axial_length: f32,
-    /// Samples of the pattern per metre on the sensor.
-    samples_per_metre: f32,
-    /// Unused, 0.
-    pad: vec2<f32>,
-}
-
-/// Direction of the light at a point, as the part and the camera move.
+/// Direction of the light at a point, as the part, the light and the camera move.
 struct Tem00LightMotion {
     /// Unit vector to the source before; 0 where the light comes from no direction.
     to_source: vec3<f32>,
@@ -67,59 +23,16 @@ struct Tem00LightMotion {
 
 /// Change of the speckle at a point.
 struct Tem00SpeckleMotion {
-    /// Motion of the speckle in the image to the right and up, in metres on the sensor.
-    speckle_displacement: vec2<f32>,
+    /// Image of the point before, in principal distances: slopes of the line of sight.
+    image: vec2<f32>,
+    /// Its motion.
+    image_displacement: vec2<f32>,
     /// Motion of the speckle field across the pupil, in metres; 1e18 in both where it is decorrelated.
     pupil_displacement: vec2<f32>,
-    /// Where to look the pattern up, in samples from the optical axis, not wrapped: at the image that the
-    /// point had before, less what out of focus the speckle moves beside it.
-    pattern_coordinate: vec2<f32>,
-    /// Correlation γ of the intensity with the pattern before, in [0, 1].
-    correlation: f32,
-}
-
-/// Collimated light from the direction `to_source`, a unit vector.
-fn tem00_collimated(to_source: vec3<f32>) -> Tem00LightMotion {
-    return Tem00LightMotion(to_source, vec3(0.0));
-}
-
-/// Light from a point, `to_source` away, of which the surface moves away by `motion`.
-fn tem00_point_source(to_source: vec3<f32>, motion: vec3<f32>) -> Tem00LightMotion {
-    let since = to_source - motion;
-    let lengths = vec2(length(to_source), length(since));
-    if lengths.x == 0.0 || lengths.y == 0.0 {
-        return Tem00LightMotion();
-    }
-    let direction = to_source / lengths.x;
-    let shorter = dot(motion, to_source + since) / (lengths.x + lengths.y);
-    return Tem00LightMotion(direction, (direction * shorter - motion) / lengths.y);
-}
-
-/// A wave from the direction `to_source`, a unit vector, with the symmetric curvature tensor K, in
-/// 1/m and with K `to_source` = 0, through which the surface moves by `motion`.
-///
-/// The change is that of l − K (I − ζ K)⁻¹ a, ζ = l·a, of unit length. Of the two curvatures K has their
-/// sum and product.
-fn tem00_wavefront(
-    to_source: vec3<f32>,
-    curvature: mat3x3<f32>,
-    motion: vec3<f32>,
-) -> Tem00LightMotion {
-    let along = dot(to_source, motion);
-    let across = motion - to_source * along;
-    let diagonal = vec3(curvature[0].x, curvature[1].y, curvature[2].z);
-    let mixed = vec3(curvature[1].z, curvature[2].x, curvature[0].y);
-    let sum = diagonal.x + diagonal.y + diagonal.z;
-    let product = dot(diagonal, diagonal.yzx) - dot(mixed, mixed);
-    let determinant = 1.0 - along * (sum - along * product);
-    if determinant == 0.0 {
-        return Tem00LightMotion();
-    }
-    let oblique = (curvature * across - across * (along * product)) / determinant;
-    let slope = oblique - to_source * dot(to_source, oblique);
-    let squared = dot(slope, slope);
-    let sec = sqrt(1.0 + squared);
-    return Tem00LightMotion(to_source, -(slope + to_source * (squared / (1.0 + sec))) / sec);
+    /// 1/Z before and after, with the depth Z before the pupil plane, in 1/m.
+    per_depth: vec2<f32>,
+    /// Whether the point was in sight and is.
+    seen: bool,
 }
 
 /// Returns by how much a rotation changes a vector, (R − 1) v: without cancellation where it is small.
@@ -131,10 +44,9 @@ fn tem00_rotation_change(rotation: vec4<f32>, v: vec3<f32>) -> vec3<f32> {
 /// moves by `motion`.
 ///
 /// `to_pupil` leads from the point to the centre of the pupil, before; the normal, before, may be of any
-/// length and to either side. Where the point is out of sight, before or after, seen edge-on, lit from
-/// its other side or from no direction, the pattern is decorrelated: γ = 0.
+/// length and to either side. The pattern is decorrelated where the point is out of sight, before or
+/// after, seen edge-on, lit from its other side or from no direction.
 fn tem00_speckle_motion(
-    imaging: Tem00Imaging,
     to_pupil: vec3<f32>,
     normal: vec3<f32>,
     motion: vec3<f32>,
@@ -143,35 +55,21 @@ fn tem00_speckle_motion(
 ) -> Tem00SpeckleMotion {
     let distance = length(to_pupil);
     let turn = tem00_turn_of_sight_(to_pupil / distance, normalize(normal), rotation, light);
-    let sight = tem00_in_camera_(imaging, to_pupil);
-    let step = tem00_in_camera_(imaging, motion);
-    let depth = sight.z - step.z;
+    let depth = to_pupil.z - motion.z;
     let grazing = 0.000244140625 * distance;
-    let c = imaging.signed_principal_distance;
-
-    // The image of the point before, and its motion.
-    var moved = Tem00SpeckleMotion(vec2(0.0), vec2(1e18), vec2(0.0), 0.0);
-    if sight.z > grazing {
-        let before = sight.xy / -sight.z;
-        moved.pattern_coordinate = (c * imaging.samples_per_metre) * before;
-        if depth > grazing {
-            moved.speckle_displacement = (c / depth) * (step.xy + before * step.z);
-        }
-    }
+    let image = to_pupil.xy / -to_pupil.z;
+    var moved = Tem00SpeckleMotion(
+        image,
+        (motion.xy + image * motion.z) / depth,
+        vec2(1e18),
+        vec2(1.0 / to_pupil.z, 1.0 / depth),
+        min(to_pupil.z, depth) > grazing,
+    );
     // The field leaves along d + turn and meets the pupil at Π (a + L turn).
-    let leaving = sight + distance * tem00_in_camera_(imaging, turn.change);
-    if min(sight.z, depth) > grazing && turn.known && leaving.z > grazing {
-        let shift = step + distance * tem00_in_camera_(imaging, turn.change);
-        let pupil = shift.xy - leaving.xy * (shift.z / leaving.z);
-        let defocus = 0.5 * (1.0 / sight.z + 1.0 / depth) - imaging.per_surface_to_pupil;
-        let beside = (-c * defocus) * pupil;
-        moved.speckle_displacement += beside;
-        moved.pattern_coordinate -= imaging.samples_per_metre * beside;
-        moved.pupil_displacement = pupil;
-        moved.correlation = tem00_correlation(
-            length(pupil) * imaging.per_pupil_diameter,
-            step.z / (sight.z * depth) * imaging.per_axial_length,
-        );
+    let leaving = to_pupil + distance * turn.change;
+    if moved.seen && turn.known && leaving.z > grazing {
+        let shift = motion + distance * turn.change;
+        moved.pupil_displacement = shift.xy - leaving.xy * (shift.z / leaving.z);
     }
     return moved;
 }
@@ -189,42 +87,6 @@ fn tem00_correlation(pupil_shift: f32, axial_shift: f32) -> f32 {
         return 0.0;
     }
     return overlap * overlap * tem00_axial_loss_(pupil_shift, axial_shift);
-}
-
-/// Returns the coordinate u of a stack where γ with its first slice has fallen to `correlation`, from
-/// the number of entries that `tem00_slice_overlaps` has; 0 for a still stack, which has one.
-///
-/// An entry is the overlap of its slice with the first and that with the next. Between two slices the
-/// blend of both has γ, exactly. Near γ = 1, u is as inexact as γ makes it: u² is linear in 1 − γ.
-fn tem00_slice_coordinate(correlation: f32, entries: u32) -> f32 {
-    let overlap = sqrt(clamp(correlation, 0.0, 1.0));
-    var here = tem00_slice_overlaps(0u);
-    if overlap >= 1.0 {
-        return 0.0;
-    }
-    for (var slice = 1u; slice < entries; slice++) {
-        let next = tem00_slice_overlaps(slice);
-        if next.x <= overlap {
-            return f32(slice - 1u) + tem00_blend_fraction_(here.x, next.x, here.y, overlap);
-        }
-        here = next;
-    }
-    return f32(entries - 1u);
-}
-
-/// The fraction f of the way between two slices where
-/// [(1 − f) a + f b] / √(1 − 2 f (1 − f) (1 − ρ)) has fallen to g.
-fn tem00_blend_fraction_(a: f32, b: f32, between: f32, g: f32) -> f32 {
-    let step = b - a;
-    let k = 1.0 - between;
-    let half_slope = a * step + k * g * g;
-    let inner = step * step + 2.0 * k * a * b - k * (1.0 + between) * g * g;
-    let root = g * sqrt(max(inner, 0.0));
-    // Of the two forms of the solution, the one whose terms do not cancel.
-    if half_slope > 0.0 {
-        return clamp((root + half_slope) / (2.0 * k * g * g - step * step), 0.0, 1.0);
-    }
-    return clamp((a - g) * (a + g) / max(root - half_slope, 1e-30), 0.0, 1.0);
 }
 
 struct Tem00Turn_ {
@@ -256,11 +118,6 @@ fn tem00_turn_of_sight_(
     let along = gain / (side + sign(side) * sqrt(rest));
     let turned = n * along - across;
     return Tem00Turn_(turned + tem00_rotation_change(rotation, d + turned), true);
-}
-
-/// The components of a vector to the right, up and towards the camera.
-fn tem00_in_camera_(imaging: Tem00Imaging, v: vec3<f32>) -> vec3<f32> {
-    return vec3(dot(v, imaging.right), dot(v, imaging.up), dot(v, imaging.towards_camera));
 }
 
 /// The overlap of two discs `shift` diameters apart, ε √ε S(ε) with ε = 1 − shift. The polynomial S

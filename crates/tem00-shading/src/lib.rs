@@ -12,6 +12,7 @@
 //! | level | names |
 //! |---|---|
 //! | what a renderer calls | [`Laser`], [`Camera`], [`Speckle`], [`Motion`], [`Pose`], [`SpeckleFrame`] |
+//! | what a kernel on a graphics card calls | [`WGSL`], [`KernelSpeckle`], [`KernelFrame`] |
 //! | what these are made of | [`SpeckleLaw`] and [`SpeckleShift`], [`SpectralLaw`] and [`SpectralShift`], [`Perspective`], [`Trajectory`], and the crates beam, camera, decorrelation, speckle |
 //!
 //! # Validity
@@ -21,6 +22,7 @@
 //! it is multiplied.
 
 mod error;
+mod kernel;
 mod laser;
 mod motion;
 mod perspective;
@@ -37,6 +39,7 @@ mod trajectory;
 
 pub use error::ShadingError;
 pub use glam::{DMat3, DVec2, DVec3};
+pub use kernel::{KernelFrame, KernelSpeckle, WGSL};
 pub use laser::{
     BeamShape, EmittedRay, Laser, LaserBuilder, LaserDescription, LaserEvent, LaserEventBatch,
     PlacedLight, SampledEvent,

@@ -22,6 +22,8 @@ pub(crate) struct Patterns {
     pub(crate) camera: Camera,
     pub(crate) laser: Laser,
     pub(crate) geometry: ImagingGeometry,
+    /// The fields that share a stack.
+    pub(crate) in_a_stack: usize,
     /// One for each field, or one for all.
     pub(crate) stacks: Vec<SpeckleStack>,
     pub(crate) parts: Vec<Part>,
@@ -55,10 +57,10 @@ pub(crate) struct Field {
 /// The speckle of one body in one frame, which holds on to the patterns.
 #[derive(Clone, Debug)]
 pub struct SpeckleFrame {
-    speckle: Arc<Patterns>,
-    state: State,
-    side: f64,
-    reach: f64,
+    pub(crate) speckle: Arc<Patterns>,
+    pub(crate) state: State,
+    pub(crate) side: f64,
+    pub(crate) reach: f64,
     /// The place of the body in the patterns, in samples.
     offset: DVec2,
 }
@@ -161,8 +163,6 @@ impl PreparedSpeckle {
         let state = State::new((&patterns.camera, &patterns.laser), motion)?;
         let side = state.side(&patterns.geometry, patterns.farthest.as_ref());
         let size = patterns.plan.size().map(|samples| samples as f64);
-        let fields: usize = patterns.parts.iter().map(|part| part.fields.len()).sum();
-        let in_a_stack = fields / patterns.stacks.len();
         let of_waves = patterns.bandwidth.as_ref().map_or(0.0, |b| b.reach);
         let reach = patterns.plan.reaches(patterns.shifts)[usize::from(side > 0.0)];
         Ok(SpeckleFrame {
@@ -170,7 +170,7 @@ impl PreparedSpeckle {
             state,
             side,
             reach: (reach - of_waves).max(0.0),
-            offset: DVec2::from_array(StackPlan::place(motion.body * in_a_stack))
+            offset: DVec2::from_array(StackPlan::place(motion.body * patterns.in_a_stack))
                 * DVec2::from_array(size),
         })
     }

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use tem00_camera::Camera;
 use tem00_coherence::Relief;
 use tem00_decorrelation::ImagingGeometry;
-use tem00_speckle::{SpeckleStack, StackNeeds, StackPlan, incoherent_fractions};
+use tem00_speckle::{PupilField, SpeckleStack, StackNeeds, StackPlan, incoherent_fractions};
 
 use crate::{
     Bandwidth, Laser, Motion, Perspective, Pose, PreparedSpeckle, ShadingError, SurfaceLight,
@@ -132,7 +132,22 @@ impl Speckle {
     /// A laser that has a linewidth or is no point needs [`at_points`](Self::at_points), one of which the camera sees in
     /// the reference state. With a linewidth, motions must displace the pupil along the direction in which other
     /// wavelengths do: an error says where two frames would correlate by 0.05 otherwise than by the law.
-    pub fn prepare(mut self) -> Result<PreparedSpeckle, ShadingError> {
+    pub fn prepare(self) -> Result<PreparedSpeckle, ShadingError> {
+        let motions = self.motions.clone();
+        let (mut patterns, fields) = self.planned()?;
+        let stacks = fields.iter();
+        let stacks = stacks.map(|field| SpeckleStack::generate(field, patterns.plan.path()));
+        patterns.stacks = stacks.collect::<Result<_, _>>()?;
+        let has_line = patterns.bandwidth.is_some();
+        let speckle = PreparedSpeckle(Arc::new(patterns));
+        for motion in motions.iter().filter(|_| has_line) {
+            speckle.frame(motion)?;
+        }
+        Ok(speckle)
+    }
+
+    /// Chooses sizes, slices and seeds: patterns without their stacks, and the fields of these.
+    pub(crate) fn planned(mut self) -> Result<(Patterns, Vec<PupilField>), ShadingError> {
         self.motions.retain(|motion| !motion.is_still());
         let geometry = self.camera.imaging_geometry(self.laser.wavelength())?;
         let light = self.light(&geometry)?;
@@ -150,12 +165,8 @@ impl Speckle {
         };
         let needs = demand.needs(frames, geometry.speckle_size_in_pixels(), self.memory);
         let Layout { plan, stacks } = Layout::new(&needs, fields)?;
-        let of_stacks = plan.field(self.seed)?.independent(stacks)?;
-        let of_stacks = of_stacks.iter();
-        let stacks = of_stacks.map(|field| SpeckleStack::generate(field, plan.path()));
-        let stacks = stacks.collect::<Result<Vec<_>, _>>()?;
         let size = plan.size().map(|samples| samples as f64);
-        let field = |number: usize| match stacks.len() {
+        let field = |number: usize| match stacks {
             1 => Field {
                 stack: 0,
                 offset: DVec2::from_array(StackPlan::place(number)) * DVec2::from_array(size),
@@ -172,7 +183,7 @@ impl Speckle {
                 .map(field)
                 .collect(),
         });
-        let speckle = PreparedSpeckle(Arc::new(Patterns {
+        let patterns = Patterns {
             waves: bandwidth
                 .as_ref()
                 .map_or(1, |b| b.waves(self.laser.spectral_line())),
@@ -180,19 +191,16 @@ impl Speckle {
             laser: self.laser,
             geometry,
             parts: parts.collect(),
-            stacks,
+            in_a_stack: fields / stacks,
+            stacks: Vec::new(),
             bandwidth,
             needs,
             plan,
             shifts: demand.shifts,
             farthest: demand.farthest,
             points: self.points,
-        }));
-        let has_line = speckle.0.bandwidth.is_some();
-        for motion in self.motions.iter().filter(|_| has_line) {
-            speckle.frame(motion)?;
-        }
-        Ok(speckle)
+        };
+        Ok((patterns, plan.field(self.seed)?.independent(stacks)?))
     }
 
     /// Finds what the linewidth and the extent of the laser ask of the surface.

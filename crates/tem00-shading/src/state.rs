@@ -10,7 +10,7 @@ use crate::{
 /// Body, camera and laser now, beside the reference state.
 #[derive(Clone, Debug)]
 pub(crate) struct State {
-    motion: Motion,
+    pub(crate) motion: Motion,
     change: RigidChange,
     camera: Camera,
     /// The laser in the reference state and now.

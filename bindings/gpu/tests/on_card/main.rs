@@ -7,6 +7,8 @@
     reason = "a test stops at what it does not expect"
 )]
 
+#[path = "../../examples/factors.rs"]
+mod factors;
 mod kernel;
 mod lights;
 mod look_up;

@@ -31,8 +31,41 @@ pub(crate) struct LineWave {
 /// Where a laser stands.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WaveFrame {
-    origin: DVec3,
-    axes: [DVec3; 3],
+    pub(crate) origin: DVec3,
+    pub(crate) axes: [DVec3; 3],
+}
+
+/// A wave as the numbers of a kernel, for which a spot and a line are alike.
+pub(crate) struct WaveNumbers {
+    /// The waist along x, and that across it from there: once, and as much again per secant of the ray.
+    pub(crate) centres: [f64; 3],
+    pub(crate) rayleigh_range_squared: [f64; 2],
+    pub(crate) is_line: bool,
+}
+
+impl WaveShape {
+    /// Returns the numbers of a kernel. Along a line the waves spread from its apex.
+    pub(crate) const fn numbers(&self) -> WaveNumbers {
+        match *self {
+            Self::Spot(SpotWave {
+                waist_distance: [x, y],
+                rayleigh_range_squared,
+            }) => WaveNumbers {
+                centres: [x, y - x, 0.0],
+                rayleigh_range_squared,
+                is_line: false,
+            },
+            Self::Line(LineWave {
+                apex_offset,
+                waist_slant_distance: [middle, growth],
+                rayleigh_range_squared,
+            }) => WaveNumbers {
+                centres: [-apex_offset, middle, growth],
+                rayleigh_range_squared: [0.0, rayleigh_range_squared],
+                is_line: true,
+            },
+        }
+    }
 }
 
 impl SpotWave {

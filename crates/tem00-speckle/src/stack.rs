@@ -11,7 +11,6 @@ mod file;
 mod join;
 mod look_up;
 mod memory;
-mod overlaps;
 mod path;
 mod plan;
 mod quadrature;

@@ -192,7 +192,7 @@ fn points_along(length: usize, field: &PupilField) -> i64 {
 pub(crate) struct PathLaw {
     pub(crate) path: SlicePath,
     /// The overlaps of the pupils of each slice with slice 0 and with the next slice, over a period.
-    overlaps: Vec<[f64; 2]>,
+    pub(super) overlaps: Vec<[f64; 2]>,
     /// The smallest overlap with slice 0 up to each slice, to the half period.
     lowest: Vec<f64>,
 }
@@ -250,11 +250,6 @@ impl PathLaw {
             lowest: lowest.collect(),
             overlaps,
         }
-    }
-
-    /// Returns the overlaps of the pupils of each slice with slice 0 and with the next slice, over a period.
-    pub(super) fn overlaps(&self) -> &[[f64; 2]] {
-        &self.overlaps
     }
 
     /// The amplitude correlation of look-ups at the coordinates 0 and `u`.

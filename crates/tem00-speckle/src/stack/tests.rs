@@ -634,7 +634,7 @@ fn stacks_are_the_same_bits_for_any_number_of_threads() {
 fn the_first_of_the_slices_that_have_fallen_as_low_is_found() {
     // The overlap of two rings is least where they cross at right angles, and rises until they touch.
     let law = PathLaw::new(circle(2_048), &Pupil::Annulus { inner: 0.8 });
-    let overlaps: Vec<_> = law.overlaps()[..2_048].iter().map(|[o, _]| *o).collect();
+    let overlaps: Vec<_> = law.overlaps[..2_048].iter().map(|[o, _]| *o).collect();
     let dip = (1..2_048)
         .find(|&slice| overlaps[slice] <= overlaps[slice + 1])
         .unwrap();

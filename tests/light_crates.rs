@@ -14,7 +14,7 @@ use std::{
 
 use tem00::{beam, decorrelation};
 
-const CRATES: [&str; 3] = ["beam", "speckle", "decorrelation", "shading"];
+const CRATES: [&str; 4] = ["beam", "speckle", "decorrelation", "shading"];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))

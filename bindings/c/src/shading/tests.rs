@@ -388,6 +388,9 @@ fn shifts_are_those_of_the_law_between_two_states() {
         f_number: 2.0,
         focus_distance: 0.31,
         resolution: [16, 12],
+        principal_offset: [0.0; 2],
+        tilt: [0.0; 2],
+        distortion: [0.0; 3],
         ..CAMERA
     };
     let spot = SpotDescription {

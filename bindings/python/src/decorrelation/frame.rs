@@ -1,7 +1,7 @@
 use pyo3::prelude::*;
 use tem00_decorrelation::{self as physics, DMat3};
 
-use super::vectors::{Array2, array2, mat3, shown, shown33, vec3};
+use super::vectors::{mat3, shown, shown33, vec3};
 use crate::{
     arrays::{Components, Table, Vector},
     error::OrRaise,

@@ -12,6 +12,7 @@ const ARGUMENTS: &[(&str, &str)] = &[
     ("patterns", "Iterable[SpecklePattern]"),
     ("phasors", "Phasors"),
     ("plans", "Sequence[StackPlan]"),
+    ("purpose", "Purpose"),
 ];
 
 /// Choices by name as results, by class and attribute.

@@ -60,6 +60,7 @@ const WORDS: &[(&str, &[&str])] = &[
             "Numbers",
             "Pair",
             "Phasors",
+            "Purpose",
             "RealArray",
             "Table",
             "Values",

@@ -247,6 +247,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "tem00-beam",
             "tem00-decorrelation",
             "tem00-numerics",
+            "tem00-shading",
             "tem00-speckle",
         ],
         &["bytemuck", "num-complex", "pollster", "wgpu"],

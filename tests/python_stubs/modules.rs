@@ -41,6 +41,7 @@ const WORDS: &[(&str, &[&str])] = &[
     ("numpy.typing", &["NDArray"]),
     ("typing_extensions", &["disjoint_base"]),
     ("tem00.beam", &["Emitter", "LineProfile", "NextEvent"]),
+    ("tem00.coherence", &["SpectralLine"]),
     ("tem00.decorrelation", &["RigidMotion"]),
     (
         "tem00._typing",

@@ -76,6 +76,7 @@ pub(crate) fn argument(ty: &Type, class: &str) -> Python {
             match last.ident.to_string().as_str() {
                 "Python" => Python::Hidden,
                 "Numbers" | "Floats" => Python::Either("float", "Numbers"),
+                "Spectrum" => Python::One("float | SpectralLine".to_owned()),
                 "Self" => Python::One(class.to_owned()),
                 "Option" => Python::One(format!("{} | None", text_of(inner()))),
                 "Vec" => Python::One(format!("Sequence[{}]", text_of(inner()))),

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from tem00 import beam
 from tem00 import decorrelation as dc
 from tem00._typing import FloatArray
+from tem00.coherence import ResolutionCell, SpectralLine
 
 ROOT = Path(__file__).parents[3]
 ORIGIN, TARGET = [0.05, 0.02, 0.4], [0.0, 0.0, 0.0]

@@ -3,7 +3,6 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tem00_beam::{FanGeometry, FocusCurve, LineProfile};
-use tem00_coherence::SpectralLine;
 use tem00_decorrelation::CorrelationLaw;
 use tem00_gpu::{Gpu, GpuStack};
 use tem00_shading::{
@@ -101,21 +100,15 @@ impl Random {
                 m_squared: [1.0, 1.3],
             }
         };
-        Laser::new(LaserDescription {
-            line: SpectralLine::monochromatic(650e-9).unwrap(),
-            power: 1e-3,
-            position: eye + self.vector(0.05),
-            // The scene lies beside the middle of a fan.
-            look_at: self.vector(1e-3)
-                + if is_line {
-                    0.05 * line_direction
-                } else {
-                    DVec3::ZERO
-                },
-            line_direction,
+        // The scene lies beside the middle of a fan.
+        let beside = if is_line { 0.05 } else { 0.0 } * line_direction;
+        let (origin, target) = (eye + self.vector(0.05), self.vector(1e-3) + beside);
+        let spot = Laser::spot(650e-9, radius).placed(origin, target, line_direction);
+        let description = LaserDescription {
             shape,
-        })
-        .unwrap()
+            ..spot.unwrap().description().clone()
+        };
+        Laser::new(description).unwrap()
     }
 
     /// A scene in which the pupil moves by some tenths of its diameter, and points by some tenths of the axial length.

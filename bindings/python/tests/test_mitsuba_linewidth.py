@@ -26,7 +26,7 @@ from tem00 import ParameterError
 from tem00.coherence import ResolutionCell, SpectralLine
 from tem00.mitsuba.linewidth import LineLight, find_lights
 from tem00.mitsuba.look_up import pupil_at
-from tem00.mitsuba.patterns import Pattern, Place, generate
+from tem00.mitsuba.patterns import Pattern, generate
 from tem00.mitsuba.surfaces import Surface
 
 IMAGE = (900, 900)
@@ -50,7 +50,7 @@ def pattern_of(light: LineLight | None, **properties: Any) -> Pattern:
 
 def factors(pattern: Pattern, pupil: float = 0.0) -> Array:
     """Return the factors at the pixels' centres."""
-    pattern.move_to(Place(pupil, (0.0, 0.0)))
+    pattern.move_to(pupil, (0.0, 0.0))
     x, y = np.meshgrid(np.arange(IMAGE[0]) + 0.5, np.arange(IMAGE[1]) + 0.5)
     values = np.array(pattern.factor(mi.Point2f(x.ravel(), y.ravel())), dtype=np.float64)
     return values.reshape(IMAGE[::-1])

@@ -18,7 +18,7 @@ import tem00.mitsuba  # noqa: E402
 from tem00 import ParameterError, speckle  # noqa: E402
 from tem00.mitsuba.amplitudes import amplitude_bytes  # noqa: E402
 from tem00.mitsuba.look_up import Part  # noqa: E402
-from tem00.mitsuba.patterns import Pattern, Place, generate  # noqa: E402
+from tem00.mitsuba.patterns import Pattern, generate  # noqa: E402
 from tem00.mitsuba.speckle import lasers_of, speckle_size  # noqa: E402
 from tem00.mitsuba.speckle_settings import PatternSettings  # noqa: E402
 from tem00.mitsuba.surfaces import Surface  # noqa: E402
@@ -161,7 +161,7 @@ def errors_of(pattern: Pattern, pupil: float) -> tuple[Array, Array]:
     """Return the errors of a look-up, and the intensities of the stack, in the image and up to three periods beyond."""
     x, y = np.random.default_rng(1).uniform(-900.0, 1200.0, (2, 20_000)).astype(np.float32)
     shift = (0.3, -0.7)
-    pattern.move_to(Place(pupil, shift))
+    pattern.move_to(pupil, shift)
     scale = pattern.stack.speckle_size / SPECKLE_SIZE
     got = np.array(pattern.factor(mi.Point2f(x, y)), dtype=np.float64)
     at = scale * (x.astype(np.float64) - shift[0]), -scale * (y.astype(np.float64) - shift[1])
@@ -193,7 +193,7 @@ def test_five_megapixels_fit_the_memory_as_amplitudes() -> None:
     ((pattern,),) = generate(settings(), [1.9], (2592, 1944), ALIKE)
     assert pattern.table == "amplitude"
     assert amplitude_bytes(pattern.stack) < 24 * 2**20
-    pattern.move_to(Place(0.0, (0.0, 0.0)))
+    pattern.move_to(0.0, (0.0, 0.0))
     x, y = np.random.default_rng(2).uniform(0.0, 1.0, (2, 20_000)).astype(np.float32)
     x, y = 2592 * x, 1944 * y
     scale = pattern.stack.speckle_size / 1.9

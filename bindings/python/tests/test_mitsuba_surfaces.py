@@ -33,7 +33,7 @@ from test_mitsuba_speckle import (
 )
 
 from tem00 import ParameterError, speckle
-from tem00.mitsuba.patterns import Pattern, Place, generate
+from tem00.mitsuba.patterns import Pattern, generate
 from tem00.mitsuba.surfaces import Surface, read_surfaces
 
 MOVING = {**DIRECT, "path": "straight", "half_period": 32}
@@ -63,7 +63,7 @@ def mixture(patterns: int, polarisation: float) -> Surface:
 
 def factors(pattern: Pattern, image: tuple[int, int]) -> Array:
     """Return the factors at the pixels' centres."""
-    pattern.move_to(Place(0.0, (0.0, 0.0)))
+    pattern.move_to(0.0, (0.0, 0.0))
     x, y = np.meshgrid(np.arange(image[0]) + 0.5, np.arange(image[1]) + 0.5)
     return np.array(pattern.factor(mi.Point2f(x.ravel(), y.ravel())), dtype=np.float64)
 

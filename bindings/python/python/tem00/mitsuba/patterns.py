@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from math import ceil
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import drjit as dr
 import mitsuba as mi
@@ -35,17 +35,6 @@ _MOST_LOOK_UPS = 16
 _PROPERTIES = {"size": "pattern_size", "diameter": "pattern_diameter", "image": "speckle_size"}
 
 
-class Place(NamedTuple):
-    """Place at which the pattern of a laser is looked up.
-
-    ``pupil`` is the motion of the pupil over the speckle, in its diameters, ``shift`` that of the pattern in the
-    image, in pixels, x to the right and y down.
-    """
-
-    pupil: float
-    shift: tuple[float, float]
-
-
 class Pattern:
     """The speckle of one laser on a surface.
 
@@ -66,9 +55,17 @@ class Pattern:
         self._nodes_per_pixel = per_sample * self.stack.speckle_size / speckle_size
         self._u: float | None = None
 
-    def move_to(self, place: Place) -> None:
-        """Look the pattern up at another place from now on."""
-        u = self.stack.coordinate_at(place.pupil)
+    def move_to(self, pupil: float, shift: tuple[float, float]) -> None:
+        """Look the pattern up at another place from now on.
+
+        Parameters
+        ----------
+        pupil
+            Motion of the pupil over the speckle, in its diameters.
+        shift
+            Motion of the pattern in the image, in pixels, x to the right and y down.
+        """
+        u = self.stack.coordinate_at(pupil)
         if u != self._u:
             self._tables = self._tables_at(u)
             self._u = u
@@ -76,7 +73,7 @@ class Pattern:
         # Read from memory, so that motion compiles nothing anew. Patterns have y up.
         self._scale = mi.Vector2f(scale, -scale)
         pairs = zip(self._tables, self.parts, strict=False)
-        self._origins = [self._origin(table, part.offset, place.shift) for table, part in pairs]
+        self._origins = [self._origin(table, part.offset, shift) for table, part in pairs]
         dr.make_opaque(self._scale, self._origins)
 
     def factor(self, film: mi.Point2f) -> mi.Float:
@@ -145,10 +142,7 @@ def generate(
 def _fields(seed: int, plan: StackPlan, laser: int, motions: int) -> list[PupilField]:
     """Return the fields of the laser of this number for each motion, the first that of `tem00 render` in a still scene."""
     first = derived_seed(seed, "laser", laser)
-    try:
-        return [plan.field(derived_seed(first, "body", motion)) for motion in range(motions)]
-    except ParameterError as error:
-        raise _renamed(error) from error
+    return [plan.field(derived_seed(first, "body", motion)) for motion in range(motions)]
 
 
 def _parts(

@@ -48,9 +48,9 @@ _DEFAULTS = {
 }
 
 
-def refused(name: str, why: str) -> ParameterError:
+def refused(name: str, why: str, plugin: str = "laser") -> ParameterError:
     """Return the exception that refuses the property ``name``."""
-    error = ParameterError(f"laser: {name}: {why}")
+    error = ParameterError(f"{plugin}: {name}: {why}")
     error.parameter = name
     return error
 
@@ -77,14 +77,14 @@ class Description:
 
 def read(props: mi.Properties) -> Description:
     """Read all properties of the beam; every other name is an error."""
-    shape = _choice(props, "shape", SHAPES)
+    shape = choice(props, "shape", SHAPES)
     known = (*_REQUIRED[shape], *_OPTIONAL[shape], *_SPECTRUM)
     for name in _REQUIRED[shape]:
         if name not in props:
             raise refused(name, f"required for the shape {shape!r}")
     numbers = dict(_DEFAULTS[shape])
     numbers.update({name: _number(props, name) for name in known if name in props})
-    choices = {name: _choice(props, name, words) for name, words in _CHOICES[shape].items()}
+    choices = {name: choice(props, name, words) for name, words in _CHOICES[shape].items()}
     if "edge" in numbers and choices["profile"] != "powell":
         raise refused("edge", "belongs to the profile 'powell'")
     if choices.get("profile") == "powell":
@@ -122,7 +122,7 @@ def _unit(props: mi.Properties, wavelength: float) -> str:
     if "unit" not in props:
         # Whoever keeps to a unit of their own gets light per area of that unit.
         return "m"
-    unit = _choice(props, "unit", tuple(UNITS))
+    unit = choice(props, "unit", tuple(UNITS))
     metres = wavelength * UNITS[unit]
     low, high = _WAVELENGTHS
     if metres > 0.0 and not low <= metres <= high:
@@ -166,10 +166,10 @@ def _number(props: mi.Properties, name: str) -> float:
     return float(value)
 
 
-def _choice(props: mi.Properties, name: str, words: tuple[str, ...]) -> str:
-    """Return a word; the first one is the default."""
+def choice(props: mi.Properties, name: str, words: tuple[str, ...]) -> str:
+    """Read a word; the first one is the default."""
     value = props.get(name, words[0])
     if value not in words:
         listed = ", ".join(repr(word) for word in words)
-        raise refused(name, f"must be one of {listed}, got {value!r}")
+        raise refused(name, f"must be one of {listed}, got {value!r}", props.plugin_name())
     return str(value)

@@ -12,7 +12,7 @@ import mitsuba as mi
 from tem00.mitsuba.film import Exposure
 from tem00.mitsuba.laser import COHERENT
 from tem00.mitsuba.linewidth import find_lights
-from tem00.mitsuba.patterns import Pattern, Place, generate
+from tem00.mitsuba.patterns import Pattern, generate
 from tem00.mitsuba.speckle_settings import (
     PatternSettings,
     flag,
@@ -77,16 +77,10 @@ def speckle_class(variant: str) -> type[mi.Integrator]:
         def move(
             self, frame: SpeckleFrame, point: Vector, normal: Vector, shape: str = ""
         ) -> None:
-            """Show the speckle of a frame as it has moved at a point of a surface.
+            """Show the speckle of a frame, of a ``tem00.Speckle``, as it has moved at a point of a surface.
 
-            Parameters
-            ----------
-            frame
-                The speckle of the surface in the frame, of a ``tem00.Speckle``.
-            point, normal
-                The point where it is now, in metres, and the unit normal.
-            shape
-                The ``id`` of a shape with a motion of its own; all others without it.
+            The point, in metres, and the unit normal are those of now. ``shape`` is the id of a shape with
+            a motion of its own; without it all others move.
             """
             prefix = f"{shape}:" if shape else ""
             if not any(own.prefix == prefix and bool(own.motion) == bool(shape) for own in self.surfaces):
@@ -101,7 +95,7 @@ def speckle_class(variant: str) -> type[mi.Integrator]:
             self.places = {**places, **self.places}
             mi.traverse(self).update(places)
 
-        def _place(self, surface: Surface) -> Place:
+        def _place(self, surface: Surface) -> tuple[float, tuple[float, float]]:
             """Return the place of a surface; what it does not say is that of all others."""
             values = []
             for name in MOTION:
@@ -110,7 +104,7 @@ def speckle_class(variant: str) -> type[mi.Integrator]:
                 values.append(float(self.places[given][0]))
                 if not isfinite(values[-1]):
                     raise refused(given, f"must be a finite number, got {values[-1]}")
-            return Place(values[0], (values[1], values[2]))
+            return values[0], (values[1], values[2])
 
         def render(
             self,
@@ -188,7 +182,7 @@ def speckle_class(variant: str) -> type[mi.Integrator]:
             for number, surface in enumerate(self.surfaces):
                 place = self._place(surface)
                 for of_surfaces in self._patterns:
-                    of_surfaces[number].move_to(place)
+                    of_surfaces[number].move_to(*place)
             return self._patterns
 
         def to_string(self) -> str:

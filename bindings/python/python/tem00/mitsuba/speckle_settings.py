@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from functools import partial
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from tem00 import ParameterError
+from tem00.mitsuba import properties
+from tem00.mitsuba.properties import choice
 
 if TYPE_CHECKING:
     import mitsuba as mi
@@ -20,12 +22,8 @@ _LARGEST_SIDE = 2**15
 _SMALLEST_DIAMETER = 8
 _MEBIBYTE = 2**20
 
-
-def refused(name: str, why: str) -> ParameterError:
-    """Return the exception that refuses the property ``name``."""
-    error = ParameterError(f"speckle: {name}: {why}")
-    error.parameter = name
-    return error
+# The exception that refuses a property.
+refused = partial(properties.refused, plugin="speckle")
 
 
 @dataclass(frozen=True)
@@ -57,12 +55,12 @@ class PatternSettings:
             seed=whole(props, "seed", 0, (0, _LARGEST_SEED)),
             pattern_size=_side(props, "pattern_size", 2 * _SMALLEST_DIAMETER),
             pattern_diameter=_side(props, "pattern_diameter", _SMALLEST_DIAMETER),
-            path=_choice(props, "path", PATHS),
+            path=choice(props, "path", PATHS),
             half_period=whole(props, "half_period", 64, (1, _LARGEST_SIDE)),
             length=whole(props, "length", 2, (1, _LARGEST_SIDE)),
             file=file,
             memory=whole(props, "memory", 1024, (1, 2**20)),
-            table=_choice(props, "table", TABLES),
+            table=choice(props, "table", TABLES),
         )
 
 
@@ -102,14 +100,6 @@ def refuse_unknown(props: mi.Properties) -> None:
         )
         known = ", ".join([names, *(field.name for field in fields(PatternSettings))])
         raise refused(unknown[0], f"no property of this integrator; those are {known}")
-
-
-def _choice(props: mi.Properties, name: str, allowed: tuple[str, ...]) -> str:
-    """Read one of some words, by default the first."""
-    word = props.get(name, allowed[0])
-    if not isinstance(word, str) or word not in allowed:
-        raise refused(name, f"must be one of {', '.join(allowed)}, got {word!r}")
-    return word
 
 
 def _speckle_size(props: mi.Properties) -> float | None:

@@ -429,11 +429,11 @@ def test_a_linewidth_lowers_the_contrast_by_the_law_of_a_resolution_cell() -> No
     pixels = 40.0 + 4.3 * np.stack(np.meshgrid(np.arange(64), np.arange(56)), axis=-1)
     origin, direction = camera.ray(pixels)
     points = origin - float(origin[2]) / direction[..., 2:] * direction
-    factors = frame.factor(points, UP)
+    factors = np.asarray(frame.factor(points, UP))
     sin_aperture = 0.5 * 25e-3 / 8 / 0.3
     law = ResolutionCell([0, 0, 1], eye, UP, sin_aperture, 650e-9, rms_height=2e-6).contrast(line)
     assert np.std(factors) / np.mean(factors) == pytest.approx(law, rel=0.06)
-    waves = [frame.factor_in_wave(points[:8, 0], UP, (i + 0.5) / 64) for i in range(64)]
+    waves = [np.asarray(frame.factor_in_wave(points[:8, 0], UP, (i + 0.5) / 64)) for i in range(64)]
     assert np.mean(waves, axis=0) == pytest.approx(factors[:8, 0], rel=0.15)
     with pytest.raises(tem00.ParameterError, match="at_points"):
         tem00.Speckle(camera, laser, 3)

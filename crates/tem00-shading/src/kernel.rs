@@ -7,7 +7,7 @@ use tem00_camera::Camera;
 use tem00_speckle::{PupilField, SlicePath, StackPlan};
 
 use crate::{
-    Laser, Motion, PreparedSpeckle, ShadingError, Speckle, SpeckleFrame, prepared::Patterns,
+    Laser, Motion, PreparedSpeckle, ShadingError, Speckle, SpeckleFrame, patterns::Patterns,
 };
 
 /// The function `tem00_factor` in WGSL, which is [`SpeckleFrame::factor`] in single precision: functions and structs

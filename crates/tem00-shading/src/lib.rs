@@ -22,9 +22,11 @@
 //! it is multiplied.
 
 mod error;
+mod frame;
 mod kernel;
 mod laser;
 mod motion;
+mod patterns;
 mod perspective;
 mod prepared;
 mod shift;
@@ -38,6 +40,7 @@ mod tests;
 mod trajectory;
 
 pub use error::ShadingError;
+pub use frame::SpeckleFrame;
 pub use glam::{DMat3, DVec2, DVec3};
 pub use kernel::{KernelFrame, KernelSpeckle, WGSL};
 pub use laser::{
@@ -46,7 +49,7 @@ pub use laser::{
 };
 pub use motion::Motion;
 pub use perspective::Perspective;
-pub use prepared::{PreparedSpeckle, SpeckleFrame};
+pub use prepared::PreparedSpeckle;
 pub use shift::{BLOCK, LightPath, SeenPoint, SpeckleLaw, SpeckleShift};
 pub use speckle::Speckle;
 pub use spectral::{Bandwidth, SpectralLaw, SpectralShift, SurfaceLight};

@@ -8,7 +8,7 @@ use tem00_speckle::{PupilField, SpeckleStack, StackNeeds, StackPlan, incoherent_
 
 use crate::{
     Bandwidth, Laser, Motion, Perspective, Pose, PreparedSpeckle, ShadingError, SurfaceLight,
-    prepared::{Field, Part, Patterns},
+    patterns::{Field, Part, Patterns},
     state::{ReferencePoint, State},
 };
 

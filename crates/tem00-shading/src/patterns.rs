@@ -1,0 +1,53 @@
+use glam::{DVec2, DVec3};
+use tem00_camera::Camera;
+use tem00_decorrelation::ImagingGeometry;
+use tem00_speckle::{SpeckleStack, StackNeeds, StackPlan};
+
+use crate::{Bandwidth, Laser, state::ReferencePoint};
+
+/// The patterns, and what they were chosen for.
+#[derive(Debug)]
+pub(crate) struct Patterns {
+    pub(crate) camera: Camera,
+    pub(crate) laser: Laser,
+    pub(crate) geometry: ImagingGeometry,
+    /// The fields that share a stack.
+    pub(crate) in_a_stack: usize,
+    /// One for each field, or one for all.
+    pub(crate) stacks: Vec<SpeckleStack>,
+    pub(crate) parts: Vec<Part>,
+    pub(crate) bandwidth: Option<Bandwidth>,
+    /// The equal parts of the line, each with its median wave number, that stand for all its light.
+    pub(crate) waves: usize,
+    pub(crate) needs: StackNeeds,
+    pub(crate) plan: StackPlan,
+    /// The largest shifts of the poses to either side of the reference, in pupil diameters.
+    pub(crate) shifts: [f64; 2],
+    pub(crate) farthest: Option<ReferencePoint>,
+    pub(crate) points: Vec<(DVec3, DVec3)>,
+}
+
+/// A pattern, and its fraction of the light.
+#[derive(Clone, Debug)]
+pub(crate) struct Part {
+    pub fraction: f64,
+    /// One, or one for each height of the relief, whose fields add.
+    pub fields: Vec<Field>,
+}
+
+/// A place in one of the stacks.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Field {
+    pub stack: usize,
+    /// In samples.
+    pub offset: DVec2,
+}
+
+/// The heights of a surface in light of one wavelength.
+const FLAT: &[[f64; 2]] = &[[0.0, 1.0]];
+
+impl Patterns {
+    pub(crate) fn heights(&self) -> &[[f64; 2]] {
+        self.bandwidth.as_ref().map_or(FLAT, |b| &b.heights)
+    }
+}

@@ -78,17 +78,13 @@ typedef enum {
      */
     TEM00_LIGHT_KIND_SPOT = 0,
     /**
-     * `Tem00AstigmaticLightF32`: a beam with general astigmatism, 28 fields.
-     */
-    TEM00_LIGHT_KIND_ASTIGMATIC = 1,
-    /**
      * `Tem00LineLightF32`: a laser line, 28 fields.
      */
-    TEM00_LIGHT_KIND_LINE = 2,
+    TEM00_LIGHT_KIND_LINE = 1,
     /**
      * `Tem00LineLightF32` without its table, so that the closed forms leave it dark: 28 fields.
      */
-    TEM00_LIGHT_KIND_TABULATED_LINE = 3,
+    TEM00_LIGHT_KIND_TABULATED_LINE = 2,
 } tem00_light_kind;
 
 /**
@@ -345,37 +341,6 @@ typedef struct {
      */
     double rotation;
 } tem00_elliptic_description;
-
-/**
- * A beam with general astigmatism, whose ellipse may turn on its way, by the covariances of its rays
- * on the aperture: (x, y) are positions, (s, t) slopes along the same axes.
- */
-typedef struct {
-    /**
-     * Position and directions of the light.
-     */
-    tem00_placement placement;
-    /**
-     * Wavelength in the medium, in metres.
-     */
-    double wavelength;
-    /**
-     * Power, in watts.
-     */
-    double power;
-    /**
-     * Covariances of the position, in m²: ((xx, xy), (yx, yy)). A radius is twice a deviation.
-     */
-    double position[2][2];
-    /**
-     * Covariances of position and slope, in metres: ((xs, xt), (ys, yt)).
-     */
-    double mixed[2][2];
-    /**
-     * Covariances of the slope: ((ss, st), (ts, tt)).
-     */
-    double slope[2][2];
-} tem00_astigmatic_description;
 
 /**
  * A laser line behind a cylinder lens or a Powell lens.
@@ -1300,16 +1265,6 @@ tem00_status tem00_light_create_spot(const tem00_spot_description *description,
  */
 tem00_status tem00_light_create_elliptic(const tem00_elliptic_description *description,
                                          tem00_light **light);
-
-/**
- * Creates a beam with general astigmatism.
- *
- * On failure `*light` is null.
- *
- * The pointers are null or valid.
- */
-tem00_status tem00_light_create_astigmatic(const tem00_astigmatic_description *description,
-                                           tem00_light **light);
 
 /**
  * Creates a laser line.

@@ -70,9 +70,6 @@ public:
     explicit light(const tem00_elliptic_description &elliptic)
         : handle_(made(tem00_light_create_elliptic, elliptic)) {}
 
-    explicit light(const tem00_astigmatic_description &astigmatic)
-        : handle_(made(tem00_light_create_astigmatic, astigmatic)) {}
-
     explicit light(const tem00_line_description &line)
         : handle_(made(tem00_light_create_line, line)) {}
 

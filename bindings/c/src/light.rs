@@ -21,8 +21,7 @@ pub use queries::*;
 pub use targets::*;
 
 use tem00_beam::{
-    AngularKnot, AngularProfile, AstigmaticLight, BeamError, Emitter, LineLight, Real, SpotLight,
-    TabulatedLineLight,
+    AngularKnot, AngularProfile, BeamError, Emitter, LineLight, Real, SpotLight, TabulatedLineLight,
 };
 use tem00_coherence::SpectralLine;
 use tem00_shading::{BeamShape, DVec3, LaserDescription, ShadingError};
@@ -42,7 +41,6 @@ pub struct Light {
 #[derive(Clone, Debug)]
 enum Laser<T> {
     Spot(SpotLight<T>),
-    Astigmatic(AstigmaticLight<T>),
     Line(LineLight<T>),
     Tabulated(LineLight<T>, Vec<AngularKnot<T>>),
 }
@@ -52,7 +50,6 @@ impl<T: Real> Laser<T> {
     fn ask<R>(&self, question: impl FnOnce(&dyn Emitter<T>) -> R) -> R {
         match self {
             Self::Spot(light) => question(light),
-            Self::Astigmatic(light) => question(light),
             Self::Line(light) => question(light),
             Self::Tabulated(line, knots) => question(&TabulatedLineLight { line: *line, knots }),
         }
@@ -78,19 +75,6 @@ impl Light {
     fn spot(light: SpotLight<f64>, shape: BeamShape) -> Self {
         let laser = laser(&light, light.ex, shape);
         Self::plain(light, SpotLight::to_f32, Laser::Spot, Laser::Spot, laser)
-    }
-
-    fn astigmatic(light: AstigmaticLight<f64>) -> Self {
-        Self::plain(
-            light,
-            AstigmaticLight::to_f32,
-            Laser::Astigmatic,
-            Laser::Astigmatic,
-            Err(Failure::argument(
-                "light",
-                "light must be a spot or a line for speckle, got a beam with general astigmatism",
-            )),
-        )
     }
 
     fn line(light: LineLight<f64>, shape: BeamShape) -> Self {

@@ -1,7 +1,6 @@
 use tem00_beam::{
-    AngularProfile, AstigmaticBeam, AstigmaticLight, DMat2, DVec3, FanGeometry, GaussianBeam,
-    GeneralAstigmaticBeam, LaserLine, LineLight, LocatedBeam, SecondMoments, SpotLight,
-    TabulatedLineLight,
+    AngularProfile, AstigmaticBeam, DVec3, FanGeometry, GaussianBeam, LaserLine, LineLight,
+    LocatedBeam, SpotLight, TabulatedLineLight,
 };
 use tem00_shading::BeamShape;
 
@@ -62,25 +61,6 @@ pub struct EllipticDescription {
     pub m_squared: [f64; 2],
     /// Angle from the x axis of the light to the first axis of the beam, towards y, in radians.
     pub rotation: f64,
-}
-
-/// A beam with general astigmatism, whose ellipse may turn on its way, by the covariances of its rays
-/// on the aperture: (x, y) are positions, (s, t) slopes along the same axes.
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub struct AstigmaticDescription {
-    /// Position and directions of the light.
-    pub placement: Placement,
-    /// Wavelength in the medium, in metres.
-    pub wavelength: f64,
-    /// Power, in watts.
-    pub power: f64,
-    /// Covariances of the position, in m²: ((xx, xy), (yx, yy)). A radius is twice a deviation.
-    pub position: [[f64; 2]; 2],
-    /// Covariances of position and slope, in metres: ((xs, xt), (ys, yt)).
-    pub mixed: [[f64; 2]; 2],
-    /// Covariances of the slope: ((ss, st), (ts, tt)).
-    pub slope: [[f64; 2]; 2],
 }
 
 /// Surface on which a laser line is thinnest off its axis.
@@ -202,21 +182,6 @@ impl EllipticDescription {
     }
 }
 
-impl AstigmaticDescription {
-    fn light(&self) -> Result<Light, Failure> {
-        // glam counts by columns.
-        let matrix = |rows: [[f64; 2]; 2]| DMat2::from_cols_array_2d(&rows).transpose();
-        let moments = SecondMoments {
-            position: matrix(self.position),
-            mixed: matrix(self.mixed),
-            slope: matrix(self.slope),
-        };
-        let beam = GeneralAstigmaticBeam::from_moments(self.wavelength, &moments)?;
-        let light = AstigmaticLight::place(&beam, &self.placement.placed(), self.power)?;
-        Ok(Light::astigmatic(light))
-    }
-}
-
 impl LineDescription {
     /// # Safety
     ///
@@ -317,26 +282,6 @@ pub unsafe extern "C" fn tem00_light_create_spot(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tem00_light_create_elliptic(
     description: *const EllipticDescription,
-    light: *mut *mut Light,
-) -> Status {
-    // SAFETY: by the contract of this function.
-    call(|| unsafe {
-        create("light", light, || {
-            borrow("description", description)?.light()
-        })
-    })
-}
-
-/// Creates a beam with general astigmatism.
-///
-/// On failure `*light` is null.
-///
-/// # Safety
-///
-/// The pointers are null or valid.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn tem00_light_create_astigmatic(
-    description: *const AstigmaticDescription,
     light: *mut *mut Light,
 ) -> Status {
     // SAFETY: by the contract of this function.

@@ -10,12 +10,10 @@ use crate::{
 pub enum LightKind {
     /// `Tem00SpotLightF32`: a round or elliptic beam, 24 fields.
     Spot = 0,
-    /// `Tem00AstigmaticLightF32`: a beam with general astigmatism, 28 fields.
-    Astigmatic = 1,
     /// `Tem00LineLightF32`: a laser line, 28 fields.
-    Line = 2,
+    Line = 1,
     /// `Tem00LineLightF32` without its table, so that the closed forms leave it dark: 28 fields.
-    TabulatedLine = 3,
+    TabulatedLine = 2,
 }
 
 /// A light as plain numbers in single precision: what a kernel that cannot call a library evaluates.
@@ -34,7 +32,6 @@ impl LightData {
     fn new(laser: &Laser<f32>) -> Self {
         match laser {
             Laser::Spot(light) => Self::of_rows(LightKind::Spot, &light.to_rows()),
-            Laser::Astigmatic(light) => Self::of_rows(LightKind::Astigmatic, &light.to_rows()),
             Laser::Line(light) => Self::of_rows(LightKind::Line, &light.to_rows()),
             Laser::Tabulated(light, _) => Self::of_rows(LightKind::TabulatedLine, &light.to_rows()),
         }

@@ -8,8 +8,7 @@ mod refusals;
 use core::{f64::consts::FRAC_PI_4, ptr};
 
 use tem00_beam::{
-    AngularProfile, AstigmaticBeam, DVec3, FanGeometry, GaussianBeam, GeneralAstigmaticBeam,
-    LaserLine, LocatedBeam, SecondMoments,
+    AngularProfile, AstigmaticBeam, DVec3, FanGeometry, GaussianBeam, LaserLine, LocatedBeam,
 };
 
 use super::*;
@@ -44,16 +43,6 @@ const ELLIPTIC: EllipticDescription = EllipticDescription {
     waist_distance: [0.2, -0.1],
     m_squared: [1.3, 1.1],
     rotation: FRAC_PI_4,
-};
-
-/// Behind a turned cylinder lens; no two of its numbers are equal.
-const ASTIGMATIC: AstigmaticDescription = AstigmaticDescription {
-    placement: PLACEMENT,
-    wavelength: 650e-9,
-    power: 3e-3,
-    position: [[4e-8, 1e-9], [1e-9, 2e-8]],
-    mixed: [[2e-8, 3e-9], [5e-9, -4e-8]],
-    slope: [[3e-7, 2e-8], [2e-8, 5e-7]],
 };
 
 const LINE: LineDescription = LineDescription {
@@ -93,7 +82,6 @@ struct Pair {
 /// Results of the library without the interface.
 enum Peer {
     Spot(SpotLight<f64>),
-    Astigmatic(AstigmaticLight<f64>),
     Line(LineLight<f64>),
     Tabulated(LaserLine),
 }
@@ -136,24 +124,8 @@ fn elliptic_peer() -> Peer {
     Peer::Spot(SpotLight::place_astigmatic(&beam, &placement(), 4e-3).unwrap())
 }
 
-fn astigmatic_peer() -> Peer {
-    let [position, mixed, slope] = [
-        [4e-8, 1e-9, 1e-9, 2e-8],
-        [2e-8, 5e-9, 3e-9, -4e-8],
-        [3e-7, 2e-8, 2e-8, 5e-7],
-    ]
-    .map(|columns| tem00_beam::DMat2::from_cols_array(&columns));
-    let moments = SecondMoments {
-        position,
-        mixed,
-        slope,
-    };
-    let beam = GeneralAstigmaticBeam::from_moments(650e-9, &moments).unwrap();
-    Peer::Astigmatic(AstigmaticLight::place(&beam, &placement(), 3e-3).unwrap())
-}
-
 /// All kinds of lights, by the interface and by the library.
-fn pairs() -> [Pair; 5] {
+fn pairs() -> [Pair; 4] {
     let spot = SpotLight::place(&beam(80e-6, 1.3), 0.2, &placement(), 5e-3).unwrap();
     let line = laser_line(tem00_beam::LineProfile::Powell { edge: 0.1 });
     let profile = AngularProfile::new(&ANGLES, &POWERS).unwrap();
@@ -178,11 +150,6 @@ fn pairs() -> [Pair; 5] {
                 elliptic_peer(),
             ),
             made(
-                "astigmatic",
-                &|p| tem00_light_create_astigmatic(&ASTIGMATIC, p),
-                astigmatic_peer(),
-            ),
-            made(
                 "line",
                 &|p| tem00_light_create_line(&LINE, p),
                 Peer::Line(line),
@@ -200,7 +167,6 @@ impl Peer {
     fn ask<R>(&self, question: impl FnOnce(&dyn Emitter<f64>) -> R) -> R {
         match self {
             Self::Spot(light) => question(light),
-            Self::Astigmatic(light) => question(light),
             Self::Line(light) => question(light),
             Self::Tabulated(line) => {
                 question(&TabulatedLineLight::place(line, &placement(), 2e-3).unwrap())
@@ -211,7 +177,6 @@ impl Peer {
     fn ask_in_single<R>(&self, question: impl FnOnce(&dyn Emitter<f32>) -> R) -> R {
         match self {
             Self::Spot(light) => question(&light.to_f32().unwrap()),
-            Self::Astigmatic(light) => question(&light.to_f32().unwrap()),
             Self::Line(light) => question(&light.to_f32().unwrap()),
             Self::Tabulated(line) => {
                 let tem00_beam::LineProfile::Tabulated(profile) = line.profile() else {

@@ -574,20 +574,6 @@ fn speckle_is_refused_by_the_name_of_what_is_wrong() {
     wrong[3].memory_limit = 1000;
     let memory = (Status::Memory, "memory_limit".to_owned());
     assert_eq!(refusal(create(&light, &wrong[3])), memory, "{}", message());
-    let astigmatic = AstigmaticDescription {
-        placement: PLACEMENT,
-        wavelength: 650e-9,
-        power: 3e-3,
-        position: [[4e-8, 1e-9], [1e-9, 2e-8]],
-        mixed: [[2e-8, 3e-9], [5e-9, -4e-8]],
-        slope: [[3e-7, 2e-8], [2e-8, 5e-7]],
-    };
-    let astigmatic = made(
-        tem00_light_create_astigmatic,
-        &astigmatic,
-        tem00_light_destroy,
-    );
-    number_is_refused("light", create(&astigmatic, &DESCRIPTION));
 }
 
 #[test]

@@ -21,11 +21,10 @@ macro_rules! structs {
     };
 }
 
-const STRUCTS: [(&str, usize, &str, usize); 31] = structs![
+const STRUCTS: [(&str, usize, &str, usize); 30] = structs![
     Placement "placement" fan_axis,
     SpotDescription "spot_description" m_squared,
     EllipticDescription "elliptic_description" rotation,
-    AstigmaticDescription "astigmatic_description" slope,
     LineDescription "line_description" knot_count,
     NextEvent "next_event" e_perp,
     NextEventF32 "next_event_f32" e_perp,

@@ -49,34 +49,6 @@ fn an_elliptic_beam_refuses_the_numbers_of_either_axis_and_says_which() {
 }
 
 #[test]
-fn an_astigmatic_beam_refuses_moments_of_no_beam() {
-    let refused = |astigmatic: AstigmaticDescription| {
-        // SAFETY: the description is valid.
-        refused(|handle| unsafe { tem00_light_create_astigmatic(&raw const astigmatic, handle) })
-    };
-    let zero = [[0.0; 2]; 2];
-    let position = AstigmaticDescription {
-        position: zero,
-        ..ASTIGMATIC
-    };
-    let slope = AstigmaticDescription {
-        slope: zero,
-        ..ASTIGMATIC
-    };
-    let mixed = AstigmaticDescription {
-        mixed: [[f64::NAN; 2]; 2],
-        ..ASTIGMATIC
-    };
-    for astigmatic in [position, slope, mixed] {
-        assert_eq!(
-            refused(astigmatic),
-            Status::InvalidArgument,
-            "{astigmatic:?}"
-        );
-    }
-}
-
-#[test]
 fn a_line_refuses_each_number_that_is_wrong() {
     // SAFETY: the description is valid, or its table is refused.
     let create =

@@ -321,12 +321,8 @@ fn narrowed(values: Vec<f64>) -> Vec<f32> {
 
 #[test]
 fn plain_data_are_the_rows_of_the_light_in_single_precision() {
-    let expected: [(LightKind, Vec<f32>); 5] = pairs().map(|pair| match &pair.peer {
+    let expected: [(LightKind, Vec<f32>); 4] = pairs().map(|pair| match &pair.peer {
         Peer::Spot(light) => (LightKind::Spot, light.to_f32().unwrap().to_rows().concat()),
-        Peer::Astigmatic(light) => (
-            LightKind::Astigmatic,
-            light.to_f32().unwrap().to_rows().concat(),
-        ),
         Peer::Line(light) => (LightKind::Line, light.to_f32().unwrap().to_rows().concat()),
         Peer::Tabulated(line) => {
             let light = TabulatedLineLight::place(line, &placement(), 2e-3)

@@ -48,7 +48,6 @@ const WORDS: &[(&str, &[&str])] = &[
         &[
             "Boundary",
             "ComplexArray",
-            "ComplexTable",
             "Counts",
             "Cumulative",
             "Dtype",
@@ -57,7 +56,6 @@ const WORDS: &[(&str, &[&str])] = &[
             "FloatArray",
             "FocusCurve",
             "Interpolation",
-            "Nested",
             "Numbers",
             "Pair",
             "Phasors",

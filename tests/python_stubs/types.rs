@@ -99,8 +99,6 @@ fn sequence(array: &TypeArray, class: &str) -> Python {
         (Some(Python::Either(..)), _) => return Python::Either("tuple[float, float]", "Pair"),
         (Some(Python::One(text)), 1) if text == "float" => "Vector".to_owned(),
         (Some(Python::One(text)), 2) if text == "float" => "Table".to_owned(),
-        (Some(Python::One(text)), 4) if text == "float" => "Nested".to_owned(),
-        (Some(Python::One(text)), 2) if text == "Complex" => "ComplexTable".to_owned(),
         (Some(Python::One(text)), 1) if text == "SupportsIndex" => "Counts".to_owned(),
         (Some(Python::One(text)), _) => format!("tuple[{text}, {text}] | Sequence[{text}]"),
         (inner, _) => text_of(inner),

@@ -3,21 +3,18 @@
 mod abcd;
 mod arguments;
 mod astigmatic;
-mod astigmatic_system;
 mod closed_form;
 mod complex_parameter;
 mod cross_section;
 mod emitter;
 mod fit;
 mod gaussian;
-mod general;
 mod laser;
 mod light;
 mod lights;
 mod line;
 mod line_lights;
 mod located;
-mod matrices;
 mod placement;
 mod profile;
 pub(crate) mod records;
@@ -42,19 +39,17 @@ pub(crate) mod beam {
     use super::{
         abcd::{AbcdMatrix, ThickLens},
         astigmatic::AstigmaticBeam,
-        astigmatic_system::AstigmaticSystem,
         closed_form::closed_form,
         complex_parameter::ComplexBeamParameter,
         cross_section::CrossSection,
         emitter::Emitter,
         fit::{CausticFit, FitError, KnifeEdgeFit},
         gaussian::GaussianBeam,
-        general::{GeneralAstigmaticBeam, SecondMoments},
-        lights::{AstigmaticLight, SpotLight},
+        lights::SpotLight,
         line::{FanGeometry, LaserLine},
         line_lights::{LineLight, TabulatedLineLight},
         located::LocatedBeam,
-        placement::{Axis, Ellipse, Placement},
+        placement::{Axis, Placement},
         profile::{AngularProfile, LineProfile},
         records::{ApertureHit, Bounds, NextEvent, RayPdf, RaySample, SampledEvent},
     };

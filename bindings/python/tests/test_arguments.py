@@ -72,10 +72,6 @@ def test_sizes_above_zero_are_taken(function: Callable[[float], object]) -> None
     function(3.0)
 
 
-BEAM = beam.GaussianBeam.from_waist(650e-9, 1e-4)
-MOMENTS = beam.GeneralAstigmaticBeam.from_astigmatic(
-    beam.AstigmaticBeam.stigmatic(beam.LocatedBeam(BEAM, 0.0))
-).moments_at(0.0)
 COMPLEX = beam.ComplexBeamParameter(0.0, 0.05)
 
 
@@ -91,8 +87,6 @@ WAVELENGTHS: list[Callable[[float], object]] = [
     lambda w: beam.GaussianBeam.from_waist(w, 1e-4),
     lambda w: beam.GaussianBeam.from_divergence(w, 1e-3),
     lambda w: beam.AstigmaticBeam.from_divergences(w, (1e-3, 2e-3)),
-    lambda w: beam.GeneralAstigmaticBeam.from_moments(w, MOMENTS),
-    lambda w: beam.GeneralAstigmaticBeam.from_complex_curvature(w, [[-20j, 0j], [0j, -20j]]),
     lambda w: COMPLEX.to_located_beam(w, 1.0),
     lambda w: beam.CausticFit(w, [0.0, 0.1, 0.2, 0.3], [1e-4, 2.3e-4, 4.3e-4, 6.3e-4]),
     lens,

@@ -19,11 +19,9 @@ LINE = beam.LaserLine(LASER, FAN, beam.LineProfile.powell(0.1))
 TABLE = beam.AngularProfile([-0.2, 0, 0.2], [1, 2, 1])
 TABULATED = beam.LaserLine(LASER, FAN, beam.LineProfile.tabulated(TABLE))
 LINE_LIGHT = beam.LineLight.place(LINE, PLACEMENT, 1e-3)
-GENERAL = beam.GeneralAstigmaticBeam.from_astigmatic(ELLIPTIC)
 MATRIX = beam.AbcdMatrix.thin_lens(0.1)
 SECTION = LASER.cross_section_at(0.1)
 Q = beam.ComplexBeamParameter(0.1, 0.2)
-MOMENTS = GENERAL.moments_at(0.0)
 WRONG_ROWS = SPOT.to_rows()
 WRONG_ROWS[1, 0] = 2
 
@@ -59,16 +57,6 @@ REFUSED: list[tuple[str, Callable[[], object]]] = [
     ("waist_distances", lambda: ELLIPTIC.with_waist_distances((0.1, NAN))),
     ("rotation", lambda: ELLIPTIC.with_rotation(INF)),
     ("systems", lambda: ELLIPTIC.through_axes((MATRIX, beam.AbcdMatrix.flat_interface(1, 1.5)))),
-    ("distance", lambda: GENERAL.propagated(1e31)),
-    ("position", lambda: beam.GeneralAstigmaticBeam.from_moments(
-        650e-9, beam.SecondMoments(-MOMENTS.position, MOMENTS.mixed, MOMENTS.slope))),
-    ("mixed", lambda: beam.GeneralAstigmaticBeam.from_moments(
-        650e-9, beam.SecondMoments(MOMENTS.position, MOMENTS.mixed * NAN, MOMENTS.slope))),
-    ("slope", lambda: beam.GeneralAstigmaticBeam.from_moments(
-        650e-9, beam.SecondMoments(MOMENTS.position, MOMENTS.mixed, -MOMENTS.slope))),
-    ("m_squared", lambda: beam.GeneralAstigmaticBeam.from_moments(1064e-9, MOMENTS)),
-    ("curvature", lambda: beam.GeneralAstigmaticBeam.from_complex_curvature(
-        650e-9, [[1j, 0], [0, 1j]])),
     ("distance_from_waist", lambda: beam.ComplexBeamParameter(INF, 0.1)),
     ("rayleigh_range", lambda: beam.ComplexBeamParameter(0.1, 0.0)),
     ("radius", lambda: beam.ComplexBeamParameter.from_radius_and_curvature(0.0, 1.0, 1e-6)),
@@ -93,11 +81,6 @@ REFUSED: list[tuple[str, Callable[[], object]]] = [
     ("index", lambda: beam.AbcdMatrix.grin_rod(0, 1, 1)),
     ("half_trace", lambda: beam.AbcdMatrix.free_space(1).eigenmode()),
     ("ray", lambda: MATRIX.transform_ray([1, 2, 3])),
-    ("blocks", lambda: beam.AstigmaticSystem(np.ones((2, 2, 2, 2)).tolist())),
-    ("blocks", lambda: beam.AstigmaticSystem(np.full((2, 2, 2, 2), NAN).tolist())),
-    ("axes", lambda: beam.AstigmaticSystem.from_axes(
-        (MATRIX, beam.AbcdMatrix.flat_interface(1, 1.5)), 0)),
-    ("rotation", lambda: beam.AstigmaticSystem.cylinder_lens(0.1, NAN)),
     ("radii", lambda: beam.CrossSection((1e-3, 0))),
     ("fraction", lambda: SECTION.circle_radius([0.5, 1])),
     ("centre", lambda: SECTION.power_in_circle_at((0, 0, 0), 1e-3)),
@@ -179,25 +162,12 @@ def test_rows_of_no_light_are_refused(row: int, place: int, value: float, field:
     assert refusal.value.parameter == "rows"
 
 
-def test_ellipses_of_no_light_are_refused() -> None:
-    light = beam.AstigmaticLight.place(GENERAL, PLACEMENT, 1e-3)
-    with pytest.raises(ParameterError, match="wavelength"):
-        beam.AstigmaticLight.from_rows(changed(light, 2, 3, 0))
-    for row in (4, 5):
-        with pytest.raises(ParameterError, match="positive definite"):
-            beam.AstigmaticLight.from_rows(changed(light, row, 1, light.to_rows()[row, 0]))
-        with pytest.raises(ParameterError, match="yy"):
-            beam.AstigmaticLight.from_rows(changed(light, row, 2, -1))
-    assert light.position.xx == light.to_rows()[4, 0] and light.slope.yy == light.to_rows()[5, 2]
-
-
 OBJECTS = [
     LASER.with_m_squared(1.5),
     LOCATED,
     ELLIPTIC.with_rotation(0.3),
     SECTION,
     Q,
-    MOMENTS,
     beam.ThickLens(1.5, 1, -1, 1e-3),
     FAN,
     beam.LineProfile.gaussian_sin(),
@@ -205,7 +175,6 @@ OBJECTS = [
     PLACEMENT,
     SPOT,
     LINE_LIGHT,
-    beam.AstigmaticLight.place(GENERAL, PLACEMENT, 1e-3),
     beam.Estimate(1.0, 0.1),
 ]
 

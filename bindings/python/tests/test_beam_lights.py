@@ -35,13 +35,6 @@ def elliptic() -> beam.SpotLight:
     return beam.SpotLight.place_astigmatic(laser, PLACEMENT, POWER)
 
 
-def twisted() -> beam.AstigmaticLight:
-    laser = beam.AstigmaticBeam.from_divergences(650e-9, (0.5e-3, 1e-3))
-    lens = beam.AstigmaticSystem.cylinder_lens(0.1, 0.6)
-    behind = beam.GeneralAstigmaticBeam.from_astigmatic(laser).through(lens)
-    return beam.AstigmaticLight.place(behind, PLACEMENT, POWER)
-
-
 def laser_line(profile: str) -> beam.LaserLine:
     fan = beam.FanGeometry(fan_angle=0.4, apex_offset=2e-3, focus_distance=0.2)
     return beam.LaserLine(beam.GaussianBeam.from_waist(650e-9, 60e-6), fan, PROFILES[profile])
@@ -55,7 +48,6 @@ def line(profile: str) -> beam.Emitter:
 LIGHTS: dict[str, beam.Emitter] = {
     "spot": spot(),
     "elliptic": elliptic(),
-    "twisted": twisted(),
     **{profile: line(profile) for profile in PROFILES},
 }
 lights = pytest.mark.parametrize("name", LIGHTS)
@@ -295,7 +287,7 @@ def test_rows_are_the_fields_in_the_order_of_memory() -> None:
 @pytest.mark.parametrize("name", [name for name in LIGHTS if name != "table"])
 def test_rows_make_the_light_again(name: str) -> None:
     light = LIGHTS[name]
-    assert isinstance(light, (beam.SpotLight, beam.AstigmaticLight, beam.LineLight))
+    assert isinstance(light, (beam.SpotLight, beam.LineLight))
     rows = light.to_rows()
     assert type(light).from_rows(rows) == light
     rows[1, 3] = 2

@@ -27,19 +27,11 @@ Pair: TypeAlias = tuple[Numbers, Numbers] | Sequence[Numbers] | FloatArray
 ComplexArray: TypeAlias = NDArray[np.complexfloating] | NDArray[np.floating]
 """An array of complex numbers."""
 
-ComplexTable: TypeAlias = NDArray[np.complexfloating] | Sequence[Sequence[complex]]
-"""Rows of complex numbers."""
-
 Vectors: TypeAlias = Vector | Sequence[Sequence[float]]
 """Vectors in the last axis of an array."""
 
 Table: TypeAlias = NDArray[np.floating] | Sequence[Sequence[float]]
 """Rows of numbers."""
-
-Nested: TypeAlias = (
-    Sequence[Sequence[Sequence[Sequence[float]]]] | Sequence[Sequence[FloatArray]] | FloatArray
-)
-"""Rows of matrices."""
 
 Counts: TypeAlias = tuple[SupportsIndex, SupportsIndex] | Sequence[SupportsIndex]
 """A width and a height, or any two counts."""

@@ -2,8 +2,7 @@ use core::convert::Infallible;
 
 use numpy::{Element, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods};
 use pyo3::{exceptions::PyMemoryError, prelude::*, types::PyFloat};
-use tem00_beam::{DMat2, DVec2, DVec3};
-use tem00_decorrelation::DMat3;
+use tem00_decorrelation::{DMat3, DVec2, DVec3};
 use tem00_numerics::available_memory;
 
 /// Arrays below this many bytes are made without asking how much memory is left.
@@ -121,35 +120,23 @@ impl<'py, const K: usize> IntoPyObject<'py> for Vector<K> {
     }
 }
 
-/// A square matrix by its rows, in Python an array of shape (K, K).
+/// A matrix by its rows, in Python an array of shape (3, 3).
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Matrix<const K: usize>([[f64; K]; K]);
+pub(crate) struct Matrix([[f64; 3]; 3]);
 
-impl<const K: usize> From<[[f64; K]; K]> for Matrix<K> {
-    fn from(rows: [[f64; K]; K]) -> Self {
-        Self(rows)
-    }
-}
-
-impl From<DMat2> for Matrix<2> {
-    fn from(matrix: DMat2) -> Self {
-        Self(matrix.transpose().to_cols_array_2d())
-    }
-}
-
-impl From<DMat3> for Matrix<3> {
+impl From<DMat3> for Matrix {
     fn from(matrix: DMat3) -> Self {
         Self(matrix.transpose().to_cols_array_2d())
     }
 }
 
-impl<'py, const K: usize> IntoPyObject<'py> for Matrix<K> {
+impl<'py> IntoPyObject<'py> for Matrix {
     type Target = PyArray2<f64>;
     type Output = Bound<'py, PyArray2<f64>>;
     type Error = PyErr;
 
     fn into_pyobject(self, py: Python<'py>) -> PyResult<Self::Output> {
-        PyArray1::from_slice(py, self.0.as_flattened()).reshape([K, K])
+        PyArray1::from_slice(py, self.0.as_flattened()).reshape([3, 3])
     }
 }
 

@@ -43,11 +43,6 @@ pub(super) fn components<'a, const K: usize>(argument: Named<'a, '_>) -> PyResul
     Column::components(argument, &[K], LIMIT)
 }
 
-/// The entries, row by row, of an argument that holds 2 × 2 matrices in its last axes.
-pub(super) fn matrices<'a>(argument: Named<'a, '_>) -> PyResult<[Column<'a>; 4]> {
-    Column::components(argument, &[2, 2], LIMIT)
-}
-
 /// Uniform variates in [0, 1), `K` for each draw, in the last axis of the argument `u`.
 pub(super) fn uniforms<'a, const K: usize>(u: &'a Numbers<'_>) -> PyResult<[Column<'a>; K]> {
     let outside = |value: &&f64| !(0.0..1.0).contains(*value);

@@ -399,7 +399,7 @@ impl Emitter {
 methods! {
     impl Emitter as this: this.0;
 
-    unmade "SpotLight.place, LineLight.place, TabulatedLineLight.place or AstigmaticLight.place";
+    unmade "SpotLight.place, LineLight.place or TabulatedLineLight.place";
 
     /// Centre of the aperture (the lens of a laser line), in metres, shape (3,).
     get origin -> Vector<3> = this.vector(0);

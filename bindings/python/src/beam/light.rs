@@ -1,15 +1,14 @@
-//! The four lights as one, and their queries over many points.
+//! The three lights as one, and their queries over many points.
 
 use tem00_beam::{
-    self as physics, AngularProfile, AstigmaticLight, BeamError, LineLight, NextEventSlices,
-    RayPdf, SpotLight, TabulatedLineLight,
+    self as physics, AngularProfile, BeamError, LineLight, NextEventSlices, RayPdf, SpotLight,
+    TabulatedLineLight,
 };
 
 /// A light as the beam crate holds it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Light {
     Spot(SpotLight<f64>),
-    Astigmatic(AstigmaticLight<f64>),
     Line(LineLight<f64>),
     Tabulated(LineLight<f64>, AngularProfile),
 }
@@ -19,7 +18,6 @@ impl Light {
     pub(super) fn rows(&self) -> Vec<[f64; 4]> {
         match self {
             Self::Spot(light) => light.to_rows().to_vec(),
-            Self::Astigmatic(light) => light.to_rows().to_vec(),
             Self::Line(light) | Self::Tabulated(light, _) => light.to_rows().to_vec(),
         }
     }
@@ -33,7 +31,6 @@ impl Light {
     pub(super) fn single_rows(&self) -> Result<Vec<[f32; 4]>, BeamError> {
         Ok(match self {
             Self::Spot(light) => light.to_f32()?.to_rows().to_vec(),
-            Self::Astigmatic(light) => light.to_f32()?.to_rows().to_vec(),
             Self::Line(light) => light.to_f32()?.to_rows().to_vec(),
             Self::Tabulated(line, profile) => {
                 let (line, knots) = (*line, profile.knots());
@@ -49,7 +46,6 @@ impl Light {
     pub(super) fn ask<R>(&self, query: impl FnOnce(&dyn physics::Emitter<f64>) -> R) -> R {
         match self {
             Self::Spot(light) => query(light),
-            Self::Astigmatic(light) => query(light),
             Self::Line(light) => query(light),
             Self::Tabulated(line, profile) => query(&TabulatedLineLight {
                 line: *line,

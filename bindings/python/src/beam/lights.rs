@@ -7,13 +7,12 @@ use super::{
     astigmatic::AstigmaticBeam,
     emitter::Emitter,
     gaussian::GaussianBeam,
-    general::GeneralAstigmaticBeam,
     light::Light,
-    placement::{Axis, Ellipse, Placement},
+    placement::{Axis, Placement},
     rows::{Rows, array_of},
 };
 use crate::{
-    arrays::{Matrix, Table},
+    arrays::Table,
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
@@ -114,81 +113,6 @@ methods! {
 impl SpotLight {
     pub(super) fn of(py: Python<'_>, light: physics::SpotLight<f64>) -> PyResult<Py<Self>> {
         let base = PyClassInitializer::from(Emitter(Light::Spot(light)));
-        Py::new(py, base.add_subclass(Self(light)))
-    }
-}
-
-/// A beam with general astigmatism in a scene, prepared for a renderer.
-///
-/// Made by ``place``, queried as an ``Emitter``. Its ellipse may turn on the way, and its rays may be
-/// twisted about the axis. A ray has the slope ``s ~ N(0, S/4)`` and crosses the aperture plane at
-/// ``K s + e``, with an independent ``e ~ N(0, W/4)``. The rows of ``to_rows`` are::
-///
-///     origin, power | ex, cutoff | ey, wavelength | ez, 0 | W: xx, xy, yy, 0 | S: likewise | K: xx, xy, yx, yy
-#[pyclass(frozen, extends = Emitter, module = "tem00.beam")]
-#[derive(Debug)]
-pub(crate) struct AstigmaticLight(physics::AstigmaticLight<f64>);
-
-#[pymethods]
-impl AstigmaticLight {
-    /// Place a beam in a scene, with its reference plane as the aperture.
-    ///
-    /// Parameters
-    /// ----------
-    /// beam : GeneralAstigmaticBeam
-    /// placement : Placement
-    /// power : float
-    ///     Power in watts, from 0 to 1e100.
-    #[staticmethod]
-    fn place(
-        py: Python<'_>,
-        beam: &GeneralAstigmaticBeam,
-        placement: &Placement,
-        power: f64,
-    ) -> PyResult<Py<Self>> {
-        let light = physics::AstigmaticLight::place(&beam.0, &placement.0, power);
-        Self::of(py, light.or_raise()?)
-    }
-
-    /// Return the light with the fields that ``to_rows`` returns.
-    ///
-    /// Parameters
-    /// ----------
-    /// rows : array_like, shape (7, 4)
-    ///     The fields in the order of memory. What no placed light could hold is refused.
-    #[staticmethod]
-    fn from_rows(py: Python<'_>, rows: Table<'_>) -> PyResult<Py<Self>> {
-        let rows = Rows::placed(&rows)?;
-        rows.check_wavelength(2, 3)?;
-        rows.check_ellipse(4)?;
-        rows.check_ellipse(5)?;
-        Self::of(py, physics::AstigmaticLight::from_rows(rows.0))
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        let rows = array_of(py, &self.0.to_rows())?;
-        by_constructor::<Self>(py, "from_rows", (rows,))
-    }
-}
-
-methods! {
-    impl AstigmaticLight as this: this.0;
-
-    unmade "place";
-
-    /// K: mean position on the aperture plane per slope, in metres, shape (2, 2).
-    field position_per_slope -> Matrix<2>;
-
-    /// W: squared radii of the position on the aperture plane of rays with a given slope, in m².
-    get position -> Ellipse = Ellipse(this.0.position);
-
-    /// S: squared radii of the slope, in rad².
-    get slope -> Ellipse = Ellipse(this.0.slope);
-}
-
-impl AstigmaticLight {
-    fn of(py: Python<'_>, light: physics::AstigmaticLight<f64>) -> PyResult<Py<Self>> {
-        let base = PyClassInitializer::from(Emitter(Light::Astigmatic(light)));
         Py::new(py, base.add_subclass(Self(light)))
     }
 }

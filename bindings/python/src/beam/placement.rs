@@ -109,31 +109,3 @@ methods! {
     ///     Coordinate along the beam, in metres.
     map radius_sq_at(z);
 }
-
-/// A symmetric 2 × 2 matrix of a placed light: squared radii of an ellipse.
-#[pyclass(frozen, eq, module = "tem00.beam")]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Ellipse(pub(super) physics::Ellipse<f64>);
-
-#[pymethods]
-impl Ellipse {
-    fn __repr__(&self) -> String {
-        let physics::Ellipse { xx, xy, yy, .. } = self.0;
-        format!("<Ellipse: xx={xx:?}, xy={xy:?}, yy={yy:?}>")
-    }
-}
-
-methods! {
-    impl Ellipse as this: this.0;
-
-    unmade "AstigmaticLight.position and AstigmaticLight.slope";
-
-    /// Element in the first row and column.
-    field xx -> f64;
-
-    /// Element off the diagonal.
-    field xy -> f64;
-
-    /// Element in the second row and column.
-    field yy -> f64;
-}

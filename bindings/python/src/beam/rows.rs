@@ -43,20 +43,6 @@ impl<const N: usize> Rows<N> {
         self.within(row, 2, "z0", -2e30..=2e30)
     }
 
-    /// Checks that a row is a positive definite matrix.
-    pub(super) fn check_ellipse(&self, row: usize) -> PyResult<()> {
-        self.within(row, 0, "xx", 1e-130..=1e61)?;
-        self.within(row, 2, "yy", 1e-130..=1e61)?;
-        let [xx, xy, yy, _] = self.0[row];
-        if xx * yy - xy * xy > 0.0 {
-            return Ok(());
-        }
-        Err(wrong(&format!(
-            "must hold a positive definite matrix in row {row}, got xx = {xx:e}, xy = {xy:e} and \
-             yy = {yy:e}"
-        )))
-    }
-
     /// Checks the profile of a laser line and its fan.
     pub(super) fn check_fan(&self) -> PyResult<()> {
         self.within(2, 3, "apex_offset", 1e-30..=1e30)?;

@@ -102,7 +102,7 @@ methods! {
     impl RigidMotion as this: this.0;
 
     /// Rotation matrix of shape (3, 3).
-    get rotation -> Matrix<3>;
+    get rotation -> Matrix;
 
     /// Translation in metres, of shape (3,).
     get translation -> Vector<3>;

@@ -147,7 +147,7 @@ methods! {
     get direction_to_source -> Vector<3>;
 
     /// Symmetric curvature tensor in 1/m, of shape (3, 3).
-    get curvature -> Matrix<3>;
+    get curvature -> Matrix;
 }
 
 fn check_finite(name: &'static str, value: f64) -> PyResult<()> {

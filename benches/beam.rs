@@ -12,9 +12,8 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use tem00::beam::{
-    AstigmaticBeam, AstigmaticLight, DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam,
-    GeneralAstigmaticBeam, LaserLine, LineLight, LineProfile, LocatedBeam, NextEventSlices,
-    Placement, Real, SpotLight,
+    DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight, LineProfile,
+    NextEventSlices, Placement, Real, SpotLight,
 };
 
 /// Few enough for coordinates and results to stay in the nearer caches.
@@ -30,13 +29,12 @@ fn placement() -> Placement {
     }
 }
 
-fn focus() -> LocatedBeam {
-    let beam = GaussianBeam::from_waist(650e-9, 50e-6).expect("a valid beam");
-    LocatedBeam::new(beam, WAIST_DISTANCE).expect("a valid distance")
+fn focus() -> GaussianBeam {
+    GaussianBeam::from_waist(650e-9, 50e-6).expect("a valid beam")
 }
 
 fn spot() -> SpotLight<f64> {
-    SpotLight::place(focus().beam(), WAIST_DISTANCE, &placement(), POWER).expect("a valid light")
+    SpotLight::place(&focus(), WAIST_DISTANCE, &placement(), POWER).expect("a valid light")
 }
 
 fn line(profile: LineProfile) -> LineLight<f64> {
@@ -46,17 +44,8 @@ fn line(profile: LineProfile) -> LineLight<f64> {
         focus_distance: WAIST_DISTANCE,
         focus_curve: FocusCurve::EqualDistance,
     };
-    let line = LaserLine::new(*focus().beam(), fan, profile).expect("a valid line");
+    let line = LaserLine::new(focus(), fan, profile).expect("a valid line");
     LineLight::place(&line, &placement(), POWER).expect("a valid light")
-}
-
-fn astigmatic() -> AstigmaticLight<f64> {
-    let late = LocatedBeam::new(*focus().beam(), 0.25).expect("a valid distance");
-    let beam = AstigmaticBeam::new(focus(), late)
-        .and_then(|beam| beam.with_rotation(0.4))
-        .expect("a valid beam");
-    AstigmaticLight::place(&GeneralAstigmaticBeam::from(beam), &placement(), POWER)
-        .expect("a valid light")
 }
 
 /// The number `i` of an even spread over (−½, ½).
@@ -188,17 +177,8 @@ fn lights(criterion: &mut Criterion) {
         &single_light,
         (&single(&near), u_single),
     );
-    calls(criterion, "astigmatic f64", &astigmatic(), (&near, u));
     batches(criterion, "spot f64", &light, (&near, 0.0));
     batches(criterion, "spot f32", &single_light, (&single(&near), 0.0));
-    batches(criterion, "astigmatic f64", &astigmatic(), (&near, 0.0));
-    let single_light = astigmatic().to_f32().expect("it fits");
-    batches(
-        criterion,
-        "astigmatic f32",
-        &single_light,
-        (&single(&near), 0.0),
-    );
     for (name, profile) in [
         ("line f64", LineProfile::GaussianTan),
         ("Powell line f64", LineProfile::Powell { edge: 0.1 }),

@@ -1,13 +1,12 @@
 /*
- * Laser spots, astigmatic beams and laser lines in closed form, for renderers in C99 or C++.
+ * Laser spots and laser lines in closed form, for renderers in C99 or C++.
  *
  * Header only: needs <math.h> and nothing else. There is everything twice, for float with the
  * suffix F32 or _f32 and for double with F64 or _f64:
  *
- *     Tem00AxisF32, Tem00EllipseF32, Tem00NextEventF32
- *     Tem00SpotLightF32        tem00_spot_irradiance_f32        tem00_spot_next_event_f32
- *     Tem00AstigmaticLightF32  tem00_astigmatic_irradiance_f32  tem00_astigmatic_next_event_f32
- *     Tem00LineLightF32        tem00_line_irradiance_f32        tem00_line_next_event_f32
+ *     Tem00AxisF32, Tem00NextEventF32
+ *     Tem00SpotLightF32  tem00_spot_irradiance_f32  tem00_spot_next_event_f32
+ *     Tem00LineLightF32  tem00_line_irradiance_f32  tem00_line_next_event_f32
  *
  * Names that end in an underscore before the suffix are not for the caller.
  *
@@ -72,29 +71,6 @@ typedef struct {
     TEM00_TYPE(Axis) x;    /* beam radius along x */
     TEM00_TYPE(Axis) y;    /* beam radius along y */
 } TEM00_TYPE(SpotLight);
-
-/* Squared radii as a symmetric matrix M: the ellipse is x' M^-1 x = 1. */
-typedef struct {
-    TEM00_REAL xx;  /* squared half-width along x */
-    TEM00_REAL xy;  /* mixed term */
-    TEM00_REAL yy;  /* squared half-width along y */
-    TEM00_REAL pad; /* unused, 0 */
-} TEM00_TYPE(Ellipse);
-
-/* A beam with general astigmatism, whose ellipse may turn on the way. */
-typedef struct {
-    TEM00_REAL origin[3];         /* centre of the aperture, in metres */
-    TEM00_REAL power;             /* in watts */
-    TEM00_REAL ex[3];             /* unit vector of the local x axis */
-    TEM00_REAL cutoff;            /* distance from the axis, in beam radii, where it gets dark */
-    TEM00_REAL ey[3];             /* unit vector of the local y axis */
-    TEM00_REAL wavelength;        /* in the medium, in metres */
-    TEM00_REAL ez[3];             /* unit vector along the direction of travel */
-    TEM00_REAL pad_ez;            /* unused, 0 */
-    TEM00_TYPE(Ellipse) position; /* W: of the position at the aperture given the slope, in m^2 */
-    TEM00_TYPE(Ellipse) slope;    /* S: of the slope, in rad^2 */
-    TEM00_REAL position_per_slope[2][2]; /* K: mean position at the aperture per slope, in metres */
-} TEM00_TYPE(AstigmaticLight);
 
 /* A laser line. A fan whose profile is a table is dark here: its density is not in the struct. */
 typedef struct {
@@ -202,44 +178,6 @@ static inline TEM00_TYPE(Flow_)
     return flow;
 }
 
-/* With M = K + z and the squared radii V = W + M S M':
- * E = 2 P / (pi sqrt(det V)) exp(-2 x' V^-1 x), slope S M' V^-1 x. */
-static inline TEM00_TYPE(Flow_)
-    TEM00_FN(astigmatic_flow_)(const TEM00_TYPE(AstigmaticLight) *light,
-                               const TEM00_REAL local[3]) {
-    const TEM00_REAL two_over_pi = (TEM00_REAL)0.63661977236758134308;
-    TEM00_TYPE(Flow_) flow = {{0, 0}, 0};
-    const TEM00_TYPE(Ellipse) w = light->position, s = light->slope;
-    const TEM00_REAL(*k)[2] = light->position_per_slope;
-    const TEM00_REAL x = local[0], y = local[1], z = local[2];
-    const TEM00_REAL mx[2] = {k[0][0] + z, k[0][1]}, my[2] = {k[1][0], k[1][1] + z};
-    /* The columns of S M', then V, then det V as a sum of positive parts. */
-    const TEM00_REAL s_mx[2] = {s.xx * mx[0] + s.xy * mx[1], s.xy * mx[0] + s.yy * mx[1]};
-    const TEM00_REAL s_my[2] = {s.xx * my[0] + s.xy * my[1], s.xy * my[0] + s.yy * my[1]};
-    const TEM00_REAL spread_xx = mx[0] * s_mx[0] + mx[1] * s_mx[1];
-    const TEM00_REAL spread_xy = mx[0] * s_my[0] + mx[1] * s_my[1];
-    const TEM00_REAL spread_yy = my[0] * s_my[0] + my[1] * s_my[1];
-    const TEM00_REAL det_m = mx[0] * my[1] - mx[1] * my[0];
-    const TEM00_REAL det_v = w.xx * w.yy - w.xy * w.xy +
-                             (w.yy * spread_xx - 2 * w.xy * spread_xy + w.xx * spread_yy) +
-                             (s.xx * s.yy - s.xy * s.xy) * det_m * det_m;
-    /* V = L diag(vx, vy) L' with L = ((1, 0), (tilt, 1)). */
-    const TEM00_REAL vx = w.xx + spread_xx, vy = det_v / vx;
-    const TEM00_REAL tilt = (w.xy + spread_xy) / vx;
-    const TEM00_REAL across = y - tilt * x;
-    const TEM00_REAL rho_sq = x * x / vx + across * across / vy;
-    if (z < 0 || !(vy > 0) || rho_sq > light->cutoff * light->cutoff) {
-        return flow;
-    }
-    const TEM00_REAL solved_y = across / vy, solved_x = x / vx - tilt * solved_y;
-    const TEM00_REAL peak =
-        two_over_pi * light->power / (TEM00_MATH(sqrt)(vx) * TEM00_MATH(sqrt)(vy));
-    flow.irradiance = peak * TEM00_MATH(exp)(-2 * rho_sq);
-    flow.slope[0] = s_mx[0] * solved_x + s_my[0] * solved_y;
-    flow.slope[1] = s_mx[1] * solved_x + s_my[1] * solved_y;
-    return flow;
-}
-
 /* A uniform density on [-flat, flat], convolved with a normal one of standard deviation sigma. */
 static inline TEM00_REAL TEM00_FN(profile_)(TEM00_REAL flat, TEM00_REAL sigma, TEM00_REAL v) {
     const TEM00_REAL inv_sqrt_tau = (TEM00_REAL)0.39894228040143267794;
@@ -322,25 +260,6 @@ static inline TEM00_TYPE(NextEvent)
     TEM00_REAL local[3];
     TEM00_FN(local_)(frame, p, local);
     return TEM00_FN(next_event_)(frame, local, TEM00_FN(spot_flow_)(light, local));
-}
-
-/* Returns the irradiance, in W/m^2, of a plane through p at right angles to the axis. */
-static inline TEM00_REAL TEM00_FN(astigmatic_irradiance)(const TEM00_TYPE(AstigmaticLight) *light,
-                                                         const TEM00_REAL p[3]) {
-    const TEM00_TYPE(Frame_) frame = {light->origin, light->ex, light->ey, light->ez};
-    TEM00_REAL local[3];
-    TEM00_FN(local_)(frame, p, local);
-    return TEM00_FN(astigmatic_flow_)(light, local).irradiance;
-}
-
-/* Returns the light at p as one direction: that of the mean energy flow. */
-static inline TEM00_TYPE(NextEvent)
-    TEM00_FN(astigmatic_next_event)(const TEM00_TYPE(AstigmaticLight) *light,
-                                    const TEM00_REAL p[3]) {
-    const TEM00_TYPE(Frame_) frame = {light->origin, light->ex, light->ey, light->ez};
-    TEM00_REAL local[3];
-    TEM00_FN(local_)(frame, p, local);
-    return TEM00_FN(next_event_)(frame, local, TEM00_FN(astigmatic_flow_)(light, local));
 }
 
 /* Returns the irradiance, in W/m^2, of a plane through p at right angles to the axis. */

@@ -1,4 +1,4 @@
-// Laser spots, astigmatic beams and laser lines in closed form, for a renderer's own kernels.
+// Laser spots and laser lines in closed form, for a renderer's own kernels.
 //
 // Functions and structs only: no bindings, no entry points, no imports, no extensions. Every name
 // begins with `tem00_` or `Tem00`; those that end in `_` are not for the caller.
@@ -13,8 +13,7 @@
 //
 // Nothing arrives where `event.e_perp` is 0: behind the aperture and beyond the cut-off.
 //
-// Validity: lengths up to 1e9 units, and no ellipse so long, thin and oblique to x and y that the
-// square of its ratio of axes times ε matters. The relative error of the irradiance is about
+// Validity: lengths up to 1e9 units. The relative error of the irradiance is about
 // 4 ε |p − origin| / w, ε = 1.2e-7, from the rounding of the coordinates, and beyond that the error
 // of the device's own exp, sqrt, division and atan, for which WGSL sets wide limits.
 
@@ -52,44 +51,6 @@ struct Tem00SpotLight {
     x: Tem00Axis,
     /// Beam radius along y.
     y: Tem00Axis,
-}
-
-/// Squared radii as a symmetric matrix M: the ellipse is xᵀ M⁻¹ x = 1.
-struct Tem00Ellipse {
-    /// Squared half-width along x.
-    xx: f32,
-    /// Mixed term.
-    xy: f32,
-    /// Squared half-width along y.
-    yy: f32,
-    /// Unused, 0.
-    pad: f32,
-}
-
-/// A beam with general astigmatism, whose ellipse may turn on the way.
-struct Tem00AstigmaticLight {
-    /// Centre of the aperture, in metres.
-    origin: vec3<f32>,
-    /// Power, in watts.
-    power: f32,
-    /// Unit vector of the local x axis.
-    ex: vec3<f32>,
-    /// Distance from the axis, in beam radii, beyond which no light arrives.
-    cutoff: f32,
-    /// Unit vector of the local y axis.
-    ey: vec3<f32>,
-    /// Wavelength in the medium, in metres.
-    wavelength: f32,
-    /// Unit vector along the direction of travel.
-    ez: vec3<f32>,
-    /// Unused, 0.
-    pad_ez: f32,
-    /// W: squared radii of the position on the aperture plane of rays with a given slope, in m².
-    position: Tem00Ellipse,
-    /// S: squared radii of the slope, in rad².
-    slope: Tem00Ellipse,
-    /// K: mean position on the aperture plane per slope, in metres: xx, xy, yx, yy.
-    position_per_slope: vec4<f32>,
 }
 
 /// A laser line. A fan whose profile is a table is dark here: its density is not in the struct.
@@ -166,19 +127,6 @@ fn tem00_line_next_event(light: Tem00LineLight, p: vec3<f32>) -> Tem00NextEvent 
     return tem00_next_event_(frame, local, tem00_line_flow_(light, local));
 }
 
-/// Returns the irradiance, in W/m², of a plane through `p` at right angles to the axis.
-fn tem00_astigmatic_irradiance(light: Tem00AstigmaticLight, p: vec3<f32>) -> f32 {
-    let local = tem00_local_(tem00_astigmatic_frame_(light), p);
-    return tem00_astigmatic_flow_(light, local).irradiance;
-}
-
-/// Returns the light at `p` as one direction: that of the mean energy flow.
-fn tem00_astigmatic_next_event(light: Tem00AstigmaticLight, p: vec3<f32>) -> Tem00NextEvent {
-    let frame = tem00_astigmatic_frame_(light);
-    let local = tem00_local_(frame, p);
-    return tem00_next_event_(frame, local, tem00_astigmatic_flow_(light, local));
-}
-
 /// The energy flow `irradiance · (slope, 1)` in the frame of the light.
 struct Tem00Flow_ {
     slope: vec2<f32>,
@@ -200,36 +148,6 @@ fn tem00_spot_flow_(light: Tem00SpotLight, local: vec3<f32>) -> Tem00Flow_ {
         local.y * tem00_growth_(light.y, local.z),
     );
     return Tem00Flow_(slope, peak * exp(-2.0 * rho_sq));
-}
-
-/// With M = K + z and the squared radii V = W + M S Mᵀ:
-/// E = 2 P / (π √det V) · exp(−2 xᵀ V⁻¹ x), slope S Mᵀ V⁻¹ x.
-fn tem00_astigmatic_flow_(light: Tem00AstigmaticLight, local: vec3<f32>) -> Tem00Flow_ {
-    let w = light.position;
-    let s = light.slope;
-    let k = light.position_per_slope;
-    let mx = vec2(k.x + local.z, k.y);
-    let my = vec2(k.z, k.w + local.z);
-    // The columns of S Mᵀ, then V, then det V as a sum of positive parts.
-    let s_mx = vec2(s.xx * mx.x + s.xy * mx.y, s.xy * mx.x + s.yy * mx.y);
-    let s_my = vec2(s.xx * my.x + s.xy * my.y, s.xy * my.x + s.yy * my.y);
-    let spread = vec3(dot(mx, s_mx), dot(mx, s_my), dot(my, s_my));
-    let det_m = mx.x * my.y - mx.y * my.x;
-    let det_v = w.xx * w.yy - w.xy * w.xy
-        + (w.yy * spread.x - 2.0 * w.xy * spread.y + w.xx * spread.z)
-        + (s.xx * s.yy - s.xy * s.xy) * det_m * det_m;
-    // V = L diag(vx, vy) Lᵀ with L = ((1, 0), (tilt, 1)).
-    let vx = w.xx + spread.x;
-    let vy = det_v / vx;
-    let tilt = (w.xy + spread.y) / vx;
-    let across = local.y - tilt * local.x;
-    let rho_sq = local.x * local.x / vx + across * across / vy;
-    if local.z < 0.0 || vy <= 0.0 || rho_sq > light.cutoff * light.cutoff {
-        return Tem00Flow_();
-    }
-    let solved = vec2(local.x / vx - tilt * (across / vy), across / vy);
-    let peak = 0.636619772 * light.power / (sqrt(vx) * sqrt(vy));
-    return Tem00Flow_(s_mx * solved.x + s_my * solved.y, peak * exp(-2.0 * rho_sq));
 }
 
 /// Keep this form: multiplied out into powers of z it loses all digits near a tight waist.
@@ -321,10 +239,6 @@ struct Tem00Frame_ {
 }
 
 fn tem00_spot_frame_(light: Tem00SpotLight) -> Tem00Frame_ {
-    return Tem00Frame_(light.origin, light.ex, light.ey, light.ez);
-}
-
-fn tem00_astigmatic_frame_(light: Tem00AstigmaticLight) -> Tem00Frame_ {
     return Tem00Frame_(light.origin, light.ex, light.ey, light.ez);
 }
 

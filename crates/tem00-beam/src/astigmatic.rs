@@ -4,9 +4,11 @@ use glam::{DVec2, DVec3};
 
 use crate::measurement::CrossSection;
 use crate::optics::AbcdMatrix;
-use crate::optics::astigmatic_system::check_determinants;
 use crate::range::is_coordinate;
 use crate::{BeamError, GaussianBeam, LocatedBeam};
+
+/// Largest relative difference of the determinants of the two axes of a system.
+const DETERMINANT_TOLERANCE: f64 = 1e-9;
 
 /// An elliptic Gaussian beam with simple astigmatism: two principal axes at right angles, each with
 /// its own waist, waist position and M².
@@ -24,8 +26,8 @@ use crate::{BeamError, GaussianBeam, LocatedBeam};
 ///
 /// # Validity
 ///
-/// Both axes are paraxial. A beam whose ellipse turns on its way, as behind a cylinder lens that is
-/// aligned with neither axis, is a [`GeneralAstigmaticBeam`](crate::GeneralAstigmaticBeam).
+/// Both axes are paraxial. Not here: a beam whose ellipse turns on its way, as behind a cylinder lens
+/// that is aligned with neither axis.
 ///
 /// # Examples
 ///
@@ -143,9 +145,7 @@ impl AstigmaticBeam {
     /// Returns the beam behind a system, seen from its output plane, for this beam in front of it,
     /// seen from its input plane, where the two matrices act along the principal axes of the beam.
     ///
-    /// Spherical lenses are the same in both axes, cylinder lenses and tilted mirrors are not. If a
-    /// system is turned against the principal axes, take
-    /// [`GeneralAstigmaticBeam::through`](crate::GeneralAstigmaticBeam::through).
+    /// Spherical lenses are the same in both axes, cylinder lenses and tilted mirrors are not.
     ///
     /// # Errors
     ///
@@ -312,6 +312,18 @@ impl AstigmaticBeam {
     fn principal(&self, point: DVec3) -> DVec2 {
         DVec2::from_angle(-self.rotation).rotate(point.truncate())
     }
+}
+
+/// Checks that light leaves both axes of a system into one medium.
+fn check_determinants(axes: &[AbcdMatrix; 2]) -> Result<(), BeamError> {
+    let [x, y] = axes.map(|axis| axis.determinant());
+    if (x - y).abs() > DETERMINANT_TOLERANCE * x {
+        return Err(BeamError::AxesDiffer {
+            parameter: "determinant",
+            values: [x, y],
+        });
+    }
+    Ok(())
 }
 
 /// Returns the two solutions, measured from the waist of `x`, of

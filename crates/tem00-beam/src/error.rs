@@ -1,6 +1,6 @@
 use core::{error, fmt};
 
-use glam::{DMat2, DVec3};
+use glam::DVec3;
 
 /// Reasons to refuse a beam, an optical system, a laser line or a placed light.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,15 +36,6 @@ pub enum BeamError {
         parameter: &'static str,
         /// The rejected vector.
         value: DVec3,
-        /// The allowed values, with their unit.
-        allowed: &'static str,
-    },
-    /// A matrix is not of the required kind.
-    Matrix {
-        /// The name of the parameter.
-        parameter: &'static str,
-        /// The rejected matrix.
-        value: DMat2,
         /// The allowed values, with their unit.
         allowed: &'static str,
     },
@@ -121,7 +112,6 @@ impl BeamError {
             Self::OutOfRange { parameter, .. }
             | Self::Entry { parameter, .. }
             | Self::Vector { parameter, .. }
-            | Self::Matrix { parameter, .. }
             | Self::AxesDiffer { parameter, .. } => parameter,
             Self::NotParaxial { .. } => "waist_radius",
             Self::ApexOffset { .. } => "apex_offset",
@@ -155,11 +145,6 @@ impl fmt::Display for BeamError {
                 write!(f, " at index {index}")
             }
             Self::Vector {
-                parameter,
-                value,
-                allowed,
-            } => write!(f, "{parameter} must be {allowed}, got {value}"),
-            Self::Matrix {
                 parameter,
                 value,
                 allowed,

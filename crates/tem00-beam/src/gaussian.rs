@@ -7,7 +7,7 @@ use crate::measurement::CrossSection;
 use crate::range::{check, check_length};
 
 /// The largest divergence, in radians, for which the paraxial model is trusted.
-pub(crate) const PARAXIAL_LIMIT: f64 = 0.5;
+const PARAXIAL_LIMIT: f64 = 0.5;
 
 /// A circular TEM₀₀ Gaussian beam in a homogeneous medium, or its partially coherent relative with
 /// M² > 1.

@@ -11,28 +11,27 @@
 //! *Physics*, in `f64` and in the frame of the beam. Constructors check, so that nothing fails later.
 //!
 //! - Beams: [`GaussianBeam`] (z = 0 at the waist), [`LocatedBeam`] (at a reference plane),
-//!   [`AstigmaticBeam`] (elliptic), [`GeneralAstigmaticBeam`] (behind a turned cylinder lens).
+//!   [`AstigmaticBeam`] (elliptic).
 //! - Laser lines: [`LaserLine`] (z = 0 at the lens) with a [`LineProfile`].
 //! - The laboratory: [`optics`] for lenses and mirrors, [`measurement`] for widths, apertures and fits.
 //!
-//! *Renderer*, in `f32` or `f64` and in world coordinates: [`SpotLight`], [`AstigmaticLight`],
-//! [`LineLight`] and [`TabulatedLineLight`], plain structs prepared from the above by a
-//! [`Placement`], queried through the trait [`Emitter`]: next-event estimation, ray sampling,
-//! densities, radiance, bounds and batches. The text of their [closed forms](closed_form) in WGSL
-//! and C is for kernels that cannot call a library.
+//! *Renderer*, in `f32` or `f64` and in world coordinates: [`SpotLight`], [`LineLight`] and
+//! [`TabulatedLineLight`], plain structs prepared from the above by a [`Placement`], queried through
+//! the trait [`Emitter`]: next-event estimation, ray sampling, densities, radiance, bounds and batches.
+//! The text of their [closed forms](closed_form) in WGSL and C is for kernels that cannot call a
+//! library.
 //!
 //! # Scope and non-goals
 //!
 //! Paraxial, scalar beams of one wavelength, with M² ≥ 1, in free space and through ideal lenses,
 //! mirrors and interfaces. Not here: aberrations, beams wider than 0.5 rad, higher modes other than
-//! through M², pulses, polarisation, interference between beams, and what a surface does with the
-//! light. It is no laser-safety tool.
+//! through M², spots that turn on their way, pulses, polarisation, interference between beams, and
+//! what a surface does with the light. It is no laser-safety tool.
 
 mod astigmatic;
 pub mod closed_form;
 mod error;
 mod gaussian;
-mod general;
 mod line;
 mod located;
 pub mod measurement;
@@ -46,14 +45,13 @@ mod real;
 pub use astigmatic::AstigmaticBeam;
 pub use error::BeamError;
 pub use gaussian::GaussianBeam;
-pub use general::{GeneralAstigmaticBeam, SecondMoments};
-pub use glam::{DMat2, DVec2, DVec3};
+pub use glam::DVec3;
 pub use line::{FanGeometry, FocusCurve, LaserLine};
 pub use located::LocatedBeam;
 pub use num_complex::Complex64;
 pub use placed::{
-    ApertureHit, AstigmaticLight, Axis, Bounds, Ellipse, Emitter, LineLight, NextEvent,
-    NextEventSlices, Placement, RayPdf, RaySample, SampledEvent, SpotLight, TabulatedLineLight,
+    ApertureHit, Axis, Bounds, Emitter, LineLight, NextEvent, NextEventSlices, Placement, RayPdf,
+    RaySample, SampledEvent, SpotLight, TabulatedLineLight,
 };
 pub use profile::{AngularKnot, AngularProfile, LineProfile};
 pub use real::Real;

@@ -1,8 +1,6 @@
 //! The renderer face: placed lights as plain structs, generic over the scalar.
 
-mod astigmatic;
 mod axis;
-mod ellipse;
 mod emitter;
 mod fan;
 mod frame;
@@ -15,9 +13,7 @@ mod slope;
 mod spot;
 mod tabulated;
 
-pub use astigmatic::AstigmaticLight;
 pub use axis::Axis;
-pub use ellipse::Ellipse;
 pub use emitter::Emitter;
 pub use frame::Placement;
 pub use line::LineLight;

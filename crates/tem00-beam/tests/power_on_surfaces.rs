@@ -12,11 +12,9 @@ mod lines;
 
 use lines::{REACH, profiles, slopes};
 use proptest::prelude::*;
-use tem00_beam::optics::AstigmaticSystem;
 use tem00_beam::{
-    AstigmaticBeam, AstigmaticLight, DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam,
-    GeneralAstigmaticBeam, LaserLine, LineLight, LocatedBeam, Placement, SpotLight,
-    TabulatedLineLight,
+    AstigmaticBeam, DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight,
+    LocatedBeam, Placement, SpotLight, TabulatedLineLight,
 };
 
 const WAVELENGTH: f64 = 650e-9;
@@ -78,13 +76,15 @@ fn trapezoid(half: f64, intervals: f64) -> (impl Iterator<Item = f64> + Clone, f
 }
 
 /// The power of a beam through a surface, which is covered by x and y.
-fn power_of_beam(flux: &Flux<'_>, beam: &GeneralAstigmaticBeam, surface: &Surface) -> f64 {
+fn power_of_beam(flux: &Flux<'_>, beam: &AstigmaticBeam, surface: &Surface) -> f64 {
     let hit = |x: f64, y: f64| surface.exit(DVec3::new(x, y, 0.0), DVec3::Z);
     let (z, n) = hit(0.0, 0.0);
     // A point at x from the axis is x tan τ further on, and w grows by δ at most.
     let steepness = (n.x.hypot(n.y) / n.z).abs();
-    let [long, short] = beam.radii_at(z);
-    let [divergence, _] = beam.divergences();
+    let [a, b] = beam.radii_at(z);
+    let (long, short) = (a.max(b), a.min(b));
+    let [a, b] = beam.axes().map(|axis| axis.beam().divergence());
+    let divergence = a.max(b);
     let half = 1.1 * REACH * long / (1.0 - REACH * divergence * steepness);
     let intervals = (16.0 * half / short).ceil().clamp(160.0, 1_200.0);
     let (steps, h) = trapezoid(half, intervals);
@@ -100,9 +100,9 @@ fn power_of_beam(flux: &Flux<'_>, beam: &GeneralAstigmaticBeam, surface: &Surfac
     power
 }
 
-fn round(beam: GaussianBeam, waist_distance: f64) -> GeneralAstigmaticBeam {
+fn round(beam: GaussianBeam, waist_distance: f64) -> AstigmaticBeam {
     let located = LocatedBeam::new(beam, waist_distance).expect("a valid distance");
-    AstigmaticBeam::stigmatic(located).into()
+    AstigmaticBeam::stigmatic(located)
 }
 
 /// The power of a line through a surface, which is covered by the slope u = x / Z and by y.
@@ -278,28 +278,21 @@ proptest! {
     }
 
     #[test]
-    fn any_surface_receives_the_power_of_a_placed_astigmatic_beam(
+    fn any_surface_receives_the_power_of_a_placed_elliptic_beam(
         beam in elliptic_beams(),
-        lens in (0.1..0.5_f64, 0.0..3.0_f64),
         plane in (0.15..0.4_f64, 0.0..60.0_f64, 0.0..360.0_f64),
         round_surface in round_surfaces(),
         placement in placements(),
     ) {
-        let (focal_length, angle) = lens;
-        let lens = AstigmaticSystem::cylinder_lens(focal_length, angle).expect("a valid lens");
-        let general = GeneralAstigmaticBeam::from(beam).through(&lens).expect("a valid beam");
         let spot = SpotLight::place_astigmatic(&beam, &placement, 1.0).expect("a valid light");
-        let turning = AstigmaticLight::place(&general, &placement, 1.0).expect("a valid light");
         let (distance, tilt, azimuth) = plane;
         let flat = Surface::Plane {
             point: DVec3::new(0.0, 0.0, distance),
             normal: tilted(tilt, azimuth),
         };
         for surface in [flat, round_surface] {
-            let power = power_of_beam(&local_flux(&spot, &placement), &beam.into(), &surface);
+            let power = power_of_beam(&local_flux(&spot, &placement), &beam, &surface);
             prop_assert!((power - 1.0).abs() < 1e-6, "{surface:?}: {power}");
-            let power = power_of_beam(&local_flux(&turning, &placement), &general, &surface);
-            prop_assert!((power - 1.0).abs() < 1e-6, "turning, {surface:?}: {power}");
         }
     }
 

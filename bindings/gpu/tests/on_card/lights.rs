@@ -1,4 +1,4 @@
-//! Laser spots, astigmatic beams and laser lines on a card against the lights in double precision.
+//! Laser spots and laser lines on a card against the lights in double precision.
 
 #[path = "../../../../crates/tem00-beam/tests/closed_forms/comparison.rs"]
 mod comparison;
@@ -12,7 +12,7 @@ use tem00_gpu::Gpu;
 
 use crate::kernel::evaluate;
 use comparison::{Answer, Judge};
-use samples::{Sample, astigmatic_beams, lines, single_precision, spots};
+use samples::{Sample, lines, single_precision, spots};
 
 /// The numbers of a light, at most, and a point.
 const INPUTS: usize = 31;
@@ -21,9 +21,6 @@ const INPUTS: usize = 31;
 const HOST: &str = "
     fn vector(i: u32) -> vec3<f32> { return vec3(input(i), input(i + 1u), input(i + 2u)); }
     fn axis(i: u32) -> Tem00Axis { return Tem00Axis(input(i), input(i + 1u), input(i + 2u), 0.0); }
-    fn ellipse(i: u32) -> Tem00Ellipse {
-        return Tem00Ellipse(input(i), input(i + 1u), input(i + 2u), 0.0);
-    }
 ";
 
 /// The numbers that all lights begin with.
@@ -41,11 +38,6 @@ const SPOT: Kind = Kind {
     function: "spot",
     structure: "Tem00SpotLight",
     rest: "axis(16u), axis(20u)",
-};
-const ASTIGMATIC: Kind = Kind {
-    function: "astigmatic",
-    structure: "Tem00AstigmaticLight",
-    rest: "ellipse(16u), ellipse(20u), vec4(input(24u), vector(25u))",
 };
 const LINE: Kind = Kind {
     function: "line",
@@ -109,11 +101,6 @@ fn spots_agree_with_the_light_in_double_precision() {
 }
 
 #[test]
-fn astigmatic_beams_agree_with_the_light_in_double_precision() {
-    agree(&ASTIGMATIC, &astigmatic_beams());
-}
-
-#[test]
 fn lines_agree_with_the_light_in_double_precision() {
     agree(&LINE, &lines());
 }
@@ -160,7 +147,6 @@ fn stays_finite<L: Emitter<f64>>(gpu: &Gpu, kind: &Kind, samples: &[Sample<L>]) 
 fn far_points_have_finite_answers() {
     let gpu = Gpu::new().expect("an adapter");
     stays_finite(&gpu, &SPOT, &spots());
-    stays_finite(&gpu, &ASTIGMATIC, &astigmatic_beams());
     stays_finite(&gpu, &LINE, &lines());
 }
 

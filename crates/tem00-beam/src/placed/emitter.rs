@@ -40,8 +40,8 @@ use crate::real::Real;
 /// The batch forms give the bits of single calls, with and without the feature `simd`, which compiles
 /// their loops for the widest vector instructions that the processor turns out to have.
 ///
-/// The trait is sealed. [`SpotLight`](crate::SpotLight), [`AstigmaticLight`](crate::AstigmaticLight),
-/// [`LineLight`](crate::LineLight) and [`TabulatedLineLight`](crate::TabulatedLineLight) implement it.
+/// The trait is sealed. [`SpotLight`](crate::SpotLight), [`LineLight`](crate::LineLight) and
+/// [`TabulatedLineLight`](crate::TabulatedLineLight) implement it.
 ///
 /// # Examples
 ///
@@ -69,19 +69,25 @@ use crate::real::Real;
 /// A scene holds lights of several kinds as trait objects:
 ///
 /// ```
-/// # use tem00_beam::{AstigmaticLight, Emitter, GaussianBeam, GeneralAstigmaticBeam, LocatedBeam};
-/// # use tem00_beam::{AstigmaticBeam, DVec3, Placement, SpotLight};
+/// # use tem00_beam::{DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight};
+/// # use tem00_beam::{LineProfile, Placement, SpotLight};
 /// # let placement = Placement {
 /// #     origin: DVec3::new(0.0, 0.0, 0.5),
 /// #     direction: DVec3::NEG_Z,
 /// #     fan_axis: DVec3::X,
 /// # };
 /// # let red = GaussianBeam::from_waist(650e-9, 0.2e-3)?;
-/// # let green = LocatedBeam::new(GaussianBeam::from_waist(532e-9, 0.1e-3)?, 0.5)?;
-/// # let green = GeneralAstigmaticBeam::from(AstigmaticBeam::stigmatic(green));
+/// # let fan = FanGeometry {
+/// #     fan_angle: 0.5,
+/// #     apex_offset: 3e-3,
+/// #     focus_distance: 0.5,
+/// #     focus_curve: FocusCurve::EqualDistance,
+/// # };
+/// # let green = GaussianBeam::from_waist(532e-9, 0.1e-3)?;
+/// # let green = LaserLine::new(green, fan, LineProfile::GaussianTan)?;
 /// let lights: Vec<Box<dyn Emitter<f64>>> = vec![
 ///     Box::new(SpotLight::place(&red, 0.5, &placement, 5e-3)?),
-///     Box::new(AstigmaticLight::place(&green, &placement, 1e-3)?),
+///     Box::new(LineLight::place(&green, &placement, 1e-3)?),
 /// ];
 /// let p = [0.1e-3, 0.0, 0.0];
 /// let brightest = lights.iter().max_by(|a, b| a.irradiance(p).total_cmp(&b.irradiance(p)));
@@ -291,8 +297,7 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     /// than four times the power, plus what a box as wide that is turned into the axes of the light
     /// receives more. Of rods along the axis, up to a thousand times as long as wide, half have a bound
     /// within 10 % of the power; it is up to some twenty times the power beside a focus that the rod
-    /// passes. Of an [`AstigmaticLight`](crate::AstigmaticLight) the bound of a rod is that of one slab
-    /// about it, across x or across y, as its rays do not move along the two independently.
+    /// passes.
     fn power_bound(&self, min: [T; 3], max: [T; 3]) -> T {
         match LocalBox::around(&self.frame(), min, max) {
             Some(target) => {

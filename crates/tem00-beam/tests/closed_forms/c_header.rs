@@ -7,7 +7,7 @@ use tem00_beam::Emitter;
 
 use super::comparison::{Answer, Judge};
 use super::layouts::layouts;
-use super::samples::{Sample, astigmatic_beams, lines, single_precision, spots};
+use super::samples::{Sample, lines, single_precision, spots};
 
 /// The scalar type that the program works in.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,16 +135,6 @@ fn spots_in_float_agree_with_the_light() {
 #[test]
 fn spots_in_double_agree_with_the_light() {
     agree("spot", Precision::Double, &spots());
-}
-
-#[test]
-fn astigmatic_beams_in_float_agree_with_the_light() {
-    agree("astigmatic", Precision::Single, &astigmatic_beams());
-}
-
-#[test]
-fn astigmatic_beams_in_double_agree_with_the_light() {
-    agree("astigmatic", Precision::Double, &astigmatic_beams());
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use core::mem::{offset_of, size_of};
 
-use tem00_beam::{AstigmaticLight, Axis, Ellipse, LineLight, NextEvent, SpotLight};
+use tem00_beam::{Axis, LineLight, NextEvent, SpotLight};
 
 /// The names and offsets of the members of a struct, and its size.
 pub(crate) type Layout = (Vec<(String, usize)>, usize);
@@ -17,7 +17,7 @@ macro_rules! layout_of {
 }
 
 /// The structs in `f32`, by the names of their counterparts.
-pub(crate) fn layouts() -> [(&'static str, Layout); 6] {
+pub(crate) fn layouts() -> [(&'static str, Layout); 4] {
     [
         ("Tem00Axis", layout_of!(Axis<f32>: w0_sq theta_sq z0 pad)),
         (
@@ -27,14 +27,6 @@ pub(crate) fn layouts() -> [(&'static str, Layout); 6] {
         (
             "Tem00NextEvent",
             layout_of!(NextEvent<f32>: point distance wi e_perp),
-        ),
-        ("Tem00Ellipse", layout_of!(Ellipse<f32>: xx xy yy pad)),
-        (
-            "Tem00AstigmaticLight",
-            layout_of!(
-                AstigmaticLight<f32>:
-                origin power ex cutoff ey wavelength ez pad_ez position slope position_per_slope
-            ),
         ),
         (
             "Tem00LineLight",

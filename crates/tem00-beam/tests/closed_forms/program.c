@@ -1,6 +1,6 @@
 /* Reads a light and points from standard input, and prints the light's answers.
  *
- * The first word is `spot`, `astigmatic` or `line`, then come the numbers of the light in the order
+ * The first word is `spot` or `line`, then come the numbers of the light in the order
  * of memory, then points up to the end. Each point gives one line: the irradiance, then the members
  * of the next event. The word `layout` alone prints the offset of every member and the size of
  * every struct.
@@ -24,10 +24,9 @@ typedef double Real;
 #define FN(name) tem00_##name##_f64
 #endif
 
-/* One of the three, filled number by number. */
+/* One of the two, filled number by number. */
 typedef union {
     TYPE(SpotLight) spot;
-    TYPE(AstigmaticLight) astigmatic;
     TYPE(LineLight) line;
     Real numbers[28];
 } Light;
@@ -69,8 +68,6 @@ static int answer(const char *kind) {
     Real p[3];
     if (strcmp(kind, "spot") == 0) {
         ANSWER(spot);
-    } else if (strcmp(kind, "astigmatic") == 0) {
-        ANSWER(astigmatic);
     } else {
         ANSWER(line);
     }
@@ -90,14 +87,6 @@ static void print_layout(void) {
     MEMBER(NextEvent, point), MEMBER(NextEvent, distance), MEMBER(NextEvent, wi);
     MEMBER(NextEvent, e_perp);
     SIZE(NextEvent);
-    MEMBER(Ellipse, xx), MEMBER(Ellipse, xy), MEMBER(Ellipse, yy), MEMBER(Ellipse, pad);
-    SIZE(Ellipse);
-    MEMBER(AstigmaticLight, origin), MEMBER(AstigmaticLight, power), MEMBER(AstigmaticLight, ex);
-    MEMBER(AstigmaticLight, cutoff), MEMBER(AstigmaticLight, ey), MEMBER(AstigmaticLight, wavelength);
-    MEMBER(AstigmaticLight, ez), MEMBER(AstigmaticLight, pad_ez);
-    MEMBER(AstigmaticLight, position), MEMBER(AstigmaticLight, slope);
-    MEMBER(AstigmaticLight, position_per_slope);
-    SIZE(AstigmaticLight);
     MEMBER(LineLight, origin), MEMBER(LineLight, power), MEMBER(LineLight, ex);
     MEMBER(LineLight, cutoff), MEMBER(LineLight, ey), MEMBER(LineLight, apex_offset);
     MEMBER(LineLight, ez), MEMBER(LineLight, source_radius), MEMBER(LineLight, y);

@@ -2,10 +2,9 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use tem00_beam::optics::AstigmaticSystem;
 use tem00_beam::{
-    AstigmaticBeam, AstigmaticLight, DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam,
-    GeneralAstigmaticBeam, LaserLine, LineLight, LineProfile, LocatedBeam, Placement, SpotLight,
+    DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight, LineProfile,
+    Placement, SpotLight,
 };
 
 const PLACEMENT: Placement = Placement {
@@ -87,44 +86,6 @@ pub(crate) fn spots() -> Vec<Sample<SpotLight<f64>>> {
         })
     };
     lights.map(sample).into()
-}
-
-/// An elliptic beam at an angle to x and y, and one that two oblique cylinder lenses have twisted.
-pub(crate) fn astigmatic_beams() -> Vec<Sample<AstigmaticLight<f64>>> {
-    // Only a partially coherent beam is twisted so that K is not symmetric.
-    let wide = beam(90e-6).with_m_squared(1.7).unwrap();
-    let [narrow, wide] = [(beam(40e-6), 0.2), (wide, -0.05)]
-        .map(|(beam, distance)| LocatedBeam::new(beam, distance).unwrap());
-    let oblique = AstigmaticBeam::new(narrow, wide)
-        .and_then(|beam| beam.with_rotation(0.5))
-        .unwrap();
-    let oblique = GeneralAstigmaticBeam::from(oblique);
-    let first = AstigmaticSystem::cylinder_lens(0.15, 0.9).unwrap();
-    let gap = AstigmaticSystem::free_space(0.1).unwrap();
-    let second = AstigmaticSystem::cylinder_lens(0.2, 1.7).unwrap();
-    let twisted = oblique.through(&first.then(gap).then(second)).unwrap();
-    vec![
-        astigmatic("oblique", &oblique),
-        astigmatic("twisted", &twisted),
-    ]
-}
-
-fn astigmatic(name: &str, beam: &GeneralAstigmaticBeam) -> Sample<AstigmaticLight<f64>> {
-    let rows = AstigmaticLight::place(beam, &PLACEMENT, 5e-3)
-        .and_then(|light| light.to_f32())
-        .unwrap()
-        .to_rows();
-    let light = AstigmaticLight::from_rows(wide(rows));
-    Sample::new(name.to_owned(), light, &rows, |z, [x, y]| {
-        let radii_sq = 4.0 * beam.moments_at(z).position;
-        let [xx, xy] = radii_sq.x_axis.to_array();
-        // The ellipse is sheared to one along x and y.
-        let x = x * light.cutoff * xx.sqrt();
-        [
-            x,
-            xy / xx * x + y * light.cutoff * (radii_sq.determinant() / xx).sqrt(),
-        ]
-    })
 }
 
 /// All profiles that are not tables, focused on a circle and on a plane.

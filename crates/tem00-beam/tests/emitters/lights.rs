@@ -1,10 +1,8 @@
 //! Lights at the origin that shine along z, so that world coordinates are theirs.
 
-use tem00_beam::optics::AstigmaticSystem;
 use tem00_beam::{
-    AstigmaticBeam, AstigmaticLight, DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam,
-    GeneralAstigmaticBeam, LaserLine, LineLight, LineProfile, LocatedBeam, Placement, SpotLight,
-    TabulatedLineLight,
+    AstigmaticBeam, DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight,
+    LineProfile, LocatedBeam, Placement, SpotLight, TabulatedLineLight,
 };
 
 use crate::lines::profiles;
@@ -44,18 +42,12 @@ pub(crate) fn place(line: &LaserLine) -> Box<dyn Emitter<f64> + '_> {
     }
 }
 
-/// An elliptic beam, and what a turned cylinder lens makes of it.
-pub(crate) fn beams() -> [Box<dyn Emitter<f64>>; 2] {
+/// An elliptic beam with its waists apart.
+pub(crate) fn elliptic() -> Box<dyn Emitter<f64>> {
     let axes = [(30e-6, 0.05), (60e-6, -0.02)];
     let axes = axes.map(|(w, z)| LocatedBeam::new(beam(w), z).expect("a valid beam"));
-    let elliptic = AstigmaticBeam::new(axes[0], axes[1]).expect("a valid beam");
-    let lens = AstigmaticSystem::cylinder_lens(0.08, 0.9).expect("a valid lens");
-    let general = GeneralAstigmaticBeam::from(elliptic)
-        .through(&lens)
-        .expect("a valid beam");
-    let spot = SpotLight::place_astigmatic(&elliptic, &PLACEMENT, POWER).expect("a valid light");
-    let twisted = AstigmaticLight::place(&general, &PLACEMENT, POWER).expect("a valid light");
-    [Box::new(spot), Box::new(twisted)]
+    let beam = AstigmaticBeam::new(axes[0], axes[1]).expect("a valid beam");
+    Box::new(SpotLight::place_astigmatic(&beam, &PLACEMENT, POWER).expect("a valid light"))
 }
 
 /// The slope at which the light of the line ends, or has fallen off, on one side.

@@ -3,8 +3,9 @@
 use std::f64::consts::PI;
 
 use tem00::{
+    DVec2,
     beam::{
-        DVec2, DVec3, GaussianBeam, LocatedBeam,
+        DVec3, GaussianBeam, LocatedBeam,
         optics::{AbcdMatrix, ThickLens},
     },
     tracer::{Frame, Material, Method, Scene, Shape, TriangleMesh},

@@ -68,8 +68,8 @@ def test_a_fixed_case_has_the_values_of_the_rust_crate() -> None:
     close = 1e-5
     factors = [1.0159947783, 0.2584848523, 0.9531888336, 1]
     averages = [1.0901372565, 0.2924545030, 0.8902109999, 1]
-    real = [-0.3128721877, -0.3575496089, -0.6859495775, 0]
-    imaginary = [-0.7563792111, 0.2556355671, 1.1528040921, 0]
+    real = [0.8132971326, -0.1117709498, 1.3222466281, 0]
+    imaginary = [0.0924461514, -0.4250864862, -0.2261591300, 0]
     np.testing.assert_allclose(frame.factor(points, normal), factors, rtol=0, atol=close)
     np.testing.assert_allclose(frame.average(points, normal), averages, rtol=0, atol=close)
     amplitudes = np.asarray(frame.amplitude(points, normal))

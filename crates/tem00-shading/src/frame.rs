@@ -1,4 +1,3 @@
-use core::f64::consts::TAU;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
@@ -93,20 +92,33 @@ impl SpeckleFrame {
     ///
     /// Panics unless the slices have the same length.
     pub fn factors(&self, points: &[DVec3], normals: &[DVec3], factors: &mut [f64]) {
+        self.in_blocks(points, normals, factors, |seen, factors| {
+            self.look_up(None, seen, factors);
+        });
+    }
+
+    /// Hands points where the camera sees them to `answer`, block by block, with the places of their answers.
+    fn in_blocks<T>(
+        &self,
+        points: &[DVec3],
+        normals: &[DVec3],
+        answers: &mut [T],
+        answer: impl Fn(&[Option<SeenPoint>], &mut [T]),
+    ) {
         assert!(
-            points.len() == factors.len() && normals.len() == factors.len(),
-            "{} points and {} normals for {} factors",
+            points.len() == answers.len() && normals.len() == answers.len(),
+            "{} points and {} normals for {} answers",
             points.len(),
             normals.len(),
-            factors.len()
+            answers.len()
         );
         let mut seen = [None; BLOCK];
         let blocks = points.chunks(BLOCK).zip(normals.chunks(BLOCK));
-        for ((points, normals), factors) in blocks.zip(factors.chunks_mut(BLOCK)) {
+        for ((points, normals), answers) in blocks.zip(answers.chunks_mut(BLOCK)) {
             for (seen, (&point, &normal)) in seen.iter_mut().zip(points.iter().zip(normals)) {
-                *seen = self.state.seen(point, normal);
+                *seen = self.seen(point, normal);
             }
-            self.look_up(None, &seen[..points.len()], factors);
+            answer(&seen[..points.len()], answers);
         }
     }
 
@@ -184,24 +196,15 @@ impl SpeckleFrame {
     ///
     /// Panics unless the slices have the same length.
     pub fn shifts(&self, points: &[DVec3], normals: &[DVec3], shifts: &mut [Option<SpeckleShift>]) {
-        assert!(
-            points.len() == shifts.len() && normals.len() == shifts.len(),
-            "{} points and {} normals for {} shifts",
-            points.len(),
-            normals.len(),
-            shifts.len()
-        );
-        let seen: Vec<_> = points
-            .iter()
-            .zip(normals)
-            .map(|(&point, &normal)| self.seen(point, normal))
-            .collect();
-        let anywhere = |point: &Option<SeenPoint>| point.unwrap_or(SeenPoint::ANYWHERE);
-        self.state
-            .shifts(&self.speckle.geometry, seen.iter().map(anywhere), shifts);
-        for (shift, point) in shifts.iter_mut().zip(&seen) {
-            *shift = shift.filter(|_| point.is_some());
-        }
+        let geometry = &self.speckle.geometry;
+        self.in_blocks(points, normals, shifts, |seen, shifts| {
+            let points = seen.iter();
+            let points = points.map(|point| point.unwrap_or(SeenPoint::ANYWHERE));
+            self.state.shifts(geometry, points, shifts);
+            for (shift, point) in shifts.iter_mut().zip(seen) {
+                *shift = shift.filter(|_| point.is_some());
+            }
+        });
     }
 
     /// Returns on which side of the reference state the speckle is: 1, or −1 where the pupil has moved over it the other
@@ -274,11 +277,9 @@ impl SpeckleFrame {
         let fields = part.fields.iter().zip(self.speckle.heights());
         let fields = fields.map(|(Field { stack, offset }, [height, root])| {
             let stack = &self.speckle.stacks[*stack];
-            // Fields are in the frame of the pupil of their slice, a ramp of phases that other places see elsewhere.
-            let ramp = TAU * (self.offset.x + offset.x)
-                / (stack.speckle_size() * stack.path().slices_per_diameter());
-            let phase = at.phase_per_height[index] * height - ramp * u.floor();
-            stack.amplitude_at(x + offset.x, y + offset.y, u) * Complex::cis(phase) * root
+            let (x, y) = (x + offset.x, y + offset.y);
+            let phase = at.phase_per_height[index] * height - stack.ramp_at(x, y, u);
+            stack.amplitude_at(x, y, u) * Complex::cis(phase) * root
         });
         fields.sum()
     }

@@ -292,6 +292,38 @@ fn bodies_have_speckle_of_their_own() {
     assert!(correlation(&first, &second).abs() < 4.0 / 600_f64.sqrt());
 }
 
+/// Wherever the patterns of a body lie in the stack, its field goes on from slice to slice.
+#[test]
+fn amplitudes_of_all_bodies_go_on_from_slice_to_slice() {
+    const STEPS: u32 = 400;
+    let far = Pose::along(DVec3::X * 1e-3).unwrap();
+    let largest_step = |speckle: &PreparedSpeckle, body: usize| {
+        let amplitude = |step: u32| {
+            let surface = Pose::along(DVec3::X * 1e-3 * f64::from(step) / f64::from(STEPS));
+            let motion = Motion {
+                body,
+                surface: surface.unwrap(),
+                ..Motion::default()
+            };
+            let point = motion.surface.point(DVec3::ZERO);
+            speckle.frame(&motion).unwrap().amplitude(point, DVec3::Z)
+        };
+        let amplitudes: Vec<_> = (0..=STEPS).map(|step| amplitude(step).unwrap()).collect();
+        let steps = amplitudes.windows(2).map(|pair| (pair[1] - pair[0]).norm());
+        steps.fold(0.0, f64::max)
+    };
+    // Around a circle and along a line.
+    for frames in [1, 3] {
+        let speckle = prepared(5, &vec![far; frames]);
+        let slices = speckle.plan().path().slice_count();
+        assert!(slices > 8, "{slices} slices tell nothing");
+        for body in 0..4 {
+            let step = largest_step(&speckle, body);
+            assert!(step < 0.2, "body {body} of {frames} frames: {step}");
+        }
+    }
+}
+
 #[test]
 fn what_does_not_fit_is_refused_by_name() {
     let pose = Pose::along(DVec3::X * 5e-3).unwrap();

@@ -59,7 +59,7 @@ pub(super) fn join_all<C: Send>(
         responses: Responses::new(field, interpolation),
         expected: Variance::expected(field, interpolation),
     };
-    let centre = |index: usize| path.centre(index % count, field);
+    let centre = |index: usize| path.centre(to_signed(index % count), field);
     let joined = map_with_scratch(coefficients, |index, coefficients, _| {
         let (centre, next) = (centre(index), centre(index + 1));
         let (join, variance) = joiner.join(centre, next);

@@ -1,7 +1,9 @@
 //! The look-up of a stack: at a point, at many, and as the mean over a box.
 
+use core::f64::consts::TAU;
+
 use num_complex::Complex;
-use tem00_numerics::vectorised;
+use tem00_numerics::{cast::to_i64, vectorised};
 
 use crate::{
     Interpolation, SpeckleStack,
@@ -32,13 +34,29 @@ impl SpeckleStack {
     /// returns: for light whose fields add.
     ///
     /// It is the field in the frame of the pupil of the slice at u or before it. Stacks along one path have one
-    /// frame, so that their amplitudes add. It is 1 where a coordinate is not finite.
+    /// frame, so that their amplitudes add at one place; those of other places and slices add after
+    /// [`ramp_at`](Self::ramp_at). It is 1 where a coordinate is not finite.
     pub fn amplitude_at(&self, x: f64, y: f64, u: f64) -> Complex<f64> {
         match self.interpolation {
             Interpolation::CubicSpline => self.amplitude::<4>(x, y, u),
             Interpolation::Bilinear => self.amplitude::<2>(x, y, u),
             Interpolation::Nearest => self.amplitude::<1>(x, y, u),
         }
+    }
+
+    /// Returns the phase, in radians, that takes the [`amplitude_at`](Self::amplitude_at) a position into the frame of the
+    /// first slice of all: `exp(−i ramp)` times the amplitude goes on from slice to slice.
+    ///
+    /// ```text
+    /// ramp = 2π (x c_x / Q_x + y c_y / Q_y)     c the lattice point about which the pupil of the slice stands
+    /// ```
+    ///
+    /// It is 0 where a coordinate is not finite.
+    pub fn ramp_at(&self, x: f64, y: f64, u: f64) -> f64 {
+        let centre = self.path().centre(to_i64(u.floor()), &self.field);
+        let [width, height] = self.size().map(|samples| samples as f64);
+        let turns = x * centre[0] as f64 / width + y * centre[1] as f64 / height;
+        if turns.is_finite() { TAU * turns } else { 0.0 }
     }
 
     /// Writes the intensities at many points into `intensity`, the same bits as

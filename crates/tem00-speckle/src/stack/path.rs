@@ -118,7 +118,7 @@ impl SlicePath {
 
     /// The pupil's centre for slice `index`, in its diameters.
     pub(crate) fn offset(self, index: usize, field: &PupilField) -> [f64; 2] {
-        let centre = self.centre(index, field);
+        let centre = self.centre(to_signed(index), field);
         [0, 1].map(|axis| centre[axis] as f64 / field.diameter()[axis])
     }
 
@@ -135,7 +135,7 @@ impl SlicePath {
 
     /// The pupil's centre for slice `index`, rounded to the lattice so that all pupils hold the
     /// same points.
-    pub(crate) fn centre(self, index: usize, field: &PupilField) -> [i64; 2] {
+    pub(crate) fn centre(self, index: i64, field: &PupilField) -> [i64; 2] {
         match self {
             Self::Still => [0, 0],
             Self::Circle { half_period } => {
@@ -152,7 +152,7 @@ impl SlicePath {
             } => {
                 // i P / (2M), rounded to the nearest integer, on a lattice that closes after P.
                 let (period, slices) = (points_along(length, field), to_signed(2 * half_period));
-                [(2 * to_signed(index) * period + slices) / (2 * slices), 0]
+                [(2 * index * period + slices).div_euclid(2 * slices), 0]
             }
         }
     }

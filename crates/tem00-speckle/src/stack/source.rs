@@ -1,3 +1,5 @@
+use tem00_numerics::cast::to_signed;
+
 use crate::{
     Aperture, Interpolation, PupilField, SliceLaw, SlicePath, SpeckleError, StackOptions,
     interpolation::spline::prefilters,
@@ -75,7 +77,7 @@ impl StackSource {
     /// Returns what slice `index` is transformed from, prefiltered for the interpolation: its amplitudes are the
     /// coefficients of the stack.
     pub fn slice(&self, index: usize) -> Aperture<'_> {
-        let centre = self.path.centre(index, &self.field);
+        let centre = self.path.centre(to_signed(index), &self.field);
         self.field.aperture_of_point(centre, Some(&self.filters))
     }
 

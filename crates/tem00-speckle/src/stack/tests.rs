@@ -1,7 +1,7 @@
 use core::f64::consts::PI;
 
 use proptest::prelude::*;
-use tem00_numerics::wrap_coordinate;
+use tem00_numerics::{cast::to_signed, wrap_coordinate};
 
 use super::*;
 use crate::{Phasors, Pupil, error::assert_refused};
@@ -275,7 +275,10 @@ fn neighbours_are_correlated_by_the_closed_form() {
         for i in [0, 3, 7] {
             for (distance, u) in (0..count).zip(0_u32..) {
                 let j = (i + distance) % count;
-                let shift = field.shift(path.centre(i, &field), path.centre(j, &field));
+                let shift = field.shift(
+                    path.centre(to_signed(i), &field),
+                    path.centre(to_signed(j), &field),
+                );
                 let exact = field.overlap(shift).norm_sqr();
                 let closed = law.overlap_at(u.into()).powi(2);
                 assert!(

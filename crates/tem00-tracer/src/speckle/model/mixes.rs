@@ -131,7 +131,6 @@ impl SpeckleFrame<'_> {
         if places.is_empty() {
             return sums;
         }
-        let pattern = &self.model.lasers[laser].patterns[surface.allocation];
         let window = &self.windows[laser][surface.allocation];
         // A component that the single light does not have takes positions of its own.
         let planned = component.min(surface.components - 1);
@@ -156,14 +155,15 @@ impl SpeckleFrame<'_> {
                 let mut block = self.block(laser, (window, stack), places, axis);
                 block.shift(part.offset, stack.size());
                 block.shift(beside, stack.size());
-                // Fields are in the frame of the pupil of their slice, a ramp of phases that other positions see elsewhere.
-                let [along, _] = in_samples(part.offset, stack.size());
-                let ramp = TAU * along / (stack.speckle_size() * pattern.slices_per_diameter);
-                let across = TAU * part.offset[1] * window.middle[1] as f64;
+                // Places see the pupil's way from the first slice of all as ramps of their own.
+                let [x0, y0] = in_samples(part.offset, stack.size());
+                let turns: f64 = [0, 1]
+                    .map(|axis| part.offset[axis] * window.middle[axis] as f64)
+                    .iter()
+                    .sum();
                 for (i, (amplitude, place)) in amplitudes.iter_mut().zip(places).enumerate() {
-                    let slice = window.middle_slice + block.u[i].floor();
-                    let phase =
-                        Complex::cis(place.phase_per_height * height - ramp * slice - across);
+                    let ramp = stack.ramp_at(x0, y0, block.u[i]) + TAU * turns;
+                    let phase = Complex::cis(place.phase_per_height * height - ramp);
                     let field = stack.amplitude_at(block.x[i], block.y[i], block.u[i]);
                     *amplitude += field * phase * root;
                 }

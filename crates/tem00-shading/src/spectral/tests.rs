@@ -85,13 +85,16 @@ fn picture(frame: &SpeckleFrame, step: DVec3) -> Vec<f64> {
 
 #[test]
 fn contrasts_are_those_of_the_law() {
+    let comb = SpectralLine::comb(650e-9, 8e-9, 5).unwrap();
     let single = SpectralLine::monochromatic(650e-9).unwrap();
     // The aperture has sin u = 0.0052.
     for (line, height, half_angle) in [
         (gaussian(5e-9), 0.0, 0.0),
         (gaussian(10e-9), 8e-6, 0.0),
+        (comb, 2e-6, 0.0),
         (gaussian(30e-9), 20e-6, 0.0),
-        (single, 0.0, 0.004),
+        (single.clone(), 0.0, 0.004),
+        (single, 8e-6, 0.01),
         (gaussian(5e-9), 2e-6, 0.004),
     ] {
         let laser = laser(line, half_angle);

@@ -92,18 +92,9 @@ fn cell(scene: &Scene) -> ResolutionCell {
 
 #[test]
 fn contrasts_are_those_of_the_law() {
-    let comb = SpectralLine::comb(650e-9, 8e-9, 5).unwrap();
-    let single = SpectralLine::monochromatic(650e-9).unwrap();
     // The aperture has sin u = 0.0052.
-    for (line, height, half_angle) in [
-        (gaussian(5e-9), 0.0, 0.0),
-        (gaussian(10e-9), 8e-6, 0.0),
-        (comb, 2e-6, 0.0),
-        (gaussian(30e-9), 20e-6, 0.0),
-        (single.clone(), 0.0, 0.004),
-        (single, 8e-6, 0.01),
-        (gaussian(5e-9), 2e-6, 0.004),
-    ] {
+    for (line, height, half_angle) in [(gaussian(10e-9), 8e-6, 0.0), (gaussian(5e-9), 2e-6, 0.004)]
+    {
         let mut scene = scene(line, height);
         let extent = SourceExtent::disc(half_angle).unwrap();
         scene.lasers[0] = scene.lasers[0].clone().with_source_extent(extent);

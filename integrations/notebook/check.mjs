@@ -29,10 +29,10 @@ const run = (page, index, code) => page.evaluate(async (index, code) => {
   return cell.outputArea.node.querySelector('.jp-OutputArea-output')?.innerText ?? '';
 }, index, code);
 
-/** Runs the last cell until it shows what the widget answers, for half a minute. */
+/** Runs the last cell until it shows what the widget answers, for a minute and a half. */
 async function answer(page, expected) {
   let text = '';
-  for (let tries = 0; tries < 30 && !expected.test(text); tries += 1) {
+  for (let tries = 0; tries < 90 && !expected.test(text); tries += 1) {
     text = await run(page, 2);
     await setTimeout(1000);
   }

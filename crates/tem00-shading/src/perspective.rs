@@ -36,6 +36,7 @@ impl Perspective {
     }
 
     /// Returns where an image point lies in perspective, in pixels.
+    #[inline]
     pub fn point(&self, pixel: DVec2) -> DVec2 {
         if self.plain {
             return pixel;
@@ -90,6 +91,7 @@ impl Perspective {
     }
 
     /// Returns the vergence 1/L of what is in focus at an image point, in 1/m.
+    #[inline]
     pub fn focus_vergence(&self, on_axis: &ImagingGeometry, pixel: DVec2) -> f64 {
         if self.tilted {
             self.camera.focus_vergence_at(pixel)

@@ -273,6 +273,7 @@ impl Shared<'_> {
 }
 
 impl Changes {
+    #[inline(always)] // It is filled in where it lies.
     const fn new() -> Self {
         Self {
             displacement: [[0.0; BLOCK]; 2],
@@ -283,6 +284,7 @@ impl Changes {
     }
 
     /// The shift of a point, or `None` where it has no value.
+    #[inline]
     fn shift(&self, index: usize) -> Option<SpeckleShift> {
         let [x, y] = self.displacement.map(|along| along[index]);
         let displacement = DVec2::new(x, -y);

@@ -239,9 +239,10 @@ fn refused(parameter: &'static str, value: f64, allowed: &'static str) -> Shadin
 #[cfg(test)]
 mod tests {
     use tem00_camera::{CameraDescription, RadialDistortion, SensorTilt};
+    use tem00_coherence::{LineShape, SpectralLine};
 
     use super::*;
-    use crate::{DVec3, testing::spot};
+    use crate::{DVec3, LaserDescription, testing::spot};
 
     #[test]
     fn what_a_kernel_cannot_show_is_refused_by_name() {
@@ -280,5 +281,14 @@ mod tests {
             ..camera
         };
         assert_eq!(refused(bent, 1).as_deref(), Some("distortion.k1"));
+        let line = SpectralLine::new(650e-9, 5e-9, LineShape::Gaussian).unwrap();
+        let broad = Laser::new(LaserDescription {
+            line,
+            ..spot(DVec3::Z, 1e-3)
+        });
+        let broad = Speckle::new(&Camera::new(camera).unwrap(), &broad.unwrap(), 1)
+            .at_points([(DVec3::ZERO, DVec3::new(0.6, 0.0, 0.8))])
+            .for_kernel();
+        assert_eq!(broad.unwrap_err().parameter(), Some("coherence_length"));
     }
 }

@@ -259,10 +259,6 @@ impl Speckle {
     }
 }
 
-/// The number of slices per pupil diameter from which a stack for each field is worth more than a place in one with more
-/// slices: the blend between them then exceeds the correlation law by up to 0.11.
-const ENOUGH_SLICES: f64 = 16.0;
-
 /// A stack for each field, or one for all.
 struct Layout {
     plan: StackPlan,
@@ -286,10 +282,7 @@ impl Layout {
                     allowed: "enough for slices over the whole motion of the poses (in bytes)",
                 })
         };
-        let is_good = |layout: &Self| {
-            let slices = layout.plan.path().slices_per_diameter();
-            needs.motion.is_none() || slices >= ENOUGH_SLICES
-        };
+        let is_good = |layout: &Self| needs.motion.is_none() || layout.plan.blends_closely();
         match of(fields) {
             Ok(layout) if fields == 1 || is_good(&layout) => Ok(layout),
             _ => of(1),

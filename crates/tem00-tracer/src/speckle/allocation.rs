@@ -87,10 +87,6 @@ pub(super) struct Part {
     pub offset: [f64; 2],
 }
 
-/// The number of slices per pupil diameter from which a stack of one's own is worth more than a position
-/// in one with more slices: the blend between them then exceeds the correlation law by up to 0.11.
-const ENOUGH_SLICES: f64 = 16.0;
-
 /// The path that the slices of a frame hold beyond its span, in pupil diameters: half a one to either side, as they lie
 /// about a whole one, and a quarter for points that no ray has met.
 const MARGIN: f64 = 1.5;
@@ -243,8 +239,7 @@ fn separate(
     asked: impl Fn(StackPlan) -> StackPlan,
 ) -> Result<Option<Vec<Choice>>, TracerError> {
     let good = |Choice { stack, needs, .. }: &Choice| {
-        needs.motion.is_none()
-            || (stack.slices_per_diameter() >= ENOUGH_SLICES && stack.holds_motion(needs))
+        needs.motion.is_none() || (stack.blends_closely() && stack.holds_motion(needs))
     };
     let choices = requests
         .iter()

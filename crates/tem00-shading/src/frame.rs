@@ -134,7 +134,8 @@ impl SpeckleFrame {
     }
 
     /// Returns the mean factor over the pixel about the image of a point: for a host with one sample per pixel, whose
-    /// speckle would have too much contrast at a point.
+    /// speckle would have too much contrast at a point. In light with a linewidth it is the mean of 64 points, each in a
+    /// wave number of its own.
     pub fn average(&self, point: DVec3, normal: DVec3) -> f64 {
         let Some(seen) = self.seen(point, normal) else {
             return 1.0;

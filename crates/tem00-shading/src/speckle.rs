@@ -60,7 +60,7 @@ impl Speckle {
     /// Asks for the speckle of a laser in the image of a camera, both as they stand in the reference state, with the
     /// phasors of `seed`: one look, polarised, in at most 256 MiB, of bodies that stand still.
     ///
-    /// Two lasers want two seeds.
+    /// Two lasers want two seeds: [`derived`](tem00_numerics::seed::derived) makes them from one.
     pub fn new(camera: &Camera, laser: &Laser, seed: u64) -> Self {
         Self {
             camera: *camera,

@@ -516,7 +516,7 @@ fn files_form_no_circles() {
 
 #[test]
 fn arrows_lead_through_re_exports_to_the_definition() {
-    let speckle = Tree::read(root().join("crates/tem00-speckle/src/lib.rs"));
+    let speckle = Tree::read(root().join("crates/light/tem00-speckle/src/lib.rs"));
     let file = |ending: &str| {
         let mut names = (0..speckle.files.len()).map(|file| speckle.name(file));
         names

@@ -61,7 +61,7 @@ fn the_documentation_counts_the_crates_that_each_brings() {
     for name in CRATES {
         let rows = rows(&page, name);
         assert_eq!(rows.len(), 1, "rows of tem00-{name} in docs/integration.md");
-        let manifest = read(format!("crates/tem00-{name}/Cargo.toml"));
+        let manifest = read(format!("crates/light/tem00-{name}/Cargo.toml"));
         for (cell, feature) in rows[0].iter().zip(["", "simd", "parallel"]) {
             let exists = feature.is_empty() || manifest.contains(&format!("\n{feature} = ["));
             let package = format!("tem00-{name}");
@@ -112,7 +112,7 @@ fn no_threads_come_along_unless_asked_for() {
 fn the_documentation_names_functions_that_the_header_or_the_shaders_have() {
     let page = [read("docs/integration.md"), read("docs/functions.md")].concat();
     let shaders = ["beam", "speckle", "decorrelation", "shading"]
-        .map(|name| read(format!("crates/tem00-{name}/shaders/tem00_{name}.wgsl")));
+        .map(|name| read(format!("crates/light/tem00-{name}/shaders/tem00_{name}.wgsl")));
     let texts = [read("bindings/c/include/tem00.h"), shaders.concat()].concat();
     let names = page.split('`').filter(|word| {
         let kinds = ["camera", "imaging", "light", "speckle", "stack"];
@@ -155,7 +155,7 @@ macro_rules! names_of_shared {
 
 /// The types that `lib.rs` of a crate exports: what is named in capitals.
 fn exported(name: &str) -> BTreeSet<String> {
-    exported_by(&format!("crates/tem00-{name}/src/lib.rs"))
+    exported_by(&format!("crates/light/tem00-{name}/src/lib.rs"))
 }
 
 fn exported_by(file: &str) -> BTreeSet<String> {
@@ -198,7 +198,7 @@ fn every_type_of_the_laboratory_of_beams_crosses_threads() {
         ("measurement", measurement.collect()),
     ] {
         let listed: BTreeSet<_> = listed;
-        let file = format!("crates/tem00-beam/src/{room}.rs");
+        let file = format!("crates/light/tem00-beam/src/{room}.rs");
         assert_eq!(exported_by(&file), listed, "types of {room}");
     }
 }
@@ -257,7 +257,7 @@ fn there_is_no_global_state() {
         "Atomic",
     ];
     for name in CRATES.into_iter().chain(["numerics"]) {
-        for path in sources(root().join(format!("crates/tem00-{name}/src"))) {
+        for path in sources(root().join(format!("crates/light/tem00-{name}/src"))) {
             let text = read(&path);
             let keeps = |line: &str| {
                 let item = line.trim_start().trim_start_matches("pub ");

@@ -36,7 +36,7 @@ impl Language {
             .arg("-I")
             .arg(here("include"))
             .arg("-I")
-            .arg(here("../../crates/tem00-beam/include"));
+            .arg(here("../../crates/light/tem00-beam/include"));
         command
     }
 }

@@ -1,8 +1,8 @@
 //! Laser spots and laser lines on a card against the lights in double precision.
 
-#[path = "../../../../crates/tem00-beam/tests/closed_forms/comparison.rs"]
+#[path = "../../../../crates/light/tem00-beam/tests/closed_forms/comparison.rs"]
 mod comparison;
-#[path = "../../../../crates/tem00-beam/tests/closed_forms/samples.rs"]
+#[path = "../../../../crates/light/tem00-beam/tests/closed_forms/samples.rs"]
 mod samples;
 
 use core::mem::{offset_of, size_of};

@@ -47,7 +47,7 @@ const SMALLER: [(&str, &str, &str); 8] = [
 ];
 
 fn repository() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..")
 }
 
 /// Copies the files of a folder of the repository.
@@ -137,7 +137,7 @@ fn the_commands_of_the_tutorial_work() {
     // Whoever has installed the program has no examples, and no compiler perhaps.
     let lines = blocks(&page, "sh").into_iter().flat_map(str::lines);
     let others: Vec<_> = lines.filter(|line| !line.starts_with("tem00 ")).collect();
-    assert_eq!(others, ["cargo install --path crates/tem00-cli"]);
+    assert_eq!(others, ["cargo install --path crates/render/tem00-cli"]);
     for command in commands {
         let trials = if command.starts_with("budget") {
             " --trials 20"

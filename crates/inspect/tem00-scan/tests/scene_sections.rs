@@ -21,7 +21,7 @@ rectangle.size = ["40 mm", "30 mm"]
 "#;
 
 fn page(name: &str) -> String {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../docs/");
     fs::read_to_string(format!("{folder}{name}")).expect("the page is there")
 }
 

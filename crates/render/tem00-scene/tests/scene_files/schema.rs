@@ -14,7 +14,7 @@ use json::{Schema, from_toml};
 
 /// Reads the schema of the repository.
 fn schema() -> Schema {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scene.schema.json");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../docs/scene.schema.json");
     let text = fs::read_to_string(path).unwrap();
     Schema::new(serde_json::from_str(&text).unwrap())
 }

@@ -6,7 +6,7 @@ use super::{CAMERA, LASER, SURFACE, TETRAHEDRON};
 use tem00_scene::{parse_scene, read_scene};
 
 fn repository() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..")
 }
 
 fn documentation() -> String {

@@ -37,7 +37,7 @@ impl Names {
                 names.add_folder(&package.join(folder));
             }
         }
-        for folder in ["book", "scenes", "setups", "integrations"] {
+        for folder in ["docs/book", "examples", "bindings/integrations"] {
             names.add_folder(&root().join(folder));
         }
         names

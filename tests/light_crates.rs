@@ -133,8 +133,8 @@ fn the_documentation_shows_the_programs_that_run() {
     let page = read("docs/integration.md");
     for (language, file) in [
         ("rust,ignore", "examples/moved_spot.rs"),
-        ("cpp", "integrations/cpp/moved_spot.cpp"),
-        ("python", "integrations/python/moved_spot.py"),
+        ("cpp", "bindings/integrations/cpp/moved_spot.cpp"),
+        ("python", "bindings/integrations/python/moved_spot.py"),
         ("wgsl", "bindings/gpu/examples/factors.wgsl"),
     ] {
         let shown = format!("```{language}\n{}```\n", read(file));

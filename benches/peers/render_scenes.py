@@ -156,7 +156,7 @@ def mitsuba_box(mesh, light, integrator):
 
 
 def mitsuba_plate(resolution, position, half_size, emitter, integrator):
-    """A plate seen from 300 mm through 25 mm lens with pixels of 3.45 µm, as in scenes/."""
+    """A plate seen from 300 mm through 25 mm lens with pixels of 3.45 µm, as in examples/scenes/."""
     width, height = resolution
     tangent = 0.5 * width * 3.45e-6 / (0.025 * 0.3 / (0.3 - 0.025))
     text = mitsuba_film(width, height, tangent, position, integrator)
@@ -233,6 +233,6 @@ def write_scenes(folder):
     camera = "0, 0, 0.3"
     spot = mitsuba_plate((320, 240), camera, (0.02, 0.015), SPOT, direct)
     line = mitsuba_plate((400, 120), camera, (0.06, 0.015), line_projector(folder), direct)
-    add("laser spot", ROOT / "scenes/spot.toml", spot, False)
-    add("laser line", ROOT / "scenes/line_with_speckle.toml", line, False)
+    add("laser spot", ROOT / "examples/scenes/spot.toml", spot, False)
+    add("laser line", ROOT / "examples/scenes/line_with_speckle.toml", line, False)
     return rows

@@ -6,11 +6,11 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
-for scene in scenes/*.toml; do
+for scene in examples/scenes/*.toml; do
     cargo run --locked --release -p tem00-cli -- render "$scene" --spp "${1:-256}" -o "$work"
 done
 for scene in spot line_on_metal grazing_waist; do
-    cargo run --locked --release -p tem00-cli -- render "scenes/$scene.toml" --spp "${1:-256}" --no-speckle -o "$work/without"
+    cargo run --locked --release -p tem00-cli -- render "examples/scenes/$scene.toml" --spp "${1:-256}" --no-speckle -o "$work/without"
     cp "$work/without/$scene.png" "docs/figures/${scene}_without_speckle.png"
 done
 cp "$work"/*.png docs/figures/
@@ -25,14 +25,14 @@ cargo run --locked --release --example will_a_broader_source_help
 cp out/broader_source_{noise,aperture}.svg docs/figures/
 # What the tutorial shows.
 tem00() { cargo run --locked --release -p tem00-cli -- "$@"; }
-tem00 design setups/design.toml -o "$work/design"
+tem00 design examples/setups/design.toml -o "$work/design"
 cp "$work/design/trade_off.svg" docs/figures/triangulation_trade_off.svg
-tem00 triangulate scenes/triangulation/step_gauge.toml -o "$work/gauge"
+tem00 triangulate examples/scenes/triangulation/step_gauge.toml -o "$work/gauge"
 cp "$work/gauge/profile.svg" docs/figures/triangulation_profile.svg
 tem00 lines "$work/gauge/raw_0000.png" --window 21 -o "$work/lines"
 cp "$work/lines/raw_0000_lines.png" docs/figures/triangulation_lines.png
-tem00 triangulate scenes/triangulation/hexagon_nut.toml -o "$work/nut"
+tem00 triangulate examples/scenes/triangulation/hexagon_nut.toml -o "$work/nut"
 cp "$work/nut/height_map.png" docs/figures/triangulation_nut.png
 # What they were made from: a test compares it.
-cksum scenes/triangulation/{step_gauge,hexagon_nut}.toml scenes/meshes/{step_gauge,hexagon_nut}.ply \
+cksum examples/scenes/triangulation/{step_gauge,hexagon_nut}.toml examples/scenes/meshes/{step_gauge,hexagon_nut}.ply \
     > docs/figures/made_from.txt

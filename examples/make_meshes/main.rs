@@ -1,4 +1,4 @@
-//! Writes the meshes of `scenes/`, in millimetres, into `scenes/meshes/`.
+//! Writes the meshes of `examples/scenes/`, in millimetres, into `examples/scenes/meshes/`.
 //!
 //! Run it from anywhere: `cargo run --example make_meshes`. The files are in the repository;
 //! running it again changes nothing.
@@ -26,7 +26,7 @@ const GAUGE_BLOCKS: [Block; 4] = [
 ];
 
 fn main() -> io::Result<()> {
-    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes");
+    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/scenes/meshes");
     fs::create_dir_all(&directory)?;
     for (name, text) in [
         ("gauge_blocks.ply", gauge_blocks_ply()),
@@ -37,7 +37,7 @@ fn main() -> io::Result<()> {
         ("hexagon_nut.ply", nut::nut_ply()),
     ] {
         fs::write(directory.join(name), &text)?;
-        println!("scenes/meshes/{name}: {} bytes", text.len());
+        println!("examples/scenes/meshes/{name}: {} bytes", text.len());
     }
     Ok(())
 }

@@ -54,7 +54,7 @@ class Figure:
 
     @property
     def theirs(self) -> Path:
-        return ROOT / "scenes" / "mitsuba" / f"figure_{self.number}.xml"
+        return ROOT / "examples" / "scenes" / "mitsuba" / f"figure_{self.number}.xml"
 
 
 FIGURES = [
@@ -86,7 +86,7 @@ def program() -> list[str]:
 
 def our_layers(figure: Figure, folder: Path, *settings: str) -> dict[str, NDArray[np.float32]]:
     """Render a figure by `tem00`, with other settings of the scene, and return its layers."""
-    command = [*program(), "render", f"scenes/{figure.ours}.toml"]
+    command = [*program(), "render", f"examples/scenes/{figure.ours}.toml"]
     command += ["--spp", str(SAMPLES), "--seed", str(SEED), "-o", str(folder)]
     for setting in settings:
         command += ["--set", setting]

@@ -11,7 +11,7 @@ import pytest
 import tem00
 
 PROGRAM = Path(sysconfig.get_path("scripts")) / "tem00"
-SCENE = Path(__file__).parents[3] / "scenes" / "spot.toml"
+SCENE = Path(__file__).parents[3] / "examples" / "scenes" / "spot.toml"
 LENS = ("--wavelength", "650 nm", "--focal-length", "25 mm", "--f-number", "8", "--distance", "300 mm")
 
 

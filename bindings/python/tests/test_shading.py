@@ -408,7 +408,7 @@ def test_shifts_survive_pickling_and_frames_hold_their_patterns() -> None:
 
 
 def test_the_example_of_the_guide_finds_the_law() -> None:
-    example = ROOT / "integrations" / "python" / "moved_spot.py"
+    example = ROOT / "bindings" / "integrations" / "python" / "moved_spot.py"
     names = runpy.run_path(str(example))
     law = names["shift"].correlation
     # Some 40 000 speckles, and what the blend of slices adds.

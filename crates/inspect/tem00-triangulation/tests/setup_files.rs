@@ -31,7 +31,7 @@ fn snippets(text: &str) -> Vec<&str> {
 
 #[test]
 fn the_setups_of_the_repository_are_read() {
-    let entries = fs::read_dir(repository().join("setups")).expect("the folder is there");
+    let entries = fs::read_dir(repository().join("examples/setups")).expect("the folder is there");
     let paths: Vec<PathBuf> = entries
         .map(|entry| entry.expect("the entry is read").path())
         .filter(|path| path.is_file())
@@ -54,7 +54,7 @@ fn the_decision_about_a_broader_source_has_the_uncertainty_of_its_setup() {
             .expect("a budget")
             .expanded()
     };
-    let broad = read("setups/superluminescent.toml");
+    let broad = read("examples/setups/superluminescent.toml");
     let stated = format!("U = {:.1} µm", expanded(&broad));
     assert!(read("docs/broader_source.md").contains(&stated), "{stated}");
     let single = expanded(&broad.replace("linewidth", "# linewidth"));
@@ -63,7 +63,7 @@ fn the_decision_about_a_broader_source_has_the_uncertainty_of_its_setup() {
 
 #[test]
 fn a_relief_of_any_height_has_images() {
-    let path = repository().join("setups/superluminescent.toml");
+    let path = repository().join("examples/setups/superluminescent.toml");
     let text = fs::read_to_string(path).expect("the set-up");
     for (height, patterns) in [("0.1 mm", 2), ("0.5 mm", 1), ("0.5 mm", 2), ("0.5 mm", 64)] {
         let height = format!("\"{height}\"\npatterns = {patterns}");

@@ -56,16 +56,16 @@ use crate::image::Transfer;
 
 const EXAMPLES: &str = "\
 Examples:
-  tem00 render scenes/line_with_speckle.toml          render a scene into out/line_with_speckle/
+  tem00 render examples/scenes/line_with_speckle.toml          render a scene into out/line_with_speckle/
   tem00 pattern -o speckle.png                        write a speckle pattern and check it
   tem00 stats photo.png                               measure the speckle in an image
   tem00 speckle --wavelength 650nm --focal-length 25mm --f-number 8 --distance 300mm
                                                       how large is the speckle?
-  tem00 budget setups/data_sheet.toml                 how well will this set-up measure heights?
-  tem00 characterise setups/data_sheet.toml           its noise, resolution, linearity … on rendered artefacts
-  tem00 design setups/design.toml                     search for a better one
-  tem00 sweep setups/sweeps/lens_and_line.toml        a table over a grid of values, on any machines
-  tem00 triangulate scenes/triangulation/groove.toml  see a part as such a sensor sees it
+  tem00 budget examples/setups/data_sheet.toml                 how well will this set-up measure heights?
+  tem00 characterise examples/setups/data_sheet.toml           its noise, resolution, linearity … on rendered artefacts
+  tem00 design examples/setups/design.toml                     search for a better one
+  tem00 sweep examples/setups/sweeps/lens_and_line.toml        a table over a grid of values, on any machines
+  tem00 triangulate examples/scenes/triangulation/groove.toml  see a part as such a sensor sees it
   tem00 lines frame.png                               find the laser line in a camera frame
   tem00 calibrate photos --corners 9x6 --square \"5 mm\" --pixel-pitch \"3.45 um\"
                                                       calibrate camera and laser plane

@@ -12,7 +12,7 @@ const MAX_CHARS: usize = 1000;
 /// line and column in front of it, as compilers do:
 ///
 /// ```text
-/// scenes/spot.toml:12:14: `wavelength` must be positive, got "-650 nm"
+/// examples/scenes/spot.toml:12:14: `wavelength` must be positive, got "-650 nm"
 /// ```
 ///
 /// A program that can do better prints [`source_text`](Self::source_text) with a label under

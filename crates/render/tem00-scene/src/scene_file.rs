@@ -26,7 +26,7 @@ const SCENE: Format = Format {
         "scan",
     ],
     uncertain: &[],
-    help: "scenes/spot.toml is one, and docs/scene_file.md tells how to write them",
+    help: "examples/scenes/spot.toml is one, and docs/scene_file.md tells how to write them",
 };
 
 /// Reads a scene file, and with it the files that it includes.

@@ -38,7 +38,7 @@ const SETUP: Format = Format {
         "title",
     ],
     uncertain: UNCERTAIN,
-    help: "setups/ has some, and docs/setup_file.md tells how to write them",
+    help: "examples/setups/ has some, and docs/setup_file.md tells how to write them",
 };
 const CALIBRATION: &[&str] = &["uncertainty"];
 const AVERAGE: &[&str] = &["columns", "frames", "independent_speckle"];

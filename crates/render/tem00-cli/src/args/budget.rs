@@ -29,9 +29,9 @@ pub(crate) struct BudgetArgs {
 
 const BUDGET_EXAMPLES: &str = "\
 Examples:
-  tem00 budget setups/data_sheet.toml                 the budget, into out/data_sheet/
-  tem00 budget setups/data_sheet.toml --trials 2000   the same, with smaller standard errors
-  tem00 budget setups/data_sheet.toml --trials 0      formulas alone, at once
+  tem00 budget examples/setups/data_sheet.toml                 the budget, into out/data_sheet/
+  tem00 budget examples/setups/data_sheet.toml --trials 2000   the same, with smaller standard errors
+  tem00 budget examples/setups/data_sheet.toml --trials 0      formulas alone, at once
 
 Files:
   budget.json             the budget, in SI units

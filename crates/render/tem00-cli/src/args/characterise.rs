@@ -31,8 +31,8 @@ pub(crate) struct CharacteriseArgs {
 
 const CHARACTERISE_EXAMPLES: &str = "\
 Examples:
-  tem00 characterise setups/data_sheet.toml                   the characteristics, into out/data_sheet/
-  tem00 characterise setups/data_sheet.toml --repetitions 64  the same, with half of the uncertainty
+  tem00 characterise examples/setups/data_sheet.toml                   the characteristics, into out/data_sheet/
+  tem00 characterise examples/setups/data_sheet.toml --repetitions 64  the same, with half of the uncertainty
 
 Files:
   characteristics.json  the characteristics, in SI units, with their definitions

@@ -24,8 +24,8 @@ pub(crate) struct DesignArgs {
 
 const DESIGN_EXAMPLES: &str = "\
 Examples:
-  tem00 design setups/design.toml                     search, into out/design/
-  tem00 design setups/design.toml --best 3 -o search
+  tem00 design examples/setups/design.toml                     search, into out/design/
+  tem00 design examples/setups/design.toml --best 3 -o search
   tem00 budget out/design/best.toml                   the budget of the winner
 
 Files:

@@ -59,13 +59,13 @@ pub(crate) struct RenderArgs {
 
 const RENDER_EXAMPLES: &str = "\
 Examples:
-  tem00 render scenes/spot.toml                       quick look, into out/spot/
-  tem00 render scenes/spot.toml --check               will the camera see the laser? at once
-  tem00 render scenes/spot.toml --spp 256 -o good     slower, with less noise
-  tem00 render scenes/spot.toml --paper -o printed    the formulas as printed, to compare
-  tem00 render scenes/spot.toml --no-speckle          the same light without interference
-  tem00 render scenes/moved_surface.toml --resume     go on after an interruption
-  tem00 render scenes/moved_surface.toml --frames 1   one frame, for example of several machines
+  tem00 render examples/scenes/spot.toml                       quick look, into out/spot/
+  tem00 render examples/scenes/spot.toml --check               will the camera see the laser? at once
+  tem00 render examples/scenes/spot.toml --spp 256 -o good     slower, with less noise
+  tem00 render examples/scenes/spot.toml --paper -o printed    the formulas as printed, to compare
+  tem00 render examples/scenes/spot.toml --no-speckle          the same light without interference
+  tem00 render examples/scenes/moved_surface.toml --resume     go on after an interruption
+  tem00 render examples/scenes/moved_surface.toml --frames 1   one frame, for example of several machines
 
 Files:
   <scene>.png     preview, 16 bits, in the colour of the laser; <scene>_0000.png … for several frames

@@ -43,10 +43,10 @@ pub(crate) struct SweepArgs {
 
 const SWEEP_EXAMPLES: &str = "\
 Examples:
-  tem00 sweep setups/sweeps/lens_and_line.toml            all tasks, and the table
-  tem00 sweep setups/sweeps/lens_and_line.toml --list     what the tasks are
-  tem00 sweep setups/sweeps/lens_and_line.toml --task 3   one of them
-  tem00 sweep setups/sweeps/lens_and_line.toml --gather   the table
+  tem00 sweep examples/setups/sweeps/lens_and_line.toml            all tasks, and the table
+  tem00 sweep examples/setups/sweeps/lens_and_line.toml --list     what the tasks are
+  tem00 sweep examples/setups/sweeps/lens_and_line.toml --task 3   one of them
+  tem00 sweep examples/setups/sweeps/lens_and_line.toml --gather   the table
 
 Files:
   sweep.csv             a row for each task: its values, its results, and whether it has any

@@ -22,9 +22,9 @@ pub(crate) struct TriangulateArgs {
 
 const TRIANGULATE_EXAMPLES: &str = "\
 Examples:
-  tem00 triangulate scenes/triangulation/step_gauge.toml            into out/step_gauge/
-  tem00 triangulate scenes/triangulation/step_gauge.toml --seed 7   another part of the same kind
-  tem00 triangulate scenes/triangulation/hexagon_nut.toml --frames 0..9
+  tem00 triangulate examples/scenes/triangulation/step_gauge.toml            into out/step_gauge/
+  tem00 triangulate examples/scenes/triangulation/step_gauge.toml --seed 7   another part of the same kind
+  tem00 triangulate examples/scenes/triangulation/hexagon_nut.toml --frames 0..9
 
 Files:
   report.html              all results on one page, which opens offline

@@ -14,7 +14,7 @@ use crate::{
 
 /// The help for a file that is not a set-up.
 pub(super) const HELP: &str =
-    "setups/ has set-up files, and docs/setup_file.md explains how to write them";
+    "examples/setups/ has set-up files, and docs/setup_file.md explains how to write them";
 
 /// The file of a set-up.
 pub(super) struct SetupFile<'a> {

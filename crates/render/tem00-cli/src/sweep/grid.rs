@@ -12,7 +12,7 @@ const GRID: Format = Format {
     uncertain: &[],
     help: HELP,
 };
-pub(super) const HELP: &str = "setups/sweeps/lens_and_line.toml is a grid file";
+pub(super) const HELP: &str = "examples/setups/sweeps/lens_and_line.toml is a grid file";
 const KEYS: &[&str] = &["command", "file", "options", "results", "vary"];
 const VARY: &[&str] = &["key", "values", "from", "to", "steps", "scale"];
 

@@ -4,7 +4,7 @@ use std::{fs, path::Path, process::Stdio, thread::sleep, time::Duration};
 
 use super::{assert_code, files, folder, message, run, tem00, text};
 
-const SETUP: &str = include_str!("../../../../../setups/data_sheet.toml");
+const SETUP: &str = include_str!("../../../../../examples/setups/data_sheet.toml");
 
 const GRID: &str = r#"
 [sweep]

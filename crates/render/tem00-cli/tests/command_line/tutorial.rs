@@ -11,36 +11,36 @@ use super::{folder, message, tem00, text};
 
 /// What is made smaller, so that the commands take seconds: file, what it has, what it gets.
 const SMALLER: [(&str, &str, &str); 8] = [
-    ("setups/design.toml", "steps = 7", "steps = 2"),
-    ("setups/design.toml", "steps = 6", "steps = 2"),
+    ("examples/setups/design.toml", "steps = 7", "steps = 2"),
+    ("examples/setups/design.toml", "steps = 6", "steps = 2"),
     (
-        "setups/design.toml",
+        "examples/setups/design.toml",
         "line_thickness = [\"0.08 mm\", \"0.1 mm\", ",
         "line_thickness = [",
     ),
     (
-        "scenes/triangulation/step_gauge.toml",
+        "examples/scenes/triangulation/step_gauge.toml",
         "samples_per_pixel = 4",
         "samples_per_pixel = 2",
     ),
     // The middle of the line has the noise of all of it.
     (
-        "scenes/triangulation/step_gauge.toml",
+        "examples/scenes/triangulation/step_gauge.toml",
         "resolution = [864, 144]",
         "resolution = [288, 144]",
     ),
     (
-        "scenes/triangulation/step_gauge.toml",
+        "examples/scenes/triangulation/step_gauge.toml",
         "principal_point = [432, 112]",
         "principal_point = [144, 112]",
     ),
     (
-        "scenes/triangulation/calibration.toml",
+        "examples/scenes/triangulation/calibration.toml",
         "samples_per_pixel = 16",
         "samples_per_pixel = 1",
     ),
     (
-        "scenes/triangulation/calibration.toml",
+        "examples/scenes/triangulation/calibration.toml",
         "boards = 8",
         "boards = 4",
     ),
@@ -108,7 +108,7 @@ fn page_named(name: &str) -> String {
 /// A folder with what the commands of the page read.
 fn clone() -> tempfile::TempDir {
     let folder = folder();
-    for name in ["setups", "scenes/triangulation", "scenes/meshes"] {
+    for name in ["examples/setups", "examples/scenes/triangulation", "examples/scenes/meshes"] {
         copy(name, folder.path());
     }
     folder
@@ -213,9 +213,9 @@ fn check_results(quoted: &[&str], printed: &str) {
 fn the_results_in_the_tutorial_are_those_of_the_program() {
     let (folder, page) = (clone(), page());
     for (command, options) in [
-        ("budget setups/data_sheet.toml -o out/budget", " --trials 0"),
-        ("budget setups/design.toml -o out/averaged", " --trials 0"),
-        ("design setups/design.toml -o out/design", ""),
+        ("budget examples/setups/data_sheet.toml -o out/budget", " --trials 0"),
+        ("budget examples/setups/design.toml -o out/averaged", " --trials 0"),
+        ("design examples/setups/design.toml -o out/design", ""),
         ("budget out/design/best.toml -o out/best", " --trials 0"),
     ] {
         let found = printed(folder.path(), &format!("{command}{options}"));
@@ -224,7 +224,7 @@ fn the_results_in_the_tutorial_are_those_of_the_program() {
     // The table of the decision has the same numbers, rounded.
     let row = page.lines().find(|line| line.starts_with("| U (95 %)"));
     let row = row.expect("the table");
-    for command in ["setups/data_sheet", "setups/design", "out/design/best"] {
+    for command in ["examples/setups/data_sheet", "examples/setups/design", "out/design/best"] {
         let results = quoted(&page, &format!("budget {command}.toml")).join("\n");
         let (_, rest) = results.split_once("U = ").expect("an expanded uncertainty");
         let (number, _) = rest.split_once(" µm").expect("in micrometres");
@@ -264,7 +264,7 @@ fn the_commands_of_the_page_on_certificates_print_its_results() {
         );
     }
     for (language, file) in [
-        ("toml", "setups/toleranced.toml"),
+        ("toml", "examples/setups/toleranced.toml"),
         ("xml", "out/scaled/certificate.xml"),
     ] {
         let text = fs::read_to_string(folder.path().join(file)).expect("the file");
@@ -279,7 +279,7 @@ fn formulas_and_trials_agree_as_the_tutorial_says() {
     let page = page();
     assert!(page.contains("agree to 3 %"), "the claim");
     for command in [
-        "budget setups/data_sheet.toml",
+        "budget examples/setups/data_sheet.toml",
         "budget out/design/best.toml",
     ] {
         for name in ["speckle ", "combined "] {
@@ -297,7 +297,7 @@ fn formulas_and_trials_agree_as_the_tutorial_says() {
 
 #[test]
 fn the_search_begins_with_the_data_sheet() {
-    let read = |name: &str| fs::read_to_string(repository().join("setups").join(name));
+    let read = |name: &str| fs::read_to_string(repository().join("examples/setups").join(name));
     let [sheet, design] = ["data_sheet.toml", "design.toml"].map(|name| read(name).expect(name));
     let parts = |text: &str| text[text.find("[laser]").expect("a laser")..].to_owned();
     let (sheet, design) = (parts(&sheet), parts(&design));

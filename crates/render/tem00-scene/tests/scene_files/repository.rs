@@ -15,7 +15,7 @@ fn documentation() -> String {
 
 #[test]
 fn the_scenes_of_the_repository_are_read() {
-    let folders = ["scenes", "scenes/triangulation"];
+    let folders = ["examples/scenes", "examples/scenes/triangulation"];
     let entries = folders.map(|folder| fs::read_dir(repository().join(folder)).unwrap());
     let paths = entries
         .into_iter()

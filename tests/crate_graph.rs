@@ -255,7 +255,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
 ];
 
 /// Crates of the workspace that judge the others, and so may appear in the tests of any of them.
-const JUDGES: &[&str] = &["tem00-statistics", "tem00-numerics", "tem00-wave"];
+const JUDGES: &[&str] = &["tem00-statistics", "tem00-numerics", "tem00-testkit", "tem00-wave"];
 
 /// Physics crates, which a renderer links: what they need beyond plain arithmetic is a choice.
 const PHYSICS: &[&str] = &[

@@ -19,7 +19,8 @@ use crate::{
     progress::Progress,
 };
 
-const HELP: &str = "examples/setups/ has set-up files, and docs/setup_file.md explains how to write them";
+const HELP: &str =
+    "examples/setups/ has set-up files, and docs/setup_file.md explains how to write them";
 
 /// Prints the characteristics of a set-up and writes their files.
 ///

@@ -64,4 +64,5 @@ pub(crate) fn run(args: &DesignArgs, out: &mut impl Write) -> Result<(), Failure
         .ok_or_else(|| words::nothing(&design))
 }
 
-const HELP: &str = "a set-up file for a search has a section [design]; examples/setups/design.toml is one";
+const HELP: &str =
+    "a set-up file for a search has a section [design]; examples/setups/design.toml is one";

@@ -108,7 +108,11 @@ fn page_named(name: &str) -> String {
 /// A folder with what the commands of the page read.
 fn clone() -> tempfile::TempDir {
     let folder = folder();
-    for name in ["examples/setups", "examples/scenes/triangulation", "examples/scenes/meshes"] {
+    for name in [
+        "examples/setups",
+        "examples/scenes/triangulation",
+        "examples/scenes/meshes",
+    ] {
         copy(name, folder.path());
     }
     folder
@@ -213,8 +217,14 @@ fn check_results(quoted: &[&str], printed: &str) {
 fn the_results_in_the_tutorial_are_those_of_the_program() {
     let (folder, page) = (clone(), page());
     for (command, options) in [
-        ("budget examples/setups/data_sheet.toml -o out/budget", " --trials 0"),
-        ("budget examples/setups/design.toml -o out/averaged", " --trials 0"),
+        (
+            "budget examples/setups/data_sheet.toml -o out/budget",
+            " --trials 0",
+        ),
+        (
+            "budget examples/setups/design.toml -o out/averaged",
+            " --trials 0",
+        ),
         ("design examples/setups/design.toml -o out/design", ""),
         ("budget out/design/best.toml -o out/best", " --trials 0"),
     ] {
@@ -224,7 +234,11 @@ fn the_results_in_the_tutorial_are_those_of_the_program() {
     // The table of the decision has the same numbers, rounded.
     let row = page.lines().find(|line| line.starts_with("| U (95 %)"));
     let row = row.expect("the table");
-    for command in ["examples/setups/data_sheet", "examples/setups/design", "out/design/best"] {
+    for command in [
+        "examples/setups/data_sheet",
+        "examples/setups/design",
+        "out/design/best",
+    ] {
         let results = quoted(&page, &format!("budget {command}.toml")).join("\n");
         let (_, rest) = results.split_once("U = ").expect("an expanded uncertainty");
         let (number, _) = rest.split_once(" µm").expect("in micrometres");

@@ -6,6 +6,8 @@
 
 use core::{error, fmt};
 
+use crate::lower_factor::{dot, lower_factor};
+
 const MAX_STEPS: usize = 300;
 const FIRST_DAMPING: f64 = 1e-3;
 const MIN_DAMPING: f64 = 1e-10;
@@ -222,21 +224,16 @@ impl Factor {
         if !scale.iter().all(|s| s.is_finite()) {
             return None;
         }
-        let mut lower: Vec<Vec<f64>> = Vec::with_capacity(rows.len());
-        for (i, row) in rows.iter().enumerate() {
-            let mut found: Vec<f64> = Vec::with_capacity(i + 1);
-            for (j, other) in lower.iter().enumerate() {
-                let scaled = row[j] * scale[i] * scale[j];
-                found.push((scaled - dot(&found, other)) / other[j]);
-            }
-            let pivot = 1.0 + damping - dot(&found, &found);
-            if pivot <= MIN_PIVOT || pivot.is_nan() {
-                return None;
-            }
-            found.push(pivot.sqrt());
-            lower.push(found);
-        }
-        Some(Self { scale, lower })
+        let scaled = |(i, row): (usize, &Vec<f64>)| {
+            let elements = row.iter().zip(&scale);
+            let mut scaled: Vec<f64> = elements.map(|(x, other)| x * scale[i] * other).collect();
+            scaled[i] = 1.0 + damping;
+            scaled
+        };
+        let scaled: Vec<Vec<f64>> = rows.iter().enumerate().map(scaled).collect();
+        let lower = lower_factor(&scaled, MIN_PIVOT).ok()?;
+        let is_regular = lower.iter().enumerate().all(|(i, row)| row[i] > 0.0);
+        is_regular.then_some(Self { scale, lower })
     }
 
     fn solve(&self, right: &[f64]) -> Vec<f64> {
@@ -252,11 +249,6 @@ impl Factor {
         let scaled = x.iter().zip(&self.scale);
         scaled.map(|(x, scale)| x * scale).collect()
     }
-}
-
-/// Returns the sum of the products as far as both lists go.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]

@@ -9,17 +9,21 @@
 //! # Scope and non-goals
 //!
 //! Only what more than one crate above needs and no library has. This is no array library: there is
-//! no slicing, no broadcasting and no linear algebra beyond the few equations of least squares.
+//! no slicing, no broadcasting and no linear algebra beyond a Cholesky factor.
 
 pub mod cast;
+pub mod check;
 mod circle;
 #[cfg(feature = "fft")]
 mod fft;
 mod grid;
 mod least_squares;
+mod lower_factor;
 mod memory;
+mod normal;
 mod pupil;
 pub mod quadrature;
+mod refusal;
 pub mod seed;
 mod shown;
 mod vectorised;
@@ -29,10 +33,13 @@ pub use circle::{circle_point_at_eighth, circle_point_at_turn};
 pub use fft::{Fft2, Fft2Error, Fft2Scratch};
 pub use grid::{Grid, GridError, wrap_coordinate};
 pub use least_squares::{LeastSquaresError, Minimum, NormalEquations, minimise};
+pub use lower_factor::lower_factor;
 pub use memory::{MemoryError, available_memory, check_memory};
+pub use normal::normal_quantile;
 pub use pupil::{
     circular_path_overlap, circular_path_overlap_inverse, disc_overlap, disc_overlap_inverse, jinc,
     sinc, sinc_inverse, sinc_pi_squared,
 };
+pub use refusal::{Refusal, RefusedValue};
 pub use shown::Shown;
 pub use vectorised::vectorised;

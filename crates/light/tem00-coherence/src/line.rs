@@ -2,6 +2,7 @@ use core::f64::consts::{FRAC_PI_2, LN_2, PI, TAU};
 
 use num_complex::Complex;
 use tem00_numerics::{
+    normal_quantile,
     quadrature::{for_each_node, integrate},
     sinc,
 };
@@ -408,22 +409,6 @@ impl LineShape {
             Self::Rectangular => visit(x, weight),
         });
     }
-}
-
-/// The quantile of the standard normal distribution, by Newton's method on its logarithm.
-fn normal_quantile(u: f64) -> f64 {
-    let tail = u.min(1.0 - u);
-    // Hastings (1955), to 5e−4.
-    let t = (-2.0 * tail.ln()).sqrt();
-    let over = 2.515_517 + t * (0.802_853 + 0.010_328 * t);
-    let under = 1.0 + t * (1.432_788 + t * (0.189_269 + 0.001_308 * t));
-    let mut x = t - over / under;
-    for _ in 0..2 {
-        let beyond = 0.5 * libm::erfc(x / 2.0_f64.sqrt());
-        let density = (-0.5 * x * x).exp() / TAU.sqrt();
-        x += beyond / density * (beyond / tail).ln();
-    }
-    if u < 0.5 { -x } else { x }
 }
 
 /// Returns breaks between −reach and reach, finer about features, each a centre and a width.

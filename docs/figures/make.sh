@@ -14,8 +14,7 @@ for scene in spot line_on_metal grazing_waist; do
     cp "$work/without/$scene.png" "docs/figures/${scene}_without_speckle.png"
 done
 cp "$work"/*.png docs/figures/
-for example in beam_caustic correlated_slices defocus focus_by_lens interpolation_matters knife_edge \
-    line_noise line_profile paper_errors phase_space surface_motion thin_line; do
+for example in beam_caustic correlated_slices focus_by_lens knife_edge line_profile paper_errors thin_line; do
     cargo run --locked --release --example "$example"
     cp "out/$example.svg" docs/figures/
 done

@@ -8,7 +8,6 @@
 #[expect(dead_code, reason = "other programs look at more of the images")]
 #[path = "../../../../examples/line_image/mod.rs"]
 mod line_image;
-#[path = "../../../../examples/rendered_lines/mod.rs"]
 mod rendered_lines;
 
 mod budget;

@@ -3,7 +3,6 @@
 
 #![expect(clippy::expect_used, reason = "a test ends where something fails")]
 
-#[path = "../../../../examples/step/mod.rs"]
 mod step_artefact;
 
 use step_artefact::{PLATES, STEP, measure, measured_frame, prepare, scene, step};

@@ -1,5 +1,4 @@
-//! Common to example and test of the noise of laser lines: rendered frames of lines on a plate
-//! under speckle, and how far their columns scatter.
+//! Rendered frames of laser lines on a plate under speckle, and the scatter of their columns.
 
 use std::{error::Error, path::Path, sync::atomic::AtomicBool};
 

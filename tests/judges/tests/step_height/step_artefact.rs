@@ -1,4 +1,4 @@
-//! Common to test and example of the step: a step between two plates, measured from end to end.
+//! A step between two plates, measured from end to end.
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -14,12 +14,7 @@ pub(crate) const STEP: f64 = 1e-3;
 pub(crate) const PLATES: [core::ops::Range<usize>; 2] = [4..40, 56..92];
 
 pub(crate) fn scene() -> MeasurementScene {
-    // Of the root of the workspace, or of a package in it.
-    let folders = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
-    let path = folders
-        .map(|folder| folder.join("examples/step/step.toml"))
-        .find(|path| path.exists())
-        .expect("the scene is there");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/step_height/step.toml");
     MeasurementScene::read(&path, FileAccess::WithinFolder)
         .expect("the scene is one")
         .0

@@ -11,5 +11,5 @@ if ! "$python" -c 'import numpy' 2>/dev/null; then
     python=target/peers/bin/python
 fi
 
-cargo bench --no-default-features --features simd --bench beam
+cargo bench -p tem00-benches --no-default-features --features simd --bench beam
 "$python" benches/peers/numpy_beam.py

@@ -9,7 +9,7 @@ use tem00::{
     },
 };
 
-use crate::lattice::{Lattice, Shape, cases, covariance_spread};
+use super::lattice::{Lattice, Shape, cases, covariance_spread};
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]

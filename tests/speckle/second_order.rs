@@ -12,7 +12,7 @@ use tem00::{
     },
 };
 
-use crate::lattice::{Lattice, Shape, cases, signed};
+use super::lattice::{Lattice, Shape, cases, signed};
 
 /// The bins along each axis, equally probable under the exponential law.
 const BINS: usize = 8;

@@ -9,7 +9,7 @@ use tem00::{
     statistics::{exponential_cumulative, kolmogorov_smirnov, pearson_correlation},
 };
 
-use crate::lattice::{Case, Lattice, Shape, cases, covariance_spread, signed};
+use super::lattice::{Case, Lattice, Shape, cases, covariance_spread, signed};
 
 fn paths() -> impl Strategy<Value = SlicePath> {
     prop_oneof![

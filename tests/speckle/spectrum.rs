@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use tem00::{numerics::Grid, speckle::PupilField, statistics::power_spectrum};
 
-use crate::lattice::{Lattice, Shape, cases, centred, covariance_spread, signed};
+use super::lattice::{Lattice, Shape, cases, centred, covariance_spread, signed};
 
 /// The mean of (I(x) − 1)(I(x + lag) − 1) over a tile.
 fn covariance(pattern: &Grid<f32>, [x, y]: [i64; 2]) -> f64 {

@@ -10,7 +10,7 @@ use tem00::{
     },
 };
 
-use crate::lattice::{Lattice, cases, shapes};
+use super::lattice::{Lattice, cases, shapes};
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]

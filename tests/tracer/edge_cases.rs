@@ -11,7 +11,7 @@ use tem00::{
     },
 };
 
-use crate::estimate::{self, assert_mean};
+use super::estimate::{self, assert_mean};
 
 const POWER: f64 = 2e-3;
 

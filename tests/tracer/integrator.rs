@@ -10,7 +10,7 @@ use tem00::{
     },
 };
 
-use crate::estimate::{assert_mean, mean};
+use super::estimate::{assert_mean, mean};
 
 const SEEDS: u64 = 20;
 

@@ -8,7 +8,7 @@ use tem00::{
     wave::{Complex, DVec3, Illumination, RoughSurface, Scatterer},
 };
 
-use crate::heights::{Heights, Random};
+use super::heights::{Heights, Random};
 
 /// Distance from the plate to the pupil, in metres.
 const DISTANCE: f64 = 0.5;

@@ -9,7 +9,7 @@ use tem00::{
     wave::DVec3,
 };
 
-use crate::{
+use super::{
     bench::{Bench, Spectrum, View, plane_of_incidence, weights},
     comparison::Comparison,
     heights::{Heights, Random},

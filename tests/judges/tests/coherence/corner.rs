@@ -7,7 +7,7 @@ use tem00::{
     wave::{Complex, DVec3, Illumination, RigidMotion, RoughSurface, Scatterer},
 };
 
-use crate::heights::Random;
+use super::heights::Random;
 
 /// Distance from the plate to the pupil, in metres.
 pub(crate) const DISTANCE: f64 = 0.2;

@@ -8,7 +8,7 @@ use tem00::{
     statistics::{IncoherentSum, kolmogorov_smirnov},
 };
 
-use crate::{
+use super::{
     bench::{Bench, Spectrum, View, plane_of_incidence},
     contrast::cell,
     heights::Heights,

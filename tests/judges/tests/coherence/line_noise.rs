@@ -5,7 +5,7 @@ use tem00::{
     wave::Estimate,
 };
 
-use crate::{
+use super::{
     bench::{Bench, Spectrum, View, plane_of_incidence},
     contrast::cell,
     heights::Heights,

@@ -7,7 +7,7 @@ use tem00::{
     wave::{Complex, DVec3, RigidMotion},
 };
 
-use crate::{
+use super::{
     corner::{Corner, DISTANCE},
     several_surfaces::right_angle,
     sums::{Moments, assert_agrees, assert_refutes, covariance, for_surfaces},

@@ -2,7 +2,7 @@
 
 use tem00::coherence::{PolychromaticSpeckle, Relief, ResolutionCell};
 
-use crate::{
+use super::{
     bench::{Bench, Spectrum, View, plane_of_incidence},
     heights::Heights,
     sums::{Moments, assert_agrees, contrast, for_surfaces},

@@ -10,7 +10,7 @@ use tem00::{
     wave::{DVec3, RigidMotion},
 };
 
-use crate::{
+use super::{
     bench::{Spectrum, plane_of_incidence},
     comparison::Comparison,
     contrast::{STEPS, cell, spectra},

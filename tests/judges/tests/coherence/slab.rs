@@ -7,7 +7,7 @@ use tem00::{
     wave::{Complex, Estimate},
 };
 
-use crate::{
+use super::{
     heights::Random,
     sums::{assert_agrees, assert_refutes, for_surfaces},
 };

@@ -7,7 +7,7 @@ use tem00::{
     wave::{DVec3, RigidMotion},
 };
 
-use crate::{
+use super::{
     bench::plane_of_incidence,
     corner::{Corner, Wall},
     sums::{Moments, assert_agrees, contrast, for_surfaces},

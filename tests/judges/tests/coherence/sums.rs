@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use tem00::wave::Estimate;
 
-use crate::heights::Random;
+use super::heights::Random;
 
 /// Moments of one surface: ⟨I⟩, ⟨I²⟩ of all wave numbers together and of single ones.
 #[derive(Clone, Copy, Debug, Default)]

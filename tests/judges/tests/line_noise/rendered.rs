@@ -3,7 +3,7 @@ use tem00::{
     triangulation::{FilterOrder, LineMethod},
 };
 
-use crate::rendered_lines::LineFrames;
+use super::rendered_lines::LineFrames;
 
 const LINE: LineFrames = LineFrames {
     thickness: 1e-3,

@@ -7,7 +7,7 @@ use tem00::{
     tracer::{Rectangle, Scene, Shape, Surface, SurfaceSpeckle},
 };
 
-use crate::setting::{LENS, SIDE, Setting, Step, part, speckle, tolerance};
+use super::setting::{LENS, SIDE, Setting, Step, part, speckle, tolerance};
 
 /// The width of the body, in pixels.
 const WIDTH: usize = 80;

@@ -9,7 +9,7 @@ use tem00::{
     wave::displacement_between,
 };
 
-use crate::setting::{EYE, LENS, SIDE, Setting, Step, in_speckles, part, speckle, tolerance};
+use super::setting::{EYE, LENS, SIDE, Setting, Step, in_speckles, part, speckle, tolerance};
 
 /// Slices per pupil diameter.
 const SLICES: f64 = 32.0;

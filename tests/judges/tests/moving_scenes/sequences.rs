@@ -10,7 +10,7 @@ use tem00::{
     tracer::{Keyframe, Rectangle, Scene, Shape, Trajectory},
 };
 
-use crate::setting::{LENS, SIDE, Setting, part, speckle, tolerance};
+use super::setting::{LENS, SIDE, Setting, part, speckle, tolerance};
 
 /// Behind this pitch a speckle spans 6.8 pixels, and a surface whose image moves by as little as 80 pixels has new speckle.
 const PITCH: f64 = 3.45e-6 / 2.0;

@@ -10,7 +10,7 @@ use tem00::{
     tracer::{Scene, SurfaceSpeckle},
 };
 
-use crate::setting::{LENS, SIDE, Setting, Step, part, speckle, tolerance};
+use super::setting::{LENS, SIDE, Setting, Step, part, speckle, tolerance};
 
 /// Pixels between samples that count as independent: the first zero of the covariance lies 1.22 speckles
 /// of 6.6 pixels away.

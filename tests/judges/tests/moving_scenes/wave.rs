@@ -10,7 +10,7 @@ use tem00::{
     },
 };
 
-use crate::setting::{EYE, Setting, Step, in_speckles, speckle};
+use super::setting::{EYE, Setting, Step, in_speckles, speckle};
 
 const PUPIL_DIAMETER: f64 = 6e-3;
 const PUPIL_TO_IMAGE: f64 = 60e-3;

@@ -2,7 +2,7 @@
 
 use tem00::scan::{Exposure, SpeckleCorrelation};
 
-use crate::setting::{Prepared, Ratio, SIZE, Setting};
+use super::setting::{Prepared, Ratio, SIZE, Setting};
 
 const FRAMES: u32 = 5;
 const SEEDS: u64 = 2;

@@ -12,7 +12,7 @@ use tem00::{
     wave::displacement_between,
 };
 
-use crate::setting::{Prepared, Ratio, SIZE, Setting};
+use super::setting::{Prepared, Ratio, SIZE, Setting};
 
 const SEEDS: u64 = 2;
 

@@ -14,7 +14,7 @@ use tem00::{
     },
 };
 
-use crate::{
+use super::{
     geometries::v,
     scene::{Motion, States, WAVELENGTH},
 };

@@ -3,7 +3,7 @@
 
 use tem00::wave::{DVec2, DVec3};
 
-use crate::{
+use super::{
     geometries::{frontal, mm, seen, tilted, v},
     scene::{Body, Scene, States, plane, plane_of, point_source},
 };

@@ -2,7 +2,7 @@
 
 use tem00::wave::DVec3;
 
-use crate::scene::{Beam, Fan, Light, Motion, Scene, beam, fan, plane, point_source};
+use super::scene::{Beam, Fan, Light, Motion, Scene, beam, fan, plane, point_source};
 
 /// A scene, what moves in it, and on how many surfaces it is measured.
 pub(crate) struct Case {

@@ -8,7 +8,7 @@ use tem00::{
     },
 };
 
-use crate::{
+use super::{
     geometries::{frontal, mm, seen, tilted, v},
     scene::{Motion, Scene, States, WAVELENGTH, plane, point_source},
 };

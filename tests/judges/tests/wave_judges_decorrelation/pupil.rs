@@ -4,7 +4,7 @@ use core::fmt::Write as _;
 
 use tem00::wave::{DVec2, DVec3};
 
-use crate::{
+use super::{
     geometries::{cases, frontal, tilted},
     scene::{Motion, Scene, States, plane, point_source},
 };

@@ -8,11 +8,7 @@
     reason = "a test stops at what it does not expect"
 )]
 
-#[path = "two_estimators/comparison.rs"]
 mod comparison;
-#[path = "two_estimators/lens.rs"]
 mod lens;
-#[path = "two_estimators/mirror.rs"]
 mod mirror;
-#[path = "two_estimators/rough.rs"]
 mod rough;

@@ -1,0 +1,15 @@
+//! Slow tests across crates: waves, trials and whole renders judge the laws.
+
+mod characteristics;
+mod coherence;
+mod edges_and_colour;
+mod extended_source;
+mod interval_coverage;
+mod line_noise;
+mod moving_scenes;
+mod moving_speckle;
+mod step_height;
+mod tilted_sensors;
+mod two_estimators;
+mod wave_judges_decorrelation;
+mod wave_judges_speckle;

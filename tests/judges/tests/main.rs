@@ -5,6 +5,8 @@ mod coherence;
 mod edges_and_colour;
 mod extended_source;
 mod interval_coverage;
+#[path = "../../../examples/line_image/mod.rs"]
+mod line_image;
 mod line_noise;
 mod moving_scenes;
 mod moving_speckle;

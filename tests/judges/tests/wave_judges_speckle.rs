@@ -6,12 +6,11 @@
     reason = "a scene that cannot be made fails its test"
 )]
 
-#[path = "../../../examples/line_image/mod.rs"]
-mod line_image;
-
 use core::f64::consts::PI;
 
-use line_image::{Measured, Row, blurred_profile, by_pattern, by_wave_optics, geometric_profile};
+use crate::line_image::{
+    Measured, Row, blurred_profile, by_pattern, by_wave_optics, geometric_profile,
+};
 use tem00::{
     numerics::jinc,
     wave::{

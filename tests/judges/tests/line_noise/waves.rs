@@ -2,7 +2,7 @@ use tem00::statistics::{
     SpeckledLine, imaged_line_centroid_deviation, line_centroid_deviation, t_test_mean,
 };
 
-use super::line_image::{
+use crate::line_image::{
     Row, blurred_profile, by_pattern, by_wave_optics, geometric_profile, positions,
 };
 

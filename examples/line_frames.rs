@@ -2,7 +2,7 @@
 //!
 //! ```sh
 //! cargo run --release --example line_frames -- [FOLDER]
-//! tem00 lines out/line_frames/*_12_bit.png --bits 12
+//! tem00-inspect lines out/line_frames/*_12_bit.png --bits 12
 //! ```
 //!
 //! One line, slightly curved, of 12 pixels full width: without speckle, with speckle of 2 pixels, and with

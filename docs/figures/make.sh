@@ -23,14 +23,14 @@ cp out/decorrelation_both.svg docs/figures/
 cargo run --locked --release --example will_a_broader_source_help
 cp out/broader_source_{noise,aperture}.svg docs/figures/
 # What the tutorial shows.
-tem00() { cargo run --locked --release -p tem00-cli -- "$@"; }
-tem00 design examples/setups/design.toml -o "$work/design"
+tem00-inspect() { cargo run --locked --release -p tem00-inspect -- "$@"; }
+tem00-inspect design examples/setups/design.toml -o "$work/design"
 cp "$work/design/trade_off.svg" docs/figures/triangulation_trade_off.svg
-tem00 triangulate examples/scenes/triangulation/step_gauge.toml -o "$work/gauge"
+tem00-inspect triangulate examples/scenes/triangulation/step_gauge.toml -o "$work/gauge"
 cp "$work/gauge/profile.svg" docs/figures/triangulation_profile.svg
-tem00 lines "$work/gauge/raw_0000.png" --window 21 -o "$work/lines"
+tem00-inspect lines "$work/gauge/raw_0000.png" --window 21 -o "$work/lines"
 cp "$work/lines/raw_0000_lines.png" docs/figures/triangulation_lines.png
-tem00 triangulate examples/scenes/triangulation/hexagon_nut.toml -o "$work/nut"
+tem00-inspect triangulate examples/scenes/triangulation/hexagon_nut.toml -o "$work/nut"
 cp "$work/nut/height_map.png" docs/figures/triangulation_nut.png
 # What they were made from: a test compares it.
 cksum examples/scenes/triangulation/{step_gauge,hexagon_nut}.toml examples/scenes/meshes/{step_gauge,hexagon_nut}.ply \

@@ -102,10 +102,10 @@ def check_conventions(verdict: Verdict, projected: list[Places]) -> None:
 
 
 def check_camera(verdict: Verdict, folder: Path, theirs: list[Places]) -> None:
-    """Compares the camera of `tem00 calibrate` with the scene and with that of OpenCV."""
+    """Compares the camera of `tem00-inspect calibrate` with the scene and with that of OpenCV."""
     output = folder / "calibration.json"
     options = ["--corners", "9x6", "--square", "8.4 mm", "--pixel-pitch", "8 um", "--radial", "1"]
-    run("tem00", "calibrate", str(folder), *options, "-o", str(output))
+    run("tem00-inspect", "calibrate", str(folder), *options, "-o", str(output))
     record = json.loads(output.read_text())
     camera = record["camera"]
     variances = np.diag(np.array(record["covariance"]["rows"]))

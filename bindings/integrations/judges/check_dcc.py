@@ -128,7 +128,7 @@ def certified(name: str, change: tuple[str, str]) -> tuple[DCC, Record, Path]:
         raise SystemExit(f"the set-up has no {change[0]}")
     setup = folder / "setup.toml"
     setup.write_text(text.replace(*change))
-    run("tem00", "budget", str(setup), "--trials", "0", "--output", str(folder))
+    run("tem00-inspect", "budget", str(setup), "--trials", "0", "--output", str(folder))
     path = folder / "certificate.xml"
     # It would download the schema.
     with mock.patch("dcc.dcc.DCCXMLValidator"):

@@ -1,4 +1,4 @@
-"""A height map and a point cloud of `tem00 triangulate`, read by x3pio, surfalize, pypcd4 and Pillow.
+"""A height map and a point cloud of `tem00-inspect triangulate`, read by x3pio, surfalize, pypcd4 and Pillow.
 
 - X3P holds the heights of `height.npy` as they are, and verifies its checksums; its points are the
   middles of the cells.
@@ -20,7 +20,7 @@ from judge import FRAMES, Verdict, run
 
 folder = FRAMES / "exports"
 run(
-    *("tem00", "triangulate", "examples/scenes/triangulation/hexagon_nut.toml"),
+    *("tem00-inspect", "triangulate", "examples/scenes/triangulation/hexagon_nut.toml"),
     *("--frames", "40..45", "--spp", "4", "-o", str(folder)),
 )
 record = json.loads((folder / "measurement.json").read_text())["height_map"]

@@ -1,7 +1,7 @@
-"""Places of a line by `tem00 lines`, photutils and OpenPIV on the same frames.
+"""Places of a line by `tem00-inspect lines`, photutils and OpenPIV on the same frames.
 
 The judges get what an estimate looks at: the window about the maximum of the column after a
-triangular filter, less the background that `tem00 lines` states. They return places in it.
+triangular filter, less the background that `tem00-inspect lines` states. They return places in it.
 
 - The centre of gravity of photutils is that of `centre_of_gravity`; over three pixels it is what
   OpenPIV calls centroid. Its parabola and the one through logarithms are `parabola` and
@@ -31,11 +31,11 @@ ROUNDING = 1e-6
 
 
 def found(frame: Path, detector: str, window: int) -> list[dict[str, str]]:
-    """The valid points that `tem00 lines` finds."""
+    """The valid points that `tem00-inspect lines` finds."""
     folder = frame.parent / f"{detector}_{window}"
     options = ["--detector", detector, "--window", str(window), "--min-peak", "5"]
     bits = ["--bits", "12"] if "12_bit" in frame.name else []
-    run("tem00", "lines", str(frame), "-o", str(folder), *options, *bits)
+    run("tem00-inspect", "lines", str(frame), "-o", str(folder), *options, *bits)
     with (folder / f"{frame.stem}.csv").open(newline="") as table:
         return [row for row in csv.DictReader(table) if row["valid"] == "1"]
 

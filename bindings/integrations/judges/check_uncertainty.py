@@ -1,7 +1,7 @@
 """GTC, the GUM Tree Calculator, judges the law of propagation of uncertainty.
 
 `examples/guide_to_uncertainty` writes the results of two examples of the Guide: the gauge block of H.1 and the
-circuit of H.2, whose inputs are correlated. `tem00 budget` writes those of a set-up whose geometry is uncertain, which
+circuit of H.2, whose inputs are correlated. `tem00-inspect budget` writes those of a set-up whose geometry is uncertain, which
 is stated here a second time. GTC differentiates by automatic differentiation.
 """
 
@@ -62,7 +62,7 @@ def summary(result: GTC.lib.UncertainReal, inputs: list[GTC.lib.UncertainReal]) 
 def check_set_up(verdict: Verdict) -> None:
     """Compares the law of propagation of a budget with that of the line of sight."""
     folder = FRAMES / "certified"
-    run("tem00", "budget", "examples/setups/certified.toml", "--trials", "0", "--output", str(folder))
+    run("tem00-inspect", "budget", "examples/setups/certified.toml", "--trials", "0", "--output", str(folder))
     ours = json.loads((folder / "budget.json").read_text())["measurement"]
     known = {}
     for row in ours["inputs"]:

@@ -28,7 +28,7 @@ same() {
     cmp "$out/at_once/sweep.csv" "$out/$1/sweep.csv"
     echo "$1: the same table"
 }
-tem00 sweep "$grid" -o "$out/at_once" --quiet
+tem00-inspect sweep "$grid" -o "$out/at_once" --quiet
 
 openjd run bindings/integrations/sweep/openjd.yaml \
     -p Grid="$grid" -p Out="$PWD/$out/openjd" -p Tasks=0-5 > "$out/openjd.log"
@@ -37,7 +37,7 @@ same openjd
 for task in 5 0 3 1 4 2; do
     SLURM_ARRAY_TASK_ID=$task bash bindings/integrations/sweep/slurm.sh "$grid" "$out/slurm"
 done
-tem00 sweep "$grid" -o "$out/slurm" --gather
+tem00-inspect sweep "$grid" -o "$out/slurm" --gather
 same slurm
 
 snakemake -s bindings/integrations/sweep/Snakefile --cores 2 --quiet all \
@@ -47,13 +47,13 @@ same snakemake
 python bindings/integrations/sweep/with_dask.py "$grid" "$out/dask"
 same dask
 
-tem00 sweep "$grid" -o "$out/killed" --quiet &
+tem00-inspect sweep "$grid" -o "$out/killed" --quiet &
 worker=$!
 until ls "$out"/killed/rows/*.json > "$out/rows.log" 2>&1; do sleep 0.02; done
 kill -KILL "$worker"
 wait "$worker" || true
 # A task that is done is not done again.
-tem00 sweep "$grid" -o "$out/killed" --task 0..3 --quiet
-tem00 sweep "$grid" -o "$out/killed" --task 2..5 --quiet
-tem00 sweep "$grid" -o "$out/killed" --gather
+tem00-inspect sweep "$grid" -o "$out/killed" --task 0..3 --quiet
+tem00-inspect sweep "$grid" -o "$out/killed" --task 2..5 --quiet
+tem00-inspect sweep "$grid" -o "$out/killed" --gather
 same killed

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# A sweep as a Slurm array, one job for each task that `tem00 sweep GRID --list` shows, and the table:
+# A sweep as a Slurm array, one job for each task that `tem00-inspect sweep GRID --list` shows, and the table:
 #   tasks=$(sbatch --parsable --array=0-23 bindings/integrations/sweep/slurm.sh GRID.toml OUT)
-#   sbatch --dependency=afterok:$tasks --wrap "tem00 sweep GRID.toml -o OUT --gather"
+#   sbatch --dependency=afterok:$tasks --wrap "tem00-inspect sweep GRID.toml -o OUT --gather"
 #SBATCH --job-name=tem00-sweep
 #SBATCH --cpus-per-task=2
 set -euo pipefail
-tem00 sweep "$1" -o "$2" --task "$SLURM_ARRAY_TASK_ID" --threads "${SLURM_CPUS_PER_TASK:-2}"
+tem00-inspect sweep "$1" -o "$2" --task "$SLURM_ARRAY_TASK_ID" --threads "${SLURM_CPUS_PER_TASK:-2}"

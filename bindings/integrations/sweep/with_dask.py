@@ -10,8 +10,8 @@ from distributed import Client, LocalCluster
 
 
 def sweep(*arguments: str) -> str:
-    """Return what `tem00 sweep` prints."""
-    command = ["tem00", "sweep", *arguments]
+    """Return what `tem00-inspect sweep` prints."""
+    command = ["tem00-inspect", "sweep", *arguments]
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout
 
 

@@ -1,8 +1,8 @@
 //! Python bindings of tem00, the extension module `tem00._tem00`.
 //!
 //! One file for each physics crate; `arrays` takes NumPy arrays in and gives them out, `error`
-//! makes Python exceptions of the errors; `methods` declares what only hands on. `main` is the
-//! program.
+//! makes Python exceptions of the errors; `methods` declares what only hands on. `main` and
+//! `inspect` are the programs.
 
 #[macro_use]
 mod methods;
@@ -23,8 +23,20 @@ use pyo3::prelude::*;
 #[cfg(not(target_family = "wasm"))]
 #[pyfunction]
 fn main(py: Python<'_>) -> PyResult<u8> {
+    run(py, tem00_cli::run)
+}
+
+/// Runs the program ``tem00-inspect`` with the arguments of this process; returns the exit code.
+#[cfg(not(target_family = "wasm"))]
+#[pyfunction]
+fn inspect(py: Python<'_>) -> PyResult<u8> {
+    run(py, tem00_inspect::run)
+}
+
+#[cfg(not(target_family = "wasm"))]
+fn run(py: Python<'_>, program: fn(&[std::ffi::OsString]) -> u8) -> PyResult<u8> {
     let arguments: Vec<std::ffi::OsString> = py.import("sys")?.getattr("argv")?.extract()?;
-    Ok(py.detach(|| tem00_cli::run(&arguments)))
+    Ok(py.detach(|| program(&arguments)))
 }
 
 #[pymodule]
@@ -37,7 +49,7 @@ mod _tem00 {
 
     #[cfg(not(target_family = "wasm"))]
     #[pymodule_export]
-    use super::main;
+    use super::{inspect, main};
 
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "Python's name for it")]

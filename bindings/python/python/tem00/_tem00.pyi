@@ -20,6 +20,7 @@ __all__ = [
 __version__: str
 
 def main() -> int: ...
+def inspect() -> int: ...
 
 class ParameterError(ValueError):
     """A parameter lies outside what is allowed."""

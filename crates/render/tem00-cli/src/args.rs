@@ -1,58 +1,27 @@
 //! The command line.
 
-#[cfg(feature = "full")]
-mod budget;
-#[cfg(feature = "full")]
-mod calibrate;
-#[cfg(feature = "full")]
-mod characterise;
-#[cfg(feature = "full")]
-mod design;
-mod files;
-#[cfg(feature = "full")]
-mod lines;
-#[cfg(feature = "full")]
 mod list;
+mod pupil;
 mod render;
 mod scene;
-#[cfg(feature = "full")]
-mod setup;
-#[cfg(feature = "full")]
-mod shell;
 mod speckle;
-#[cfg(feature = "full")]
-mod sweep;
-#[cfg(feature = "full")]
-mod triangulate;
-mod values;
 
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use tem00_speckle::Pupil;
-use tem00_tracer::Crop;
-
-use self::values::{black_level, crop, pupil};
-#[cfg(feature = "full")]
-pub(crate) use self::{
-    budget::BudgetArgs,
-    calibrate::CalibrateArgs,
-    characterise::CharacteriseArgs,
-    design::DesignArgs,
-    lines::LinesArgs,
-    list::{ListArgs, Listed},
-    setup::SetupArgs,
-    shell::{CompletionsArgs, ManArgs},
-    sweep::SweepArgs,
-    triangulate::TriangulateArgs,
+use tem00_report::{
+    args::{CompletionsArgs, ManArgs, black_level, crop},
+    image::{Crop, Transfer},
 };
+use tem00_speckle::Pupil;
+
+use self::pupil::pupil;
+pub use self::scene::SceneArgs;
 pub(crate) use self::{
-    files::FileArgs,
+    list::{ListArgs, Listed},
     render::RenderArgs,
-    scene::{IndexRange, SceneArgs},
     speckle::SpeckleArgs,
 };
-use crate::image::Transfer;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -61,32 +30,17 @@ Examples:
   tem00 stats photo.png                               measure the speckle in an image
   tem00 speckle --wavelength 650nm --focal-length 25mm --f-number 8 --distance 300mm
                                                       how large is the speckle?
-  tem00 budget examples/setups/data_sheet.toml                 how well will this set-up measure heights?
-  tem00 characterise examples/setups/data_sheet.toml           its noise, resolution, linearity … on rendered artefacts
-  tem00 design examples/setups/design.toml                     search for a better one
-  tem00 sweep examples/setups/sweeps/lens_and_line.toml        a table over a grid of values, on any machines
-  tem00 triangulate examples/scenes/triangulation/groove.toml  see a part as such a sensor sees it
-  tem00 lines frame.png                               find the laser line in a camera frame
-  tem00 calibrate photos --corners 9x6 --square \"5 mm\" --pixel-pitch \"3.45 um\"
-                                                      calibrate camera and laser plane
+
+Set-ups of laser triangulation, and camera frames: tem00-inspect --help
 
 Data goes to standard output, everything else to standard error.
 Exit codes: 0 success, 1 failure while running, 2 bad input or usage, 3 nothing measured or found,
 130 interrupted.";
 
-fn after_help() -> String {
-    let left_out = if cfg!(feature = "full") {
-        ""
-    } else {
-        "\n\nThis build has render, pattern and speckle; without `--no-default-features` it has all."
-    };
-    format!("{EXAMPLES}{left_out}")
-}
-
-/// Laser light with speckle, from scene file to image, and from data sheet to height uncertainty.
+/// Laser light with speckle, from scene file to image.
 #[derive(Debug, Parser)]
-#[command(name = "tem00", version, max_term_width = 100, after_help = after_help())]
-pub(crate) struct Cli {
+#[command(name = "tem00", version, max_term_width = 100, after_help = EXAMPLES)]
+pub struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
 
@@ -99,28 +53,10 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     Render(RenderArgs),
     Pattern(PatternArgs),
-    #[cfg(feature = "full")]
     Stats(StatsArgs),
-    #[cfg(feature = "full")]
-    Lines(LinesArgs),
-    #[cfg(feature = "full")]
-    Calibrate(CalibrateArgs),
-    #[cfg(feature = "full")]
-    Triangulate(TriangulateArgs),
     Speckle(SpeckleArgs),
-    #[cfg(feature = "full")]
-    Budget(BudgetArgs),
-    #[cfg(feature = "full")]
-    Characterise(CharacteriseArgs),
-    #[cfg(feature = "full")]
-    Design(DesignArgs),
-    #[cfg(feature = "full")]
-    Sweep(SweepArgs),
-    #[cfg(feature = "full")]
     List(ListArgs),
-    #[cfg(feature = "full")]
     Completions(CompletionsArgs),
-    #[cfg(feature = "full")]
     Man(ManArgs),
 }
 
@@ -228,38 +164,6 @@ Examples:
   tem00 stats raw.tif --black-level 64
   tem00 stats out/spot/spot.exr --channel speckle --json";
 
-/// The commands that are built with the feature `full` alone.
-#[cfg(any(test, not(feature = "full")))]
-const OTHERS: [&str; 11] = [
-    "stats",
-    "lines",
-    "calibrate",
-    "characterise",
-    "triangulate",
-    "budget",
-    "design",
-    "sweep",
-    "list",
-    "completions",
-    "man",
-];
-
-/// Returns how to get what this build leaves out.
-#[cfg(not(feature = "full"))]
-pub(crate) fn without(what: &str) -> String {
-    format!("this build has no {what}: build it without `--no-default-features`")
-}
-
-/// Returns what is wrong with a command line that asks for a command which this build leaves out.
-#[cfg(not(feature = "full"))]
-pub(crate) fn left_out(error: &clap::Error) -> Option<String> {
-    let name = error.get(clap::error::ContextKind::InvalidSubcommand)?;
-    let name = name.to_string();
-    OTHERS
-        .contains(&name.as_str())
-        .then(|| without(&format!("command `{name}`")))
-}
-
 #[cfg(test)]
 mod tests {
     use clap::CommandFactory;
@@ -273,19 +177,6 @@ mod tests {
     #[test]
     fn the_command_line_is_consistent() {
         Cli::command().debug_assert();
-    }
-
-    #[cfg(feature = "full")]
-    #[test]
-    fn every_command_is_built_always_or_with_the_feature_full() {
-        let program = Cli::command();
-        let commands = program.get_subcommands().map(clap::Command::get_name);
-        let others = commands.filter(|name| !["render", "pattern", "speckle"].contains(name));
-        let mut others: Vec<_> = others.collect();
-        let mut expected = OTHERS.to_vec();
-        others.sort_unstable();
-        expected.sort_unstable();
-        assert_eq!(others, expected);
     }
 
     /// Summaries of options begin with a noun or a verb, and use the terms that a reader searches for.

@@ -1,8 +1,7 @@
 //! Measured quantities beside the predictions of the theory.
 
 use serde::Serialize;
-
-use crate::{
+use tem00_report::{
     digits::{number, rounded},
     report::{Cell, Column, Table},
 };

@@ -3,16 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use tem00_numerics::Grid;
-use tem00_tracer::{Frame, LaserLayers, Scene};
-
-use crate::{
+use tem00_report::{
     atomic::write_atomically,
     failure::Failure,
     image::{Layer, Window, write_exr, write_rgb_png},
     output,
-    preview::Picture,
-    summary::Exposure,
 };
+use tem00_tracer::{Frame, LaserLayers, Scene};
+
+use crate::{preview::Picture, summary::Exposure};
 
 /// Makes sure, before the work, that there is memory for the frames of the scene in a file: for their layers,
 /// once more to write them, and for the picture.
@@ -20,7 +19,7 @@ use crate::{
 /// # Errors
 ///
 /// Returns a failure if the system says that there is not so much.
-pub(crate) fn check_room(path: &Path, scene: &Scene) -> Result<(), Failure> {
+pub fn check_room(path: &Path, scene: &Scene) -> Result<(), Failure> {
     let camera = &scene.camera;
     let whole = [camera.width(), camera.height()];
     let [width, height] = scene
@@ -216,7 +215,7 @@ fn layer<'a, const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::{Reading, read_image};
+    use tem00_report::image::{Reading, read_image};
 
     #[test]
     fn a_bright_light_does_not_burn_out_a_thin_line() {

@@ -1,22 +1,19 @@
 //! Inspection of a scene before it is rendered: the laser light that the camera will see.
 
-#[cfg(feature = "full")]
 mod overview;
 mod words;
 
 use std::path::{Path, PathBuf};
 
+use tem00_report::{args::IndexRange, failure::Failure};
 use tem00_tracer::{LaserInspection, Scene, TracerError};
-
-use crate::{args::IndexRange, failure::Failure};
-#[cfg(not(feature = "full"))]
-use crate::{args::without, output::note};
 
 /// The most frames that are looked at.
 const MAX_FRAMES: u32 = 8;
 
 /// The light of each laser that reaches the camera, in frames spread over the requested ones.
-pub(crate) struct Inspection<'a> {
+#[derive(Debug)]
+pub struct Inspection<'a> {
     scene: &'a Scene,
     /// The number of each frame, and its lasers.
     frames: Vec<(u32, Vec<LaserInspection>)>,
@@ -28,7 +25,7 @@ impl<'a> Inspection<'a> {
     /// # Errors
     ///
     /// Returns an error if the geometry cannot be built.
-    pub(crate) fn new(scene: &'a Scene, frames: IndexRange) -> Result<Self, TracerError> {
+    pub fn new(scene: &'a Scene, frames: IndexRange) -> Result<Self, TracerError> {
         let frames = spread(frames).map(|frame| Ok((frame, scene.inspect_lasers(frame)?)));
         Ok(Self {
             scene,
@@ -37,18 +34,18 @@ impl<'a> Inspection<'a> {
     }
 
     /// Returns whether the camera sees each laser in one of the frames at least.
-    pub(crate) fn sees_all_lasers(&self) -> bool {
+    pub fn sees_all_lasers(&self) -> bool {
         (0..self.scene.lasers.len()).all(|laser| self.is_seen(laser))
     }
 
     /// Returns the findings for every laser, line by line.
-    pub(crate) fn lines(&self) -> Vec<String> {
+    pub fn lines(&self) -> Vec<String> {
         let lasers = 0..self.scene.lasers.len();
         lasers.flat_map(|laser| self.words(laser)).collect()
     }
 
     /// Returns the findings for the lasers that the camera does not see in any frame.
-    pub(crate) fn warnings(&self) -> Vec<String> {
+    pub fn warnings(&self) -> Vec<String> {
         let lasers = (0..self.scene.lasers.len()).filter(|&laser| !self.is_seen(laser));
         lasers.flat_map(|laser| self.words(laser)).collect()
     }
@@ -59,8 +56,7 @@ impl<'a> Inspection<'a> {
     /// # Errors
     ///
     /// Returns a failure if the file cannot be written.
-    #[cfg(feature = "full")]
-    pub(crate) fn draw(&self, folder: &Path, name: &str) -> Result<Option<PathBuf>, Failure> {
+    pub fn draw(&self, folder: &Path, name: &str) -> Result<Option<PathBuf>, Failure> {
         let dark = |(_, lasers): &&(u32, Vec<LaserInspection>)| {
             !lasers.iter().all(LaserInspection::is_seen)
         };
@@ -69,18 +65,6 @@ impl<'a> Inspection<'a> {
             overview::draw(self.scene, *frame, lasers).save(folder, name)?;
         }
         Ok(Some(folder.join(format!("{name}.svg"))))
-    }
-
-    /// Says how to get a drawing.
-    #[cfg(not(feature = "full"))]
-    #[expect(
-        clippy::unused_self,
-        clippy::unnecessary_wraps,
-        reason = "as where it draws"
-    )]
-    pub(crate) fn draw(&self, _: &Path, _: &str) -> Result<Option<PathBuf>, Failure> {
-        note(&without("drawing of the scene"));
-        Ok(None)
     }
 
     fn is_seen(&self, laser: usize) -> bool {

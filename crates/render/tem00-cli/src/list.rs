@@ -1,17 +1,16 @@
-//! `tem00 list`: what scenes and set-ups can name.
+//! `tem00 list`: what scenes can name.
 
 use std::io::Write;
 
-use tem00_scene::MATERIALS;
-use tem00_tracer::{FinishingProcess, Metal, TracerError};
-use tem00_triangulation::{LineMethod, SensorDescription};
-
-use crate::{
-    args::{ListArgs, Listed},
+use tem00_report::{
     digits::rounded,
     failure::Failure,
     report::{Cell, Column, Table},
 };
+use tem00_scene::MATERIALS;
+use tem00_tracer::{FinishingProcess, Metal, TracerError};
+
+use crate::args::{ListArgs, Listed};
 
 /// Prints what was asked for, with its sources.
 ///
@@ -23,8 +22,6 @@ pub(crate) fn run(args: &ListArgs, out: &mut impl Write) -> Result<(), Failure> 
         Listed::Metals => (metals(args.wavelength)?, METALS),
         Listed::Materials => (materials(), MATERIALS_NOTE),
         Listed::Surfaces => (surfaces(), SURFACES),
-        Listed::Detectors => (detectors(), DETECTORS),
-        Listed::Sensors => (sensors(), SENSORS),
     };
     table
         .write_text(out)
@@ -96,77 +93,6 @@ fn surfaces() -> Table {
     table
 }
 
-const DETECTORS: &str = "\
-In [detector]: method = \"parabola\". --method of `tem00 lines` takes the same names.";
-
-fn detectors() -> Table {
-    let mut table = headed(["method", "minimum window", "position of the line"]);
-    for method in LineMethod::ALL {
-        let window = method.min_window().to_string();
-        table.row(texts([method.name(), &window, place_of_line(&method)]));
-    }
-    table
-}
-
-fn place_of_line(method: &LineMethod) -> &'static str {
-    match method {
-        LineMethod::CentreOfGravity => "centre of gravity over the window",
-        LineMethod::ThresholdedCentreOfGravity { .. } => {
-            "of what lies above `threshold` of the peak (Thomas et al. 2006)"
-        }
-        LineMethod::IteratedCentreOfGravity => "over a window that is moved onto its result",
-        LineMethod::Parabola => {
-            "vertex of a parabola through the brightest pixel and its neighbours"
-        }
-        LineMethod::LogGaussian => {
-            "vertex through their logarithms; exact for points of a Gaussian"
-        }
-        LineMethod::LinearInterpolation => "straight flanks of equal slope (Naidu and Fisher 1991)",
-        LineMethod::BlaisRioux { .. } => {
-            "zero of a derivative filter of `order` taps (Blais and Rioux 1986)"
-        }
-        LineMethod::GaussianFit => "the Gaussian on a background that fits best, over pixels",
-        LineMethod::Steger { .. } => "ridge of the image smoothed by `sigma` (Steger 1998)",
-        _ => "",
-    }
-}
-
-const SENSORS: &str = "\
-Typical values and no measurement: an industrial CMOS sensor with global shutter and pixels of 3.45 µm, as
-data sheets after EMVA 1288 have them around 2020. [sensor] takes them where it has no value of its own,
-with `bit_depth` = 12 unless it says otherwise; `quantum_efficiency` and `exposure` must be given.";
-
-fn sensors() -> Table {
-    type Value = fn(&SensorDescription) -> f64;
-    let rows: [(&str, Value); 7] = [
-        ("full_well (electrons)", |sensor| sensor.full_well),
-        ("dark_noise (electrons)", |sensor| sensor.dark_noise),
-        ("dark_current (electrons/s)", |sensor| sensor.dark_current),
-        ("prnu", |sensor| sensor.prnu),
-        ("dsnu (electrons)", |sensor| sensor.dsnu),
-        ("black_level (DN)", |sensor| sensor.black_level),
-        ("gain (DN/electron)", |sensor| sensor.gain),
-    ];
-    let sensors = [8, 10, 12, 14, 16].map(SensorDescription::typical);
-    let bits = sensors
-        .each_ref()
-        .map(|sensor| sensor.bit_depth.to_string());
-    let [a, b, c, d, e] = bits.each_ref().map(String::as_str);
-    let mut table = headed(["bit_depth", a, b, c, d, e]);
-    for (name, value) in rows {
-        let values = sensors
-            .iter()
-            .map(|sensor| rounded(value(sensor), 4).into());
-        table.row(
-            [name.into()]
-                .into_iter()
-                .chain(values)
-                .collect::<Vec<Cell>>(),
-        );
-    }
-    table
-}
-
 /// Starts a table with the headings of its columns.
 fn headed<const N: usize>(headings: [&str; N]) -> Table {
     Table::new("", headings.map(Column::shown))
@@ -184,9 +110,6 @@ mod tests {
     fn nothing_is_listed_without_words() {
         for (name, _) in MATERIALS {
             assert!(!what_it_is(name).is_empty(), "{name}");
-        }
-        for method in LineMethod::ALL {
-            assert!(!place_of_line(&method).is_empty(), "{method}");
         }
     }
 }

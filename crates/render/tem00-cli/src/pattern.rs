@@ -10,19 +10,18 @@ use std::{
 
 use num_complex::Complex;
 use tem00_numerics::Grid;
-use tem00_speckle::{NpyError, NpyReader, PupilField, SpeckleError, SpeckleField, SpecklePattern};
-
-use crate::{
-    args::PatternArgs,
+use tem00_report::{
     atomic::{probe_writable, write_atomically},
-    comparison,
     failure::Failure,
     image::{Format, ImageError, Layer, open, write_exr, write_grey_png},
     interrupt, output,
     report::Report,
 };
+use tem00_speckle::{NpyError, NpyReader, PupilField, SpeckleError, SpeckleField, SpecklePattern};
 
-/// The largest size Q: 2²⁸ samples, the most that [`read_image`](crate::image::read_image) takes.
+use crate::{args::PatternArgs, comparison};
+
+/// The largest size Q: 2²⁸ samples, the most that [`read_image`](tem00_report::image::read_image) takes.
 const MAXIMUM_SIZE: usize = 1 << 14;
 
 /// The bytes that it takes to make a sample, to measure it and to write it; its amplitude takes more.

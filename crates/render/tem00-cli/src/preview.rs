@@ -1,8 +1,7 @@
 //! From radiance to a picture for the eye.
 
 use tem00_numerics::Grid;
-
-use crate::colour::rgb_of_wavelength;
+use tem00_report::colour::rgb_of_wavelength;
 
 /// The fraction of the lit pixels that the automatic exposure leaves below white.
 const BELOW_WHITE: f64 = 0.995;

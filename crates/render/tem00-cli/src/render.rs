@@ -7,10 +7,18 @@ mod sequence;
 
 use std::io::Write;
 
+use tem00_report::{
+    digits::si_prefixed,
+    failure::Failure,
+    image::{self, check_inside},
+    kind::{Kind, wrong_or},
+    output,
+    report::Report,
+};
 use tem00_scene::SceneFile;
-use tem00_tracer::{Formulas, Sampling, Scene};
+use tem00_tracer::{Crop, Formulas, Sampling, Scene};
 
-pub(crate) use self::job::{frames, tracer_failure};
+pub use self::job::{frames, tracer_failure};
 use self::{
     job::Render,
     report::{note_invisible_lasers, note_missing_light, of_frames},
@@ -18,13 +26,7 @@ use self::{
 };
 use crate::{
     args::RenderArgs,
-    digits::si_prefixed,
-    failure::Failure,
-    image::check_inside,
     inspection::Inspection,
-    kind::{Kind, wrong_or},
-    output,
-    report::Report,
     summary::{FrameSummary, lasers},
 };
 
@@ -98,6 +100,15 @@ fn check(args: &RenderArgs, scene: &Scene, out: &mut impl Write) -> Result<(), F
     }
 }
 
+const fn tracer_crop(crop: image::Crop) -> Crop {
+    Crop {
+        x: crop.x,
+        y: crop.y,
+        width: crop.width,
+        height: crop.height,
+    }
+}
+
 /// Returns the scene with what the command line overrules.
 fn overruled(mut scene: Scene, args: &RenderArgs) -> Result<Scene, Failure> {
     let options = &mut scene.render;
@@ -107,11 +118,11 @@ fn overruled(mut scene: Scene, args: &RenderArgs) -> Result<Scene, Failure> {
     if let Some(error) = args.target_error {
         options.sampling = Sampling::TargetError(error);
     }
-    options.crop = args.crop.or(options.crop);
+    options.crop = args.crop.map(tracer_crop).or(options.crop);
     if args.paper {
         options.formulas = Formulas::AsPrinted;
     }
-    if let Some(crop) = options.crop {
+    if let Some(crop) = args.crop {
         check_inside(crop, [scene.camera.width(), scene.camera.height()]).map_err(|error| {
             Failure::input(
                 error.to_string(),

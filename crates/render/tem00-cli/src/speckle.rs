@@ -7,16 +7,16 @@ use tem00_decorrelation::{
     Illumination, ImagingGeometry, RigidMotion, RigidMotions, ThickLensData,
     equivalent_axial_shift, equivalent_pupil_shift,
 };
-use tem00_statistics::{AIRY_FIRST_ZERO, AIRY_HALF_WIDTH, pixel_contrast};
-
-use crate::{
-    args::SpeckleArgs,
+use tem00_report::{
     failure::Failure,
     report::{
         Cell, Column, Report, Table, Unit,
         units::{DEGREES, NUMBER},
     },
 };
+use tem00_statistics::{AIRY_FIRST_ZERO, AIRY_HALF_WIDTH, pixel_contrast};
+
+use crate::args::SpeckleArgs;
 
 /// Prints what is known of the speckle of a camera without a scene.
 ///

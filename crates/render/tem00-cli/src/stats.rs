@@ -7,6 +7,14 @@ mod page;
 use std::{io::Write, path::Path};
 
 use tem00_numerics::Grid;
+use tem00_report::{
+    failure::Failure,
+    image::{LoadedImage, Reading, read_image},
+    kind::{Kind, wrong_or},
+    output::{self, note},
+    plot::Format,
+    report::Report,
+};
 use tem00_statistics::{
     Boundary, Contrast, FlatImage, GreyLevels, Moments, SpeckleSize, StatisticsError,
     autocovariance,
@@ -15,12 +23,6 @@ use tem00_statistics::{
 use crate::{
     args::StatsArgs,
     comparison::{self, Row},
-    failure::Failure,
-    image::{LoadedImage, Reading, read_image},
-    kind::{Kind, wrong_or},
-    output::{self, note},
-    plot::Format,
-    report::Report,
 };
 use curves::{Curves, Measured};
 use findings::Findings;
@@ -126,7 +128,7 @@ fn plot_file(path: &Path) -> Result<(&Path, Format), Failure> {
             "end the name in .svg or .png",
         )
     })?;
-    crate::atomic::probe_writable(path).map_err(|error| {
+    tem00_report::atomic::probe_writable(path).map_err(|error| {
         Failure::input(
             format!("cannot write {}: {error}", path.display()),
             "name a file in a folder that exists and may be written",
@@ -144,7 +146,7 @@ fn draw(measurement: &Measurement, path: &Path, format: Format) -> Result<(), Fa
         .draw()
         .bytes(format)
         .map_err(|error| Failure::writing(path, error))?;
-    crate::atomic::write_atomically(path, |file| file.write_all(&bytes))
+    tem00_report::atomic::write_atomically(path, |file| file.write_all(&bytes))
         .map_err(|error| Failure::writing(path, error))
 }
 

@@ -38,7 +38,7 @@ pub fn read_sensor(
         None => Ok(description),
         Some(value) => Err(value.must_be("a duration").with_help(
             "\"auto\" is for set-up files: of a scene the light is known only when it is rendered. \
-             `tem00 budget` of the set-up tells the time that it chooses",
+             `tem00-inspect budget` of the set-up tells the time that it chooses",
         )),
     }
 }

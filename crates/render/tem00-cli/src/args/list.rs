@@ -1,10 +1,9 @@
 //! The command line of `tem00 list`.
 
 use clap::{Args, ValueEnum};
+use tem00_report::args::length;
 
-use super::values::length;
-
-/// List what scenes and set-ups can name: metals, materials, surfaces, detectors, sensors.
+/// List what scenes can name: metals, materials, surfaces.
 ///
 /// Each entry has its source, and typical values are marked.
 #[derive(Args, Debug)]
@@ -22,8 +21,7 @@ pub(crate) struct ListArgs {
 const LIST_EXAMPLES: &str = "\
 Examples:
   tem00 list metals --wavelength 532nm    n, k and reflectance, and who measured them
-  tem00 list surfaces                     finishes such as \"milled steel\"
-  tem00 list detectors                    how a line is found";
+  tem00 list surfaces                     finishes such as \"milled steel\"";
 
 /// The lists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -34,8 +32,4 @@ pub(crate) enum Listed {
     Materials,
     /// Finished surfaces by name.
     Surfaces,
-    /// Methods that find a line in a column.
-    Detectors,
-    /// Typical sensors, the defaults of files.
-    Sensors,
 }

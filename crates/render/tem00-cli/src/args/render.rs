@@ -4,12 +4,13 @@ use clap::{
     Args,
     builder::{PossibleValuesParser, TypedValueParser},
 };
-use tem00_tracer::{Crop, Method};
-
-use super::{
-    SceneArgs,
-    values::{crop, positive},
+use tem00_report::{
+    args::{crop, positive},
+    image::Crop,
 };
+use tem00_tracer::Method;
+
+use super::SceneArgs;
 
 /// Render a scene: PNG preview, OpenEXR layers and a JSON summary.
 ///

@@ -3,23 +3,23 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use tem00_report::args::{FileArgs, IndexRange};
 use tem00_tracer::{RenderOptions, Sampling};
-
-use super::FileArgs;
 
 /// A scene, and what is rendered of it.
 #[derive(Args, Debug)]
-pub(crate) struct SceneArgs {
+pub struct SceneArgs {
     /// The scene file, or - for standard input.
     #[arg(value_name = "SCENE.toml")]
-    pub(crate) scene: PathBuf,
+    pub scene: PathBuf,
 
+    /// How the scene file is read.
     #[command(flatten)]
-    pub(crate) files: FileArgs,
+    pub files: FileArgs,
 
     /// The folder for the files, made if it is missing [default: out/<name of the scene>].
     #[arg(short, long, value_name = "DIR")]
-    pub(crate) output: Option<PathBuf>,
+    pub output: Option<PathBuf>,
 
     /// Camera samples per pixel, 1 to a million [default: from the scene].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
@@ -37,46 +37,24 @@ pub(crate) struct SceneArgs {
     /// Only these frames, counted from 0: one, or FIRST..LAST with both ends; a frame is the same however
     /// frames are distributed [default: all].
     #[arg(long, visible_alias = "frame", value_name = "N|FIRST..LAST")]
-    pub(crate) frames: Option<IndexRange>,
+    pub frames: Option<IndexRange>,
 
     /// Threads to work with, 1 to 1024, four for each core at most; the result does not depend on it [default: all].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: Option<u16>,
+    pub threads: Option<u16>,
 
     /// Leave the speckle out.
     #[arg(long)]
-    pub(crate) no_speckle: bool,
+    pub no_speckle: bool,
 }
 
 impl SceneArgs {
     /// Replaces the options of a scene by those of the command line.
-    pub(crate) fn overrule(&self, options: &mut RenderOptions) {
+    pub fn overrule(&self, options: &mut RenderOptions) {
         options.samples_per_pixel = self.spp.unwrap_or(options.samples_per_pixel);
         options.seed = self.seed.unwrap_or(options.seed);
         if self.adaptive {
             options.sampling = Sampling::Adaptive;
-        }
-    }
-}
-
-/// A range of frames or tasks, counted from 0, with both ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct IndexRange {
-    pub(crate) first: u32,
-    pub(crate) last: u32,
-}
-
-impl core::str::FromStr for IndexRange {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let (first, last) = text.split_once("..").unwrap_or((text, text));
-        match (first.parse(), last.parse()) {
-            (Ok(first), Ok(last)) if first <= last => Ok(Self { first, last }),
-            (Ok(_), Ok(_)) => Err("the first must not be after the last".into()),
-            _ => {
-                Err("must be a number, such as 3, or a range with both ends, such as 3..10".into())
-            }
         }
     }
 }
@@ -92,7 +70,6 @@ mod tests {
         let cli = Cli::try_parse_from(line.split_whitespace())?;
         match cli.command {
             Command::Render(args) => Ok(args.common),
-            Command::Triangulate(args) => Ok(args.common),
             other => panic!("{other:?} renders no scene"),
         }
     }

@@ -2,8 +2,7 @@
 
 use clap::Args;
 use tem00_config::ANGLE;
-
-use super::values::{length, positive};
+use tem00_report::args::{length, positive};
 
 /// Compute the speckle size of a camera, the contrast in a pixel, and what decorrelates the speckle.
 ///

@@ -6,9 +6,8 @@ use kuva::render::{
     render::{PathData, Primitive, Scene as Canvas, TextAnchor},
 };
 use tem00_camera::Camera;
+use tem00_report::plot::Drawing;
 use tem00_tracer::{LaserInspection, Scene, Shape};
-
-use crate::plot::Drawing;
 
 /// The side of a view, and the room about it, in units of the drawing.
 const SIDE: f64 = 380.0;
@@ -255,7 +254,7 @@ fn draw_scale(extent: f64, canvas: &mut Canvas) {
         stroke_width: 2.0,
         stroke_dasharray: None,
     });
-    let name = format!("{} mm", crate::digits::rounded(1e3 * length, 3));
+    let name = format!("{} mm", tem00_report::digits::rounded(1e3 * length, 3));
     canvas.add(text(&name, MARGIN + 0.5 * width, y + 16.0, 12, "#202020"));
 }
 

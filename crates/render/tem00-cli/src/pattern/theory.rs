@@ -3,6 +3,7 @@
 use core::fmt::Display;
 
 use tem00_numerics::Grid;
+use tem00_report::{failure::Failure, interrupt};
 use tem00_speckle::{Phasors, Pupil, PupilField, SpecklePattern};
 use tem00_statistics::{
     AIRY_FIRST_ZERO, Axis, Boundary, Contrast, Moments, SpeckleSize, StatisticsError,
@@ -10,11 +11,7 @@ use tem00_statistics::{
     kolmogorov_smirnov, power_spectrum,
 };
 
-use crate::{
-    comparison::{Expectation, Row},
-    failure::Failure,
-    interrupt,
-};
+use crate::comparison::{Expectation, Row};
 
 /// The significance of the Kolmogorov–Smirnov test in the table.
 const SIGNIFICANCE: f64 = 1e-3;

@@ -2,18 +2,21 @@
 
 use std::path::{Path, PathBuf};
 
+use tem00_report::{
+    args::IndexRange,
+    failure::Failure,
+    folder_lock::FolderLock,
+    interrupt,
+    output::{self, note},
+};
 use tem00_speckle::SpeckleError;
 use tem00_tracer::{Formulas, Scene, SpeckleModel, SpecklePlan, TracerError};
 
 use super::{record::Fingerprint, report::note_roughness};
 use crate::{
-    args::{IndexRange, RenderArgs},
-    failure::Failure,
-    folder_lock::FolderLock,
+    args::RenderArgs,
     frame_files::{FramePaths, check_room},
     inspection::Inspection,
-    interrupt,
-    output::{self, note},
 };
 
 /// A render that is set up.
@@ -153,7 +156,11 @@ impl<'a> Render<'a> {
 
 /// Returns the frames that the command line asks for, of the `count` that the scene has; all of them if
 /// it asks for none.
-pub(crate) fn frames(asked: Option<IndexRange>, count: u32) -> Result<IndexRange, Failure> {
+///
+/// # Errors
+///
+/// Returns a failure if the scene has fewer.
+pub fn frames(asked: Option<IndexRange>, count: u32) -> Result<IndexRange, Failure> {
     let last = count.saturating_sub(1);
     let asked = asked.unwrap_or(IndexRange { first: 0, last });
     if asked.last <= last {
@@ -168,7 +175,8 @@ pub(crate) fn frames(asked: Option<IndexRange>, count: u32) -> Result<IndexRange
     ))
 }
 
-pub(crate) fn tracer_failure(path: &Path, error: &TracerError) -> Failure {
+/// Returns the failure of a tracer, and what to change.
+pub fn tracer_failure(path: &Path, error: &TracerError) -> Failure {
     let help = match error {
         TracerError::PatternMemory { needed, allowed } => format!(
             "{} needed, {} allowed: `memory` in [speckle], which all lasers share, allows more; \

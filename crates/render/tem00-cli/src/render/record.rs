@@ -11,13 +11,10 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 use tem00_config::{MAX_TEXT_BYTES, open_input, read_input};
+use tem00_report::{atomic::write_atomically, failure::Failure};
 use tem00_tracer::{Scene, Shape, TriangleMesh};
 
-use crate::{
-    atomic::write_atomically,
-    failure::Failure,
-    summary::{Exposure, FrameSummary},
-};
+use crate::summary::{Exposure, FrameSummary};
 
 /// A number that distinguishes renders: it changes with the scene, with each file that belongs to it,
 /// with the choices on the command line and with the version of the program.

@@ -1,8 +1,9 @@
 //! The notes of a render on standard error.
 
+use tem00_report::{colour::xyz_of_wavelength, output::note};
 use tem00_tracer::{LaserEvents, RoughnessNote, Scene};
 
-use crate::{colour::xyz_of_wavelength, output::note, summary::FrameSummary};
+use crate::summary::FrameSummary;
 
 /// Warns about lasers of invisible light.
 pub(super) fn note_invisible_lasers(scene: &Scene) {

@@ -2,6 +2,7 @@
 
 use std::{path::Path, time::Instant};
 
+use tem00_report::{failure::Failure, interrupt, output::note, progress::FrameProgress};
 use tem00_tracer::{
     Filter, Frame, Method, RenderError, Sampling, SpeckleModel, SurfaceSpeckle, render_frame,
 };
@@ -11,11 +12,7 @@ use super::{
     record::{Found, Record, forget, hash_of_file},
 };
 use crate::{
-    failure::Failure,
     frame_files::{FramePaths, automatic_exposure, picture_of, write_layers, write_preview},
-    interrupt,
-    output::note,
-    progress::FrameProgress,
     summary::{Exposure, FrameLaser, FrameSummary},
 };
 

@@ -1,17 +1,14 @@
 //! The rows of the table, measured beside the theory.
 
 use tem00_numerics::Grid;
+use tem00_report::{digits::number, image::LoadedImage};
 use tem00_statistics::{
     AIRY_FIRST_ZERO, Contrast, Evenness, FlatImage, GammaFit, GoodnessOfFit, GreyLevels, Moments,
     SpeckleSize, StatisticsError, decorrelated_samples, exponential_cumulative, pixel_contrast,
     size_before_pixels,
 };
 
-use crate::{
-    comparison::{Expectation, Row},
-    digits::number,
-    image::LoadedImage,
-};
+use crate::comparison::{Expectation, Row};
 
 /// The tolerances, in standard errors.
 const SIGMAS: f64 = 4.0;

@@ -1,12 +1,12 @@
 //! One page of diagrams: histogram, autocovariance and power spectrum beside the theory.
 
-use tem00_statistics::airy_autocovariance;
-
-use super::curves::{Bin, Curves, Frequency, Lag, chat};
-use crate::plot::{
+use tem00_report::plot::{
     Chart, Drawing,
     colours::{ALONG_X, ALONG_Y, FITTED, MEASURED, THEORY},
 };
+use tem00_statistics::airy_autocovariance;
+
+use super::curves::{Bin, Curves, Frequency, Lag, chat};
 
 /// The content of the page.
 #[derive(Clone, Copy, Debug)]
@@ -100,7 +100,7 @@ fn sampled(end: f64, function: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::Format;
+    use tem00_report::plot::Format;
 
     fn curves() -> Curves {
         let bin = |from: f64| Bin {

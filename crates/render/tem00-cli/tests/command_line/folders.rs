@@ -2,10 +2,7 @@
 
 use std::{fs, path::Path, process::Child, process::Stdio, thread::sleep, time::Duration};
 
-use super::{
-    assert_code, design::SETUP, files, folder, message, run, scene_folder, sequence, tem00,
-    triangulate,
-};
+use super::{assert_code, files, message, run, scene_folder, sequence, tem00};
 
 /// A process that is killed when the test is done with it, or fails.
 struct Running(Child);
@@ -35,19 +32,12 @@ fn start(folder: &Path, line: &str, there: &str) -> Running {
 fn a_folder_that_another_process_writes_into_is_refused() {
     let folder = scene_folder();
     let path = folder.path();
-    fs::write(path.join("setup.toml"), SETUP).expect("written");
-    fs::write(path.join("scene.toml"), triangulate::SCAN).expect("written");
-    assert_code(&run(path, "pattern -o frame.png --size 64"), 0);
     let mut first = start(path, "render a.toml -o out --spp 100000", "out/.tem00.lock");
     let process = format!("process {}", first.0.id());
     for line in [
         "render a.toml -o out",
         "render a.toml -o out --resume",
         "render a.toml -o out --frames 0",
-        "triangulate scene.toml -o out",
-        "lines frame.png -o out",
-        "budget setup.toml -o out --trials 0",
-        "design setup.toml -o out",
     ] {
         let output = run(path, line);
         assert_code(&output, 2);
@@ -64,7 +54,7 @@ fn a_folder_that_another_process_writes_into_is_refused() {
     );
     // A process that is killed leaves nothing that hinders the next.
     drop(first);
-    let output = run(path, "budget setup.toml -o out --trials 0");
+    let output = run(path, "render a.toml -o out");
     assert_code(&output, 0);
     let hidden = files(&path.join("out")).into_iter();
     assert_eq!(hidden.filter(|name| name.starts_with('.')).count(), 0);
@@ -110,56 +100,14 @@ fn frames_whose_files_do_not_belong_together_are_rendered_again() {
 fn what_a_killed_process_was_writing_is_removed() {
     let folder = scene_folder();
     let path = folder.path();
-    fs::write(path.join("setup.toml"), SETUP).expect("written");
     assert_code(&run(path, "render a.toml -o out"), 0);
     for (line, beside) in [
         ("render a.toml -o out --resume", "out"),
-        ("budget setup.toml -o out --trials 0", "out"),
         ("pattern -o a.png --size 64", "."),
     ] {
         let left = path.join(beside).join(".tem00-8zIFJM.part");
         fs::write(&left, "half of an image").expect("written");
         assert_code(&run(path, line), 0);
         assert!(!left.exists(), "{line}");
-    }
-}
-
-#[test]
-fn a_folder_without_permission_is_refused_in_words() {
-    let folder = folder();
-    fs::write(folder.path().join("setup.toml"), SETUP).expect("written");
-    fs::create_dir_all(folder.path().join("out/.tem00.lock")).expect("a folder in the way");
-    let output = run(folder.path(), "budget setup.toml -o out");
-    assert_code(&output, 2);
-    let said = message(&output);
-    assert!(said.contains("cannot write into the folder out"), "{said}");
-}
-
-#[test]
-fn the_same_run_writes_the_same_bytes() {
-    let folder = folder();
-    let path = folder.path();
-    fs::write(path.join("setup.toml"), SETUP).expect("written");
-    fs::write(path.join("scene.toml"), triangulate::SCAN).expect("written");
-    for command in [
-        "design setup.toml",
-        "budget setup.toml --trials 20",
-        "triangulate scene.toml",
-    ] {
-        for (run_number, threads) in [(0, 1), (1, 3)] {
-            let line = format!("{command} -o {run_number} --threads {threads}");
-            assert_code(&run(path, &line), 0);
-        }
-        let [first, second] = ["0", "1"].map(|folder| path.join(folder));
-        let names = files(&first);
-        assert_eq!(names, files(&second), "{command}");
-        for name in names {
-            let [one, other] = [&first, &second].map(|folder| fs::read(folder.join(&name)));
-            let same = one.expect("a file") == other.expect("a file");
-            assert!(same, "{command}: {name} differs");
-        }
-        for folder in [first, second] {
-            fs::remove_dir_all(folder).expect("removed");
-        }
     }
 }

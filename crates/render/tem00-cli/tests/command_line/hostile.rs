@@ -45,15 +45,12 @@ fn devices_and_pipes_are_no_files() {
         ("zero.toml", "/dev/zero"),
         ("zero.exr", "/dev/zero"),
         ("zero.npy", "/dev/zero"),
-        ("zero.tif", "/dev/zero"),
         ("zero.obj", "/dev/zero"),
-        ("zero.json", "/dev/zero"),
         ("pipe.toml", "pipe"),
         ("pipe.stl", "pipe"),
     ] {
         std::os::unix::fs::symlink(target, path.join(name)).expect("a link");
     }
-    assert_code(&run(path, "pattern -o frame.png --size 64"), 0);
     for name in ["zero.obj", "pipe.stl"] {
         let mesh = format!("mesh = {{ file = \"{name}\" }}\n#");
         let scene = SCENE.replacen("rectangle = { centre", &mesh, 1);
@@ -70,15 +67,9 @@ fn devices_and_pipes_are_no_files() {
         "render pipe.stl.toml",
         "render with_zero.toml --allow-outside",
         "render with_pipe.toml",
-        "triangulate zero.toml",
-        "budget pipe.toml",
-        "design zero.toml",
         "stats pipe.png",
         "stats zero.exr",
         "stats zero.npy",
-        "lines pipe.png",
-        "lines zero.tif",
-        "lines frame.png --calibration zero.json",
         "pattern -o a.png --field zero.npy",
     ] {
         let output = run_bounded(path, line);
@@ -153,7 +144,7 @@ fn a_scene_may_come_from_standard_input() {
 fn signals_end_a_command_that_waits_for_input() {
     for signal in ["INT", "TERM", "HUP"] {
         let folder = folder();
-        let mut child = reading(folder.path(), "budget -");
+        let mut child = reading(folder.path(), "render -");
         let input = child.stdin.as_mut().expect("a pipe");
         // More than a pipe holds: when it is written, the program reads.
         input
@@ -379,9 +370,6 @@ fn what_a_terminal_obeys_is_never_printed() {
         &format!("stats {strange}"),
         &format!("stats {strange} --json"),
         &format!("stats no{strange}"),
-        &format!("lines {strange} --json"),
-        &format!("lines {strange}"),
-        &format!("budget {strange}"),
         &format!("render a.toml {strange}"),
         &format!("render a.toml --{strange}"),
         &format!("render a.toml --spp {strange}"),

@@ -1,4 +1,4 @@
-//! `tem00 stats`, `tem00 lines` and `tem00 calibrate` on images as cameras and other programs write them.
+//! `tem00 stats` on images as cameras and other programs write them.
 
 use std::{fs, path::Path};
 
@@ -15,12 +15,6 @@ fn noise(x: usize, y: usize) -> f64 {
     let mixed = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15);
     let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     (mixed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-}
-
-/// The light of a line of 8 pixels full width, with noise, 1 at its brightest.
-fn line(x: usize, y: usize) -> f64 {
-    let distance = y as f64 + 0.5 - 31.3 - 0.02 * x as f64;
-    0.05 + (0.9 + 0.02 * noise(x, y)) * (-2.0 * (distance / 4.0).powi(2)).exp()
 }
 
 #[expect(
@@ -56,20 +50,6 @@ fn write_png<const C: usize>(
     writer.write_image_data(&data).expect("an image");
 }
 
-fn write_grey(path: &Path, value: impl Fn(usize, usize) -> u16) {
-    write_png(path, [SIZE, SIZE], BitDepth::Sixteen, |x, y| [value(x, y)]);
-}
-
-/// Returns the numbers of points and of valid ones in a table of `tem00 lines`.
-fn points(path: &Path) -> [usize; 2] {
-    let table = fs::read_to_string(path).expect("the table");
-    let valid = table
-        .lines()
-        .skip(1)
-        .map(|row| row.split(',').nth(7) == Some("1"));
-    [valid.clone().count(), valid.filter(|valid| *valid).count()]
-}
-
 fn stats(folder: &Path, arguments: &str) -> Value {
     let output = run(folder, &format!("stats {arguments} --json"));
     assert_code(&output, 0);
@@ -82,10 +62,10 @@ fn measured(found: &Value, quantity: &str) -> Option<f64> {
 }
 
 #[test]
-fn saturation_is_one_judgement_whatever_the_bits_and_where_they_lie() {
+fn saturation_of_speckle_is_one_judgement_whatever_the_bits_and_where_they_lie() {
     let folder = folder();
     let path = |name: &str| folder.path().join(name);
-    let (file, light) = (path("a.png"), speckle(folder.path()));
+    let light = speckle(folder.path());
     // The largest value and the step of two values: 10, 12 and 14 bits, in the lower and the upper bits of a word, and
     // values clipped by what a camera computes.
     for (largest, step) in [
@@ -100,29 +80,7 @@ fn saturation_is_one_judgement_whatever_the_bits_and_where_they_lie() {
     ] {
         let full = f64::from(largest);
         for (exposure, is_clipped) in [(0.9, false), (1.5, true)] {
-            write_grey(&file, |x, y| {
-                let value =
-                    f64::from(step) * (exposure * full * line(x, y) / f64::from(step)).round();
-                rounded(value.min(full))
-            });
             let case = format!("{largest} in steps of {step}, exposure {exposure}");
-            for detector in ["centre_of_gravity", "blais_rioux"] {
-                let output = run(
-                    folder.path(),
-                    &format!("lines a.png --detector {detector} -o f"),
-                );
-                let told = message(&output);
-                let warning =
-                    "100 % of the points are not valid, 100 % because pixels are saturated";
-                assert_eq!(told.contains(warning), is_clipped, "{case}: {told}");
-                assert_code(&output, if is_clipped { 3 } else { 0 });
-                let valid = if is_clipped { 0 } else { SIZE };
-                assert_eq!(
-                    points(&folder.path().join("f/a.csv")),
-                    [SIZE, valid],
-                    "{case}"
-                );
-            }
             write_png(&path("s.png"), [256, 256], BitDepth::Sixteen, |x, y| {
                 let value = if is_clipped { 0.2 } else { 0.04 } * full * light[256 * y + x];
                 [rounded(
@@ -134,9 +92,6 @@ fn saturation_is_one_judgement_whatever_the_bits_and_where_they_lie() {
             assert_eq!(share > Some(1e-3), is_clipped, "{case}: {share:?}");
         }
     }
-    // Who knows the bits is believed.
-    let output = run(folder.path(), "lines a.png --bits 16 -o f");
-    assert_code(&output, 0);
 }
 
 #[test]
@@ -150,56 +105,23 @@ fn a_pixel_is_saturated_if_one_of_its_channels_is() {
             let pixel = |lights: [f64; 3]| {
                 places.map(|place: usize| rounded((full * lights[place]).min(full)))
             };
-            write_png(&path("a.png"), [SIZE, SIZE], depth, |x, y| {
-                pixel([1.5, 0.3, 0.1].map(|part| part * line(x, y)))
-            });
             write_png(&path("s.png"), [256, 256], depth, |x, y| {
                 pixel([0.2, 0.04, 0.02].map(|part| part * pattern[256 * y + x]))
             });
             let bright = ["R", "G", "B"][places.iter().position(|place| *place == 0).expect("one")];
             let dim = ["R", "G", "B"][places.iter().position(|place| *place == 1).expect("one")];
-            for (channel, code) in [
-                (String::new(), 3),
-                (format!("--channel {bright}"), 3),
-                (format!("--channel {dim}"), 0),
+            for (channel, is_saturated) in [
+                (String::new(), true),
+                (format!("--channel {bright}"), true),
+                (format!("--channel {dim}"), false),
             ] {
-                let output = run(folder.path(), &format!("lines a.png -o f {channel}"));
-                assert_code(&output, code);
-                let told = message(&output);
-                let is_told = told.contains("because pixels are saturated: expose shorter");
-                assert_eq!(is_told, code == 3, "{channel}: {told}");
                 let share = measured(
                     &stats(folder.path(), &format!("s.png {channel}")),
                     "saturated fraction of pixels",
                 );
-                assert_eq!(share > Some(1e-3), code == 3, "{channel}: {share:?}");
+                assert_eq!(share > Some(1e-3), is_saturated, "{channel}: {share:?}");
             }
         }
-    }
-}
-
-#[test]
-fn half_a_line_on_saturated_pixels_is_no_result() {
-    let folder = folder();
-    let file = folder.path().join("a.png");
-    for (columns, is_told, code) in [(2, false, 0), (8, true, 0), (31, true, 0), (34, true, 3)] {
-        write_png(&file, [SIZE, SIZE], BitDepth::Eight, |x, y| {
-            let exposure = if x < columns { 1.5 } else { 0.9 };
-            [rounded((exposure * 255.0 * line(x, y)).min(255.0))]
-        });
-        let output = run(folder.path(), "lines a.png --json -o f");
-        assert_code(&output, code);
-        let record: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-        let warning = record["warnings"][0].as_str().unwrap_or_default();
-        assert_eq!(
-            warning.contains("pixels are saturated"),
-            is_told,
-            "{columns}: {record}"
-        );
-        assert_eq!(
-            points(&folder.path().join("f/a.csv")),
-            [SIZE, SIZE - columns]
-        );
     }
 }
 
@@ -334,7 +256,7 @@ fn signed_numbers_are_light_about_a_black_level() {
 #[test]
 fn photographs_that_claim_more_than_they_hold_are_refused_at_once() {
     let folder = folder();
-    let photograph = include_bytes!("../../src/image/raw_file/data/grey.jpg");
+    let photograph = include_bytes!("../../../tem00-report/src/image/raw_file/data/grey.jpg");
     let mut claim = photograph.to_vec();
     let frame = claim
         .windows(2)
@@ -362,21 +284,16 @@ fn photographs_that_claim_more_than_they_hold_are_refused_at_once() {
         .into_iter()
         .chain([coded / 50, coded / 2, coded - 4].map(|kept| format!("cut_{kept}.jpg")))
     {
-        for command in ["stats", "lines"] {
-            let start = std::time::Instant::now();
-            let output = run(folder.path(), &format!("{command} {name}"));
-            assert_code(&output, 2);
-            let told = message(&output);
-            let part = if name == "claim.jpg" {
-                "cannot hold"
-            } else {
-                "before its last pixel"
-            };
-            assert!(told.contains(part), "{command} {name}: {told}");
-            assert!(
-                start.elapsed().as_secs() < 5,
-                "{command} {name} took its time"
-            );
-        }
+        let start = std::time::Instant::now();
+        let output = run(folder.path(), &format!("stats {name}"));
+        assert_code(&output, 2);
+        let told = message(&output);
+        let part = if name == "claim.jpg" {
+            "cannot hold"
+        } else {
+            "before its last pixel"
+        };
+        assert!(told.contains(part), "{name}: {told}");
+        assert!(start.elapsed().as_secs() < 5, "{name} took its time");
     }
 }

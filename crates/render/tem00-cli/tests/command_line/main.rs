@@ -2,33 +2,25 @@
 
 #![expect(clippy::expect_used, reason = "a test fails by panicking")]
 
-mod budget;
-mod calibrate;
 mod changes;
-mod characterise;
-mod design;
 mod folders;
+mod helpers;
 mod hostile;
 mod images;
 mod inspection;
-mod lines;
 mod manners;
 #[cfg(target_os = "linux")]
 mod memory;
 mod patterns;
 mod render;
-mod reports;
 mod sequence;
 mod speckle;
-mod sweep;
-mod triangulate;
-mod tutorial;
 
-use std::{
-    fs,
-    path::Path,
-    process::{Command, Output, Stdio},
-};
+use std::fs;
+
+use self::helpers::{assert_code, files, folder, interrupt, message, run, tem00, text};
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_tem00");
 
 /// A spot on a diffuse plane, small enough to be rendered in a moment.
 const SCENE: &str = r#"
@@ -54,53 +46,10 @@ rectangle = { centre = [0, 0, 0], normal = [0, 0, 1], size = ["20 mm", "20 mm"] 
 samples_per_pixel = 4
 "#;
 
-fn tem00(folder: &Path, line: &str) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_tem00"));
-    command
-        .current_dir(folder)
-        .args(line.split_whitespace())
-        .stdin(Stdio::null());
-    command
-}
-
-fn run(folder: &Path, line: &str) -> Output {
-    tem00(folder, line).output().expect("the program starts")
-}
-
-fn folder() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a temporary folder")
-}
-
-fn scene_folder() -> tempfile::TempDir {
+pub(crate) fn scene_folder() -> tempfile::TempDir {
     let folder = folder();
     fs::write(folder.path().join("a.toml"), SCENE).expect("the scene is written");
     folder
-}
-
-fn files(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).expect("the folder can be read");
-    let mut names: Vec<_> = entries
-        .map(|entry| entry.expect("the entry can be read").file_name())
-        .map(|name| name.to_string_lossy().into_owned())
-        .collect();
-    names.sort();
-    names
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
-
-/// Returns standard error as one line without the frame that long messages are wrapped in.
-fn message(output: &Output) -> String {
-    let words = text(&output.stderr);
-    let words = words.split_whitespace().filter(|word| *word != "│");
-    words.collect::<Vec<_>>().join(" ")
-}
-
-#[track_caller]
-fn assert_code(output: &Output, code: i32) {
-    assert_eq!(output.status.code(), Some(code), "{}", text(&output.stderr));
 }
 
 #[test]
@@ -112,14 +61,7 @@ fn help_teaches_by_examples() {
         text(&output.stdout).contains("tem00 pattern -o speckle.png"),
         "examples are shown"
     );
-    for command in [
-        "render",
-        "pattern",
-        "stats",
-        "triangulate",
-        "speckle",
-        "list",
-    ] {
+    for command in ["render", "pattern", "stats", "speckle", "list"] {
         let output = run(folder.path(), &format!("{command} --help"));
         assert_code(&output, 0);
         assert!(
@@ -166,12 +108,4 @@ fn bad_input_is_one_message_exit_code_2_and_no_file() {
         assert!(output.stdout.is_empty(), "{line}: nothing is data");
         assert_eq!(files(path), before, "{line}");
     }
-}
-
-/// Sends an interrupt, as Ctrl-C does.
-#[cfg(unix)]
-fn interrupt(child: &std::process::Child) {
-    let interrupt = format!("kill -INT {}", child.id());
-    let sent = Command::new("sh").args(["-c", &interrupt]).status();
-    assert!(sent.expect("a shell").success(), "the signal is sent");
 }

@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use std::process::Output;
+
 use serde_json::Value;
 
 use super::*;
@@ -94,8 +96,6 @@ fn lists_name_what_scenes_can_name_with_its_source() {
             "surfaces",
             &["milled", "0.8 … 6.3", "typical", "Machinery's Handbook"],
         ),
-        ("detectors", &["blais_rioux", "Steger 1998"]),
-        ("sensors", &["full_well (electrons)", "10500", "Typical"]),
     ] {
         let output = tem00_with(&["list", what]);
         assert_code(&output, 0);

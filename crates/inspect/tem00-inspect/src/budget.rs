@@ -1,0 +1,123 @@
+//! `tem00-inspect budget`: what height uncertainty a set-up gives, and what dominates it.
+
+mod answers;
+mod certificate;
+mod drawings;
+mod findings;
+mod measured;
+mod report;
+mod words;
+
+use std::{
+    io::{self, Write},
+    path::{Path, PathBuf},
+};
+
+use tem00_report::{
+    atomic::write_atomically,
+    failure::Failure,
+    kind::{Kind, wrong_or},
+    output,
+};
+use tem00_triangulation::{read_setup_with, read_uncertainty};
+
+use self::{
+    certificate::{CertificateData, certificate},
+    findings::{Findings, HELP, SetupFile},
+};
+use crate::{args::BudgetArgs, date};
+
+/// Prints the budget of a set-up and writes its files.
+///
+/// # Errors
+///
+/// Returns a failure if the input is not valid, if a file cannot be written, if the user ends it, or, with
+/// all files written, if the set-up measures nothing.
+pub(crate) fn run(args: &BudgetArgs, out: &mut impl Write) -> Result<(), Failure> {
+    let day = date::today()?;
+    let (setup, (read, uncertainty, data)) = read_setup_with(
+        &args.common.setup,
+        args.common.files.reading(),
+        |document, setup| {
+            let uncertainty = read_uncertainty(document, setup)?;
+            let data = CertificateData::read(document, uncertainty.states_height())?;
+            let title = document.value("title");
+            let title = title.map(|title| title.string().map(str::to_owned));
+            let read = SetupFile {
+                path: &args.common.setup,
+                text: document.text().to_owned(),
+                title: title.transpose()?,
+            };
+            Ok((read, uncertainty, data))
+        },
+    )
+    .map_err(|error| {
+        wrong_or(&args.common.setup, Kind::Setup, || {
+            Failure::file(&args.common.setup, &error, HELP)
+        })
+    })?;
+    let folder = output::folder(
+        args.common.output.as_deref(),
+        &output::name(&args.common.setup, "set-up"),
+    );
+    let _lock = output::prepare(&folder)?;
+    let pool = output::thread_pool(args.common.threads)?;
+    let findings = pool.install(|| Findings::new(args, (setup, &uncertainty), read))?;
+    let report = report::report(&findings, draw(&findings, &folder)?, &day);
+    let mut files = ["budget.json", "budget.html"]
+        .map(|name| folder.join(name))
+        .to_vec();
+    report.save_json(&files[0])?;
+    report.save_page(&files[1])?;
+    files.extend(certify(data.as_ref(), &findings, &folder)?);
+    report.print(args.common.json, &files, out)?;
+    findings.answer.map(drop).map_err(|refusal| {
+        let message = format!(
+            "{}: no uncertainty: {}",
+            args.common.setup.display(),
+            refusal.why
+        );
+        Failure::no_result(message, refusal.advice)
+    })
+}
+
+/// Draws the budget into the folder, if there is one, and returns the drawings.
+fn draw(findings: &Findings<'_>, folder: &Path) -> Result<Vec<String>, Failure> {
+    match &findings.answer {
+        Ok(answer) => Ok(vec![
+            drawings::contributions(answer).save(folder, CONTRIBUTIONS)?,
+            drawings::over_range(answer).save(folder, OVER_RANGE)?,
+        ]),
+        // Those of another run would be taken for those of this one.
+        Err(_) => {
+            output::remove(folder, &[CONTRIBUTIONS, OVER_RANGE], &["svg", "png"])?;
+            Ok(Vec::new())
+        }
+    }
+}
+
+/// Writes the certificate into the folder, if the set-up asks for one and there is an uncertainty, and returns its path.
+fn certify(
+    data: Option<&CertificateData>,
+    findings: &Findings<'_>,
+    folder: &Path,
+) -> Result<Option<PathBuf>, Failure> {
+    let answer = findings.answer.as_ref().ok();
+    let measured = answer.and_then(|answer| answer.measured.as_ref());
+    let Some((data, measured)) = data.zip(measured) else {
+        output::remove(folder, &[CERTIFICATE], &["xml"])?;
+        return Ok(None);
+    };
+    let path = folder.join(CERTIFICATE).with_extension("xml");
+    write_atomically(&path, |file| {
+        file.write_all(certificate(data, measured, &findings.setup).as_bytes())
+    })
+    .map_err(|error: io::Error| Failure::writing(&path, error))?;
+    Ok(Some(path))
+}
+
+/// The name of the certificate, without its ending.
+const CERTIFICATE: &str = "certificate";
+/// The names of the drawings.
+const CONTRIBUTIONS: &str = "contributions";
+const OVER_RANGE: &str = "over_range";

@@ -1,0 +1,118 @@
+//! A budget in sentences.
+
+use tem00_report::report::units::{MICROMETRES, NUMBER, PERCENT};
+use tem00_triangulation::{LightLevel, MeasurementInput, Setup, Simulation};
+
+use super::{
+    answers,
+    findings::{Answer, Refusal},
+    measured::differs,
+};
+
+/// Returns what the budget comes to.
+pub(super) fn verdicts(answer: &Answer, setup: &Setup) -> Vec<String> {
+    let level = setup.light_level();
+    let budget = &answer.budget;
+    let (dominant, part) = answer.dominant();
+    let name = match dominant {
+        MeasurementInput::Quantity(quantity) => quantity.to_string(),
+        MeasurementInput::Term(source) => capitalised(source.name()),
+    };
+    let dominates = format!(
+        "{name} dominates, with {} of the variance: {}.",
+        PERCENT.with_digits(3).text(part),
+        dominant.remedy()
+    );
+    let mut lines = answer
+        .measured
+        .as_ref()
+        .map_or_else(Vec::new, answers::verdicts);
+    // It stands behind the answer that it is of.
+    lines.extend(match answer.measured {
+        Some(_) => [dominates, result(answer)],
+        None => [result(answer), dominates],
+    });
+    lines.push(format!(
+        "Speckle by closed forms: {} for the line that a lens images, {} for a spot after Dorsch, Häusler \
+         and Herrmann.",
+        MICROMETRES.text(budget.line_law()),
+        MICROMETRES.text(budget.dorsch())
+    ));
+    if level != LightLevel::Good {
+        lines.push(format!("The light is not right: {}.", level.advice()));
+    }
+    lines.extend(of_trials(answer));
+    lines
+}
+
+/// Returns why there is no budget, and what to change.
+pub(super) fn refusal(refusal: &Refusal) -> [String; 2] {
+    [
+        format!("Nothing can be measured with this set-up: {}.", refusal.why),
+        format!("{}.", capitalised(refusal.advice)),
+    ]
+}
+
+/// Returns the result, with the expanded uncertainty.
+fn result(answer: &Answer) -> String {
+    let budget = &answer.budget;
+    let length = |length: f64| MICROMETRES.text(length);
+    let exact = match answer.measured {
+        Some(_) => " at the reference plane, of a set-up that is known exactly",
+        None => "",
+    };
+    let [_, expanded] = answer.quoted();
+    let by_trials = answer.trials.as_ref().and_then(Simulation::expanded);
+    let (how, other) = match answer.quoted_trials() {
+        Some(_) => (
+            "by trials".to_owned(),
+            Some(("formulas", budget.expanded())),
+        ),
+        None => (
+            format!("k = {:.2}", budget.coverage_factor()),
+            by_trials.map(|found| ("trials", found)),
+        ),
+    };
+    let other = other.map(|(method, found)| format!(" By {method} {}.", length(found)));
+    format!(
+        "Expanded uncertainty of a height{exact}: U = {} (95 %, {how}).{}",
+        length(expanded),
+        other.unwrap_or_default()
+    )
+}
+
+/// Returns what trials tell that formulas do not.
+fn of_trials(answer: &Answer) -> Vec<String> {
+    let mut lines = Vec::new();
+    let trials = answer.trials.as_ref();
+    if answer.is_thin() {
+        let quote = match trials {
+            Some(_) => "the trials",
+            None => "trials, which were left out",
+        };
+        lines.push(answers::thin(answer.budget.speckles(), quote));
+    } else if let Some([ratio, _]) = answer.ratio().filter(|ratio| differs(*ratio)) {
+        lines.push(format!(
+            "Trials find {} times the uncertainty of the formulas, which are first order: this detector is not \
+             linear under so much noise; quote the trials.",
+            NUMBER.with_digits(3).text(ratio)
+        ));
+    }
+    if let Some(invalid) = trials
+        .map(Simulation::invalid)
+        .filter(|invalid| *invalid > 0.01)
+    {
+        lines.push(format!(
+            "{} of the columns have no line that can be trusted; the trials leave them out.",
+            PERCENT.with_digits(2).text(invalid)
+        ));
+    }
+    lines
+}
+
+/// Begins text as a sentence.
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(char::to_uppercase);
+    first.into_iter().flatten().chain(letters).collect()
+}

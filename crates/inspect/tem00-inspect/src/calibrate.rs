@@ -1,0 +1,260 @@
+//! `tem00-inspect calibrate`.
+
+mod left_out;
+mod table;
+
+use std::{
+    fs,
+    io::Write,
+    path::{Path, PathBuf},
+};
+
+use tem00_report::{
+    atomic::probe_writable,
+    failure::Failure,
+    image::{ImageError, RawFormat, RawImage, read_raw},
+    interrupt,
+    progress::Progress,
+    report::Report,
+};
+use tem00_triangulation::{
+    BoardView, Calibration, CameraModel, Checkerboard, LineDetector, TriangulationError, calibrate,
+};
+
+use self::left_out::Found;
+use crate::{args::CalibrateArgs, calibration_file::write_calibration};
+
+/// The photographs of a board.
+#[derive(Clone, Debug, PartialEq)]
+struct Pair {
+    lit: PathBuf,
+    line: Option<PathBuf>,
+}
+
+pub(crate) fn run(args: &CalibrateArgs, out: &mut impl Write) -> Result<(), Failure> {
+    let board = Checkerboard::new(args.corners, args.square).map_err(|error| {
+        Failure::input(error.to_string(), "see `tem00-inspect calibrate --help`")
+    })?;
+    let target = match &args.output {
+        Some(path) => path.clone(),
+        None => args.folder.join("calibration.json"),
+    };
+    let pairs = pairs(&args.folder)?;
+    probe_writable(&target).map_err(|error| {
+        Failure::input(
+            format!("cannot write {}: {error}", target.display()),
+            "name another file with -o",
+        )
+    })?;
+    let (views, found, resolution) = views(&pairs, &board, args)?;
+    let calibration = calibrate(&board, &views, &model(args, resolution)).map_err(|error| {
+        let doubts: Vec<String> = found
+            .warnings()
+            .iter()
+            .map(|line| format!("; {line}"))
+            .collect();
+        Failure::input(
+            format!(
+                "{} gives no calibration: {error}{}",
+                args.folder.display(),
+                doubts.concat()
+            ),
+            "at least 3 whole boards are needed, tilted by 15° to 30° about different axes, with \
+             the line on boards at different heights",
+        )
+    })?;
+    write_calibration(&target, &calibration)?;
+    report(&calibration, &found).print(false, &[target], out)
+}
+
+fn model(args: &CalibrateArgs, resolution: [usize; 2]) -> CameraModel {
+    CameraModel {
+        pixel_pitch: args.pixel_pitch,
+        resolution,
+        focal_length: args.focal_length,
+        f_number: args.f_number,
+        tilted: args.tilted,
+        radial: usize::from(args.radial),
+    }
+}
+
+fn report(calibration: &Calibration, found: &Found) -> Report {
+    let mut report = Report::new("Calibration of a camera and a laser");
+    report
+        .section("Camera")
+        .table(table::parameters(calibration));
+    let sentences = table::sentences(calibration, found).into_iter();
+    sentences.for_each(|sentence| report.verdict(sentence));
+    let warnings = found.warnings().into_iter();
+    warnings.for_each(|line| report.warning(line));
+    report
+}
+
+/// Returns the photographs of a folder, by name.
+fn pairs(folder: &Path) -> Result<Vec<Pair>, Failure> {
+    let entries = fs::read_dir(folder).map_err(|error| {
+        Failure::input(
+            format!("cannot read the folder {}: {error}", folder.display()),
+            "name a folder with the images board_01.png, line_01.png and so on",
+        )
+    })?;
+    let paths = entries.filter_map(|entry| entry.ok().map(|entry| entry.path()));
+    let mut lines = Vec::new();
+    let mut boards = Vec::new();
+    for path in paths.filter(|path| RawFormat::of_path(path).is_some()) {
+        match path
+            .file_stem()
+            .and_then(|stem| stem.to_str())
+            .and_then(|stem| stem.split_once('_'))
+        {
+            Some(("board", number)) => boards.push((number.to_owned(), path)),
+            Some(("line", number)) => lines.push((number.to_owned(), path)),
+            _ => (),
+        }
+    }
+    boards.sort();
+    let line = |number: &String| {
+        lines
+            .iter()
+            .find(|line| line.0 == *number)
+            .map(|line| line.1.clone())
+    };
+    let pairs: Vec<_> = boards
+        .into_iter()
+        .map(|(number, lit)| Pair {
+            line: line(&number),
+            lit,
+        })
+        .collect();
+    let with_lines = pairs.iter().filter(|pair| pair.line.is_some()).count();
+    if pairs.is_empty() || with_lines == 0 {
+        return Err(Failure::input(
+            format!(
+                "{} has {} images of boards (board_….png) and {} of lines on them (line_….png)",
+                folder.display(),
+                pairs.len(),
+                lines.len()
+            ),
+            "save each board twice: board_01.png in ordinary light, and line_01.png under the laser",
+        ));
+    }
+    Ok(pairs)
+}
+
+/// Finds boards and lines in all images, which are of one size.
+fn views(
+    pairs: &[Pair],
+    board: &Checkerboard,
+    args: &CalibrateArgs,
+) -> Result<(Vec<BoardView>, Found, [usize; 2]), Failure> {
+    let settings = args.detector.settings().map_err(of_detector)?;
+    let detector = LineDetector::new(settings).map_err(|error| of_detector(error.to_string()))?;
+    let progress = Progress::of(pairs.len() as u64, "boards");
+    let (mut views, mut found) = (Vec::new(), Found::default());
+    let mut size = None;
+    for pair in pairs {
+        interrupt::check()?;
+        progress.name(pair.lit.display().to_string());
+        let lit = read(&pair.lit, args, &mut size)?;
+        let columns = match &pair.line {
+            Some(path) => {
+                let line = read(path, args, &mut size)?;
+                detector.detect_marked(&line.values, &line.saturated)
+            }
+            None => Vec::new(),
+        };
+        found.add(pair.line.as_deref(), &columns);
+        let view = BoardView::find(&lit.values, &columns, board);
+        views.push(view.map_err(|error| no_board(&pair.lit, &error))?);
+        progress.advance(1);
+    }
+    Ok((views, found, size.unwrap_or_default()))
+}
+
+fn no_board(path: &Path, error: &TriangulationError) -> Failure {
+    Failure::input(
+        format!("{}: {error}", path.display()),
+        "--corners counts the inner corners, one less than squares per side; the whole board must be \
+         sharp and in the image, or leave this image out",
+    )
+}
+
+fn of_detector(message: String) -> Failure {
+    Failure::input(
+        message,
+        "`tem00-inspect calibrate --help` lists what is allowed",
+    )
+}
+
+/// Reads an image, of the size of those before.
+fn read(
+    path: &Path,
+    args: &CalibrateArgs,
+    size: &mut Option<[usize; 2]>,
+) -> Result<RawImage, Failure> {
+    let unreadable = |error: ImageError| {
+        Failure::input(
+            format!("cannot read {}: {error}", path.display()),
+            "images are PNG, TIFF, JPEG, BMP, PGM or PPM files, grey or in colours",
+        )
+    };
+    let image = read_raw(path, args.channel.as_deref(), None).map_err(unreadable)?;
+    let [width, height] = [image.values.width(), image.values.height()];
+    let [first_width, first_height] = *size.get_or_insert([width, height]);
+    if [width, height] == [first_width, first_height] {
+        return Ok(image);
+    }
+    Err(Failure::input(
+        format!(
+            "{} has {width} × {height} pixels, but those before have {first_width} × {first_height}",
+            path.display()
+        ),
+        "all images must be whole images of one camera",
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn images_are_paired_by_what_follows_their_kind() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        for name in [
+            "board_02.png",
+            "line_02.TIF",
+            "board_01.tiff",
+            "notes.txt",
+            "other.png",
+        ] {
+            fs::write(folder.path().join(name), "").expect("the file is written");
+        }
+        let found = pairs(folder.path()).expect("there are pairs");
+        let expected = [
+            Pair {
+                lit: folder.path().join("board_01.tiff"),
+                line: None,
+            },
+            Pair {
+                lit: folder.path().join("board_02.png"),
+                line: Some(folder.path().join("line_02.TIF")),
+            },
+        ];
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn folders_without_boards_are_refused_in_words() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let refused = |folder: &Path| pairs(folder).expect_err("there are no pairs");
+        let report = refused(folder.path()).report().unwrap_or_default();
+        assert!(report.contains("0 images of boards"), "{report}");
+        fs::write(folder.path().join("board_1.png"), "").expect("the file is written");
+        assert_eq!(refused(folder.path()).exit_code(), 2);
+        let missing = refused(&folder.path().join("missing"));
+        assert!(
+            missing.report().unwrap_or_default().contains("missing"),
+            "the folder is named"
+        );
+    }
+}

@@ -1,0 +1,68 @@
+//! A search among set-ups.
+
+use std::path::Path;
+
+use tem00_report::{failure::Failure, interrupt, progress::Progress};
+use tem00_triangulation::{
+    Candidate, DesignFigure, DesignOutcome, DesignSearch, Setup, TriangulationError,
+};
+
+use crate::args::DesignArgs;
+
+/// A search that is done.
+pub(super) struct Design<'a> {
+    /// The file that it was read from, and its text.
+    pub(super) file: &'a Path,
+    pub(super) text: String,
+    pub(super) search: DesignSearch,
+    pub(super) outcome: DesignOutcome,
+    /// No quantity of the set-up is uncertain.
+    pub(super) is_exact: bool,
+    /// The most set-ups that are listed.
+    pub(super) most: usize,
+}
+
+impl<'a> Design<'a> {
+    pub(super) fn search(
+        args: &'a DesignArgs,
+        search: DesignSearch,
+        text: String,
+    ) -> Result<Self, Failure> {
+        let bar = Progress::of(search.count() as u64, "set-ups");
+        bar.name("searching".into());
+        let outcome = search
+            .run(|done| bar.advance(done), interrupt::flag())
+            .map_err(|error| match error {
+                TriangulationError::Cancelled => Failure::Interrupted,
+                error => Failure::running(error.to_string()),
+            })?;
+        Ok(Self {
+            file: &args.common.setup,
+            text,
+            search,
+            outcome,
+            is_exact: true,
+            most: args.best.into(),
+        })
+    }
+
+    /// Returns the best set-up that keeps every constraint.
+    pub(super) fn winner(&self) -> Option<&Candidate> {
+        self.outcome.best(1).into_iter().next()
+    }
+
+    /// Returns the best set-up, or the nearest if none keeps every constraint; `None` if none is possible.
+    pub(super) fn shown(&self) -> Option<&Candidate> {
+        self.winner().or_else(|| self.outcome.nearest())
+    }
+
+    /// Returns a set-up, with an exposure that the light chooses as it is then.
+    pub(super) fn setup_of(shown: &Candidate) -> Result<Setup, Failure> {
+        Setup::new(shown.description.clone()).map_err(|error| Failure::running(error.to_string()))
+    }
+
+    /// Returns the figure that is minimised.
+    pub(super) fn objective(&self) -> DesignFigure {
+        self.search.question().objective.figure()
+    }
+}

@@ -1,0 +1,64 @@
+//! The program `tem00-inspect`, to be started by its own binary or from the Python package.
+//! Its commands: `docs/program.md` in the repository.
+
+mod args;
+mod bandwidth;
+mod budget;
+mod calibrate;
+mod calibration_file;
+mod characterise;
+mod date;
+mod design;
+mod lines;
+mod list;
+mod saturated_points;
+mod source_colours;
+mod sweep;
+mod triangulate;
+
+use std::{ffi::OsString, io::Write, path::Path};
+
+use clap::CommandFactory;
+use tem00_report::{failure::Failure, program::Program, shell};
+use tem00_speckle::SpeckleError;
+use tem00_triangulation::TriangulationError;
+
+use crate::args::{Cli, Command};
+
+/// Runs the program with the arguments of a process, the first of which is its own name, and returns
+/// the exit code.
+///
+/// Takes over Ctrl-C and the termination signals of the process: a second one ends it at once.
+pub fn run(arguments: &[OsString]) -> u8 {
+    tem00_report::program::run::<Cli>(arguments)
+}
+
+impl Program for Cli {
+    fn is_quiet(&self) -> bool {
+        self.quiet
+    }
+
+    fn obey(&self, mut out: &mut dyn Write) -> Result<(), Failure> {
+        match &self.command {
+            Command::Budget(args) => budget::run(args, &mut out),
+            Command::Design(args) => design::run(args, &mut out),
+            Command::Characterise(args) => characterise::run(args, &mut out),
+            Command::Triangulate(args) => triangulate::run(args, &mut out),
+            Command::Lines(args) => lines::run(args, &mut out),
+            Command::Calibrate(args) => calibrate::run(args, &mut out),
+            Command::Sweep(args) => sweep::run(args, &mut out),
+            Command::List(args) => list::run(args, &mut out),
+            Command::Completions(args) => shell::completions(args, Self::command(), &mut out),
+            Command::Man(args) => shell::man(args, Self::command(), &mut out),
+        }
+    }
+}
+
+/// Returns the failure that a set-up does not measure.
+fn measuring(path: &Path, error: &TriangulationError, help: &str) -> Failure {
+    let no_memory = matches!(
+        error,
+        TriangulationError::Speckle(SpeckleError::Memory { .. })
+    );
+    Failure::refused(no_memory, format!("{}: {error}", path.display()), help)
+}

@@ -1,0 +1,252 @@
+//! The terms of the height uncertainty, over all points.
+
+use tem00_numerics::cast::to_usize;
+use tem00_report::report::{
+    Cell, Column, Table,
+    units::{MICROMETRES, NUMBER, PERCENT},
+};
+use tem00_scan::MeasuredPoint;
+use tem00_triangulation::{DVec3, UncertaintySource};
+
+/// One term of the uncertainty.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Term {
+    /// The source of the error.
+    pub(super) name: &'static str,
+    /// The standard uncertainty of a line's position, in pixels; none of the calibration.
+    pub(super) position: Option<f64>,
+    /// The standard uncertainty of a height, in metres.
+    pub(super) height: f64,
+    /// The part of the variance of a height that it makes, from 0 to 1.
+    pub(super) variance_fraction: f64,
+}
+
+/// The terms, as root mean squares over the valid points.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Terms {
+    /// The number of valid points.
+    pub(super) points: usize,
+    /// The part of them in whose light a tenth or more met a second surface.
+    pub(super) indirect: f64,
+    /// The number of valid points on lines of such light alone, which the terms leave out.
+    pub(super) alone: usize,
+    /// Each term.
+    pub(super) terms: Vec<Term>,
+    /// The combined standard uncertainty of a height, in metres.
+    pub(super) combined: f64,
+    /// The expanded uncertainty of a height for a level of confidence of 95 %, in metres.
+    pub(super) expanded: f64,
+    /// The median of the points' own expanded uncertainties, and the value that 95 % of them do not exceed.
+    pub(super) quantiles: [f64; 2],
+}
+
+/// The coverage factor of 95 % of a normal distribution.
+const COVERAGE: f64 = 1.96;
+
+/// A term of the variance of a position, in square pixels.
+type Variance = fn(&MeasuredPoint) -> f64;
+
+/// The terms of the variance of a position, by name.
+const OF_POSITION: [(&str, Variance); 7] = [
+    ("speckle", |point| point.noise.speckle),
+    ("shot noise", |point| point.noise.shot),
+    ("dark noise", |point| point.noise.dark),
+    ("quantisation", |point| point.noise.quantisation),
+    ("PRNU", |point| point.noise.prnu),
+    ("DSNU", |point| point.noise.dsnu),
+    (INDIRECT, |point| point.indirect.shift.powi(2)),
+];
+
+/// The term of light that met a second surface, which is no noise.
+const INDIRECT: &str = "indirect light";
+
+/// The term that is not of a position.
+const CALIBRATION: &str = "calibration";
+
+/// The part of indirect light in a line from which on a point is counted.
+const MUCH: f64 = 0.1;
+
+impl Terms {
+    /// Sums up the terms of all valid points for heights along a direction; `None` if there is none.
+    pub(super) fn of(profiles: &[Vec<MeasuredPoint>], height: DVec3) -> Option<Self> {
+        let all = || profiles.iter().flatten().filter(|point| point.is_valid());
+        let found = all().count();
+        // Their errors are as large as the part, and would be all that a mean square shows.
+        let alone = all().filter(|point| point.indirect.alone).count();
+        let valid = || all().filter(|point| alone == found || !point.indirect.alone);
+        let points = valid().count();
+        if points == 0 {
+            return None;
+        }
+        let mean = |term: &dyn Fn(&MeasuredPoint) -> f64| {
+            let count = points as f64;
+            valid().map(term).sum::<f64>() / count
+        };
+        let mut terms: Vec<Term> = OF_POSITION
+            .iter()
+            .map(|(name, of)| {
+                let per_pixel = |point: &MeasuredPoint| point.per_pixel.dot(height).powi(2);
+                let variance = mean(&|point| of(point) * per_pixel(point));
+                Term {
+                    name,
+                    position: Some(mean(of).sqrt()),
+                    height: variance.sqrt(),
+                    variance_fraction: 0.0,
+                }
+            })
+            .collect();
+        let calibration = mean(&|point| point.calibration_uncertainty_along(height).powi(2));
+        terms.push(Term {
+            name: CALIBRATION,
+            position: None,
+            height: calibration.sqrt(),
+            variance_fraction: 0.0,
+        });
+        let variance: f64 = terms.iter().map(|term| term.height.powi(2)).sum();
+        for term in terms.iter_mut().filter(|_| variance > 0.0) {
+            term.variance_fraction = term.height.powi(2) / variance;
+        }
+        let has_much = |point: &MeasuredPoint| f64::from(u8::from(point.indirect.fraction >= MUCH));
+        Some(Self {
+            points,
+            indirect: mean(&has_much),
+            alone,
+            terms,
+            combined: variance.sqrt(),
+            expanded: COVERAGE * variance.sqrt(),
+            quantiles: {
+                let of_point = |point: &MeasuredPoint| COVERAGE * point.uncertainty_along(height);
+                let mut own: Vec<f64> = valid().map(of_point).collect();
+                own.sort_by(f64::total_cmp);
+                [0.5, 0.95].map(|part| quantile(&own, part))
+            },
+        })
+    }
+
+    /// Returns the term that counts most.
+    pub(super) fn dominant(&self) -> Option<&Term> {
+        let terms = self.terms.iter();
+        terms.max_by(|a, b| a.variance_fraction.total_cmp(&b.variance_fraction))
+    }
+
+    /// Returns how well heights are known, what dominates and what lowers it.
+    pub(super) fn verdict(&self) -> String {
+        let dominant = self.dominant().map_or_else(String::new, |term| {
+            format!(
+                " What dominates is {}, with {:.0} % of the variance: {}.",
+                term.name,
+                100.0 * term.variance_fraction,
+                remedy(term.name)
+            )
+        });
+        format!(
+            "Expanded uncertainty of the height of a point: U = {} (95 %, k = {COVERAGE}), as root mean \
+             square of {} points; half of them have {} at most, 95 % of them {}.{dominant}",
+            MICROMETRES.with_digits(3).text(self.expanded),
+            self.points,
+            MICROMETRES.with_digits(3).text(self.quantiles[0]),
+            MICROMETRES.with_digits(3).text(self.quantiles[1]),
+        )
+    }
+
+    /// Tells of light that met a second surface, where there is much.
+    pub(super) fn notes_of_indirect_light(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        if self.indirect > 0.0 {
+            lines.push(format!(
+                "In {} of the points a tenth or more of the light came by a second surface. No repetition shows what \
+                 that moves them by; u has it, as the render knows it.",
+                PERCENT.with_digits(2).text(self.indirect)
+            ));
+        }
+        if self.alone > 0 {
+            lines.push(format!(
+                "Points on lines of such light alone, left out of U: {}.",
+                self.alone
+            ));
+        }
+        lines
+    }
+
+    /// Returns the terms as a table.
+    pub(super) fn table(&self) -> Table {
+        let columns = [
+            Column::new("name", "term"),
+            Column::new("position_pixels", "position (px)"),
+            Column::new("height", "height (µm)"),
+            Column::new("variance_fraction", "part of u² (%)"),
+        ];
+        let caption = "Root mean squares over all valid points";
+        let mut table = Table::new(caption, columns).under("terms");
+        for term in &self.terms {
+            table.row([
+                term.name.into(),
+                Cell::or_dash(term.position.map(|position| NUMBER.cell(position))),
+                MICROMETRES.cell(term.height),
+                PERCENT.with_digits(3).cell(term.variance_fraction),
+            ]);
+        }
+        for (name, length) in [
+            ("combined", self.combined),
+            ("expanded, 95 %", self.expanded),
+        ] {
+            table.total([name.into(), Cell::default(), MICROMETRES.cell(length)]);
+        }
+        table
+    }
+}
+
+/// Returns the least value that so large a part of some does not exceed. They ascend, and there is one at least.
+fn quantile(ascending: &[f64], part: f64) -> f64 {
+    let rank = to_usize((part * ascending.len() as f64).ceil());
+    ascending[rank.clamp(1, ascending.len()) - 1]
+}
+
+/// Returns what lowers a term.
+fn remedy(name: &str) -> &'static str {
+    if name == INDIRECT {
+        return "another pose, a duller surface or a smaller window lower it; averages do not";
+    }
+    let mut sources = UncertaintySource::ALL.into_iter();
+    let source = sources.find(|source| source.name() == name);
+    source.map_or("", UncertaintySource::remedy)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_a_valid_point_there_are_no_terms() {
+        assert_eq!(Terms::of(&[], DVec3::Z), None);
+        assert_eq!(Terms::of(&[vec![], vec![]], DVec3::Z), None);
+    }
+
+    #[test]
+    #[expect(clippy::float_cmp, reason = "values of the list")]
+    fn a_quantile_is_the_least_value_that_is_not_exceeded() {
+        let values: Vec<f64> = (1..=20).map(f64::from).collect();
+        for (count, part, expected) in [
+            (20, 0.5, 10.0),
+            (20, 0.95, 19.0),
+            (19, 0.5, 10.0),
+            (19, 0.95, 19.0),
+            (2, 0.5, 1.0),
+            (1, 0.95, 1.0),
+        ] {
+            assert_eq!(
+                quantile(&values[..count], part),
+                expected,
+                "{part} of {count}"
+            );
+        }
+    }
+
+    #[test]
+    fn every_term_has_a_remedy() {
+        for (name, _) in OF_POSITION {
+            assert!(!remedy(name).is_empty(), "{name}");
+        }
+        assert!(!remedy(CALIBRATION).is_empty(), "{CALIBRATION}");
+    }
+}

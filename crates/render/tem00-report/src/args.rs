@@ -1,0 +1,13 @@
+//! The options and values that several commands have.
+
+mod files;
+mod range;
+mod shell;
+mod values;
+
+pub use self::{
+    files::FileArgs,
+    range::IndexRange,
+    shell::{CompletionsArgs, ManArgs},
+    values::{black_level, crop, length, positive},
+};

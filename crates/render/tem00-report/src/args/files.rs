@@ -1,0 +1,32 @@
+//! The options of the commands that read scene files and set-up files.
+
+use clap::Args;
+use tem00_config::{Change, FileAccess, Reading};
+
+/// Options for reading a scene file or a set-up file.
+#[derive(Args, Clone, Debug)]
+pub struct FileArgs {
+    /// Let the file include files that lie outside of its folder, and glTF meshes take data from outside
+    /// of theirs.
+    #[arg(long)]
+    allow_outside: bool,
+
+    /// A value instead of that in the file, such as `camera.f_number=8` or, counted from 0,
+    /// `laser[0].power=2mW`; may be given several times.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    changes: Vec<Change>,
+}
+
+impl FileArgs {
+    /// Returns how the file is read.
+    pub fn reading(&self) -> Reading<'_> {
+        Reading {
+            access: if self.allow_outside {
+                FileAccess::Anywhere
+            } else {
+                FileAccess::WithinFolder
+            },
+            changes: &self.changes,
+        }
+    }
+}

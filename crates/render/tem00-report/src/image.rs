@@ -1,0 +1,23 @@
+//! Image files: OpenEXR and NumPy for light, and what cameras write for grey values.
+
+mod common;
+mod exr_file;
+mod exr_reader;
+mod npy_file;
+mod orientation;
+mod png_file;
+mod raw_file;
+mod reading;
+mod saturation;
+mod selection;
+
+pub use self::{
+    common::{Crop, Format, ImageError, Transfer, check_inside, open},
+    exr_file::{Layer, Window, write_exr},
+    png_file::{write_grey_png, write_rgb_png},
+};
+pub use self::{
+    common::{LoadedImage, Reading},
+    raw_file::{GreyFrame, RawFormat, RawImage, read_raw, write_raw},
+    reading::read_image,
+};

@@ -1,0 +1,267 @@
+//! The errors, options and sizes of image files.
+
+use std::{
+    fs::File,
+    io::{self, BufReader},
+    path::Path,
+};
+
+use num_complex::Complex;
+use tem00_config::open_input;
+use tem00_numerics::{Grid, MemoryError, check_memory};
+use thiserror::Error;
+
+/// The most pixels that are read from a file: 2²⁸, which is 1 GiB of `f32`.
+pub(super) const MAXIMUM_PIXELS: u64 = 1 << 28;
+
+/// The most bytes of an image file: 8 GiB, which hold as many complex numbers and a header.
+pub(super) const MAX_IMAGE_BYTES: u64 = 8 << 30;
+
+/// A byte of compressed data stands for at most so many (zlib, Technical Details).
+pub(super) const MAX_DEFLATION: u64 = 1032;
+
+/// The formats of patterns, told apart by the end of the file's name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// 16-bit grey or colour, for the eye.
+    Png,
+    /// OpenEXR, `f32` layers.
+    Exr,
+    /// A NumPy array.
+    Npy,
+}
+
+impl Format {
+    /// Returns the format that the name of `path` asks for.
+    pub fn of_path(path: &Path) -> Option<Self> {
+        let extension = path.extension()?.to_str()?;
+        [("png", Self::Png), ("exr", Self::Exr), ("npy", Self::Npy)]
+            .into_iter()
+            .find(|(name, _)| extension.eq_ignore_ascii_case(name))
+            .map(|(_, format)| format)
+    }
+}
+
+/// The relation of grey values to light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Transfer {
+    /// In proportion, as sensors deliver them.
+    Linear,
+    /// By the sRGB curve, as pictures for the screen are stored.
+    Srgb,
+}
+
+/// A rectangle of pixels: a part of an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    /// The first column.
+    pub x: usize,
+    /// The first row.
+    pub y: usize,
+    /// The number of columns, at least 1.
+    pub width: usize,
+    /// The number of rows, at least 1.
+    pub height: usize,
+}
+
+/// Options for reading an image.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Reading<'a> {
+    /// One channel of several; without it Y, the mean of R, G and B, or the only one that shows light.
+    pub channel: Option<&'a str>,
+    /// The relation of grey values to light, instead of that of the file.
+    pub transfer: Option<Transfer>,
+    /// The value of darkness, in grey values of the file, to be subtracted.
+    pub black_level: Option<f64>,
+    /// A part of the image.
+    pub crop: Option<Crop>,
+}
+
+/// An image in proportion to the light, and how it was understood.
+#[derive(Debug)]
+pub struct LoadedImage {
+    /// One value per pixel.
+    pub values: Grid<f32>,
+    /// A description of what was read from the file and how.
+    pub interpretation: String,
+    /// The fraction of saturated pixels, where something tells what saturation is.
+    pub saturated: Option<f64>,
+    /// The light of one grey value of the file, where the values are in proportion to the light.
+    pub unit: Option<f64>,
+    /// The light of the smallest difference of two grey values of one channel, likewise.
+    pub step: Option<f64>,
+}
+
+/// Errors of reading or writing an image file.
+#[derive(Debug, Error)]
+pub enum ImageError {
+    #[error("{0}")]
+    Io(#[from] io::Error),
+    #[error("not a readable PNG file: {0}")]
+    PngDecoding(#[from] png::DecodingError),
+    #[error("{0}")]
+    PngEncoding(#[from] png::EncodingError),
+    #[error("TIFF: {0}")]
+    Tiff(#[from] tiff::TiffError),
+    #[error("OpenEXR: {0}")]
+    Exr(#[from] exr::error::Error),
+    #[error("{0}")]
+    Npy(#[from] tem00_speckle::NpyError),
+    #[error("not a readable JPEG file: {0}")]
+    Jpeg(#[from] zune_jpeg::errors::DecodeErrors),
+    #[error("not a readable BMP file: {0}")]
+    Bmp(&'static str),
+    #[error("not a readable PGM or PPM file: {0}")]
+    Pnm(&'static str),
+    #[error("{0} is not supported: use .png, .tif, .jpg, .bmp, .pgm, .exr or .npy")]
+    Format(String),
+    #[error("{0} is not supported: use .png, .tif, .jpg, .bmp or .pgm")]
+    RawFormat(String),
+    #[error("{0} cannot hold a frame: use .png or .tif")]
+    FrameFormat(String),
+    #[error("not a readable JPEG file: it ends before its last pixel")]
+    CutJpeg,
+    #[error("{0} are not supported: docs/program.md lists what is read")]
+    Pixels(String),
+    #[error("--bits {expected}: grey values of the file have {found} bits; leave --bits out")]
+    FewerBits { expected: u32, found: u32 },
+    #[error("--bits {expected}: grey values are then at most {}, but there is one of {found}", (1_u32 << .expected) - 1)]
+    Bits { expected: u32, found: f32 },
+    #[error(
+        "the file names the transfer function {0} of ITU-T H.273, which is not supported: \
+             --transfer linear or --transfer srgb takes another"
+    )]
+    Transfer(u8),
+    #[error("the image has {width} × {height} pixels; between 1 and {MAXIMUM_PIXELS} are allowed")]
+    Size { width: u64, height: u64 },
+    #[error(
+        "--crop {},{},{},{} must lie in the image of {width} × {height} pixels",
+        crop.x, crop.y, crop.width, crop.height
+    )]
+    Crop {
+        crop: Crop,
+        width: usize,
+        height: usize,
+    },
+    #[error("{0}")]
+    Memory(#[from] MemoryError),
+    #[error("the image has {width} × {height} pixels, which the file of {bytes} bytes cannot hold")]
+    Cut { width: u64, height: u64, bytes: u64 },
+    #[error("the array has the shape {0:?}; two dimensions, height × width, are needed")]
+    Shape(Vec<u64>),
+    #[error(
+        "values of the type {0} are not supported: use integers, floating-point or complex numbers, or bool"
+    )]
+    ValueType(String),
+    #[error("there is no channel {wanted}; the file has {}", available.join(", "))]
+    Channel {
+        wanted: String,
+        available: Vec<String>,
+    },
+    #[error("several channels may be meant; name one by --channel: {}", .0.join(", "))]
+    NoChannel(Vec<String>),
+    #[error("the pixel ({x}, {y}) is {value}; images of light hold numbers of 0 to 3.4e38{help}")]
+    Value {
+        x: usize,
+        y: usize,
+        value: f32,
+        help: &'static str,
+    },
+    #[error("--black-level {black_level} is not below the largest value of the image, {largest}")]
+    BlackLevel { black_level: f64, largest: f64 },
+}
+
+/// Makes sure that a rectangle lies in an image.
+pub fn check_inside(crop: Crop, [width, height]: [usize; 2]) -> Result<(), ImageError> {
+    let inside = |start: usize, length: usize, size: usize| {
+        start.checked_add(length).is_some_and(|end| end <= size)
+    };
+    if inside(crop.x, crop.width, width) && inside(crop.y, crop.height, height) {
+        return Ok(());
+    }
+    Err(ImageError::Crop {
+        crop,
+        width,
+        height,
+    })
+}
+
+/// Opens a file of an image.
+pub fn open(path: &Path) -> io::Result<BufReader<File>> {
+    open_input(path, MAX_IMAGE_BYTES).map(BufReader::new)
+}
+
+/// Returns the name of a file, for messages.
+pub(super) fn name_of(path: &Path) -> String {
+    path.file_name().map_or_else(
+        || path.display().to_string(),
+        |name| name.to_string_lossy().into_owned(),
+    )
+}
+
+/// Returns the number of pixels, or an error if there are none or too many.
+pub(super) fn checked_area(width: u64, height: u64) -> Result<usize, ImageError> {
+    width
+        .checked_mul(height)
+        .filter(|area| (1..=MAXIMUM_PIXELS).contains(area))
+        .and_then(|area| usize::try_from(area).ok())
+        .ok_or(ImageError::Size { width, height })
+}
+
+/// Makes sure that a file is as long as its pixels need, `pixels_per_byte` of which take a byte at least.
+pub(super) fn check_length(
+    [width, height]: [u64; 2],
+    bytes: u64,
+    pixels_per_byte: u64,
+) -> Result<(), ImageError> {
+    if width.saturating_mul(height) / pixels_per_byte.max(1) <= bytes {
+        return Ok(());
+    }
+    Err(ImageError::Cut {
+        width,
+        height,
+        bytes,
+    })
+}
+
+/// Makes sure that there is memory for so many bytes of each of the pixels.
+pub(super) fn check_room(area: usize, bytes_per_pixel: usize) -> Result<(), ImageError> {
+    Ok(check_memory(
+        (area as u64).saturating_mul(bytes_per_pixel as u64),
+    )?)
+}
+
+/// Returns the grid of values whose number was checked against the size before.
+pub(super) fn grid<T>(width: usize, height: usize, values: Vec<T>) -> Result<Grid<T>, ImageError> {
+    Grid::from_vec(width, height, values).map_err(|_| ImageError::Size {
+        width: width as u64,
+        height: height as u64,
+    })
+}
+
+/// Returns |U|² in `f32`, the intensity of a complex amplitude.
+pub(super) fn intensity(amplitude: Complex<f32>) -> f32 {
+    amplitude.norm_sqr()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_name_tells_the_format() {
+        assert_eq!(Format::of_path(Path::new("a/b.PNG")), Some(Format::Png));
+        assert_eq!(Format::of_path(Path::new("b.exr")), Some(Format::Exr));
+        assert_eq!(Format::of_path(Path::new("b.npy")), Some(Format::Npy));
+        assert_eq!(Format::of_path(Path::new("b.jpg")), None);
+        assert_eq!(Format::of_path(Path::new("png")), None);
+    }
+
+    #[test]
+    fn absurd_sizes_are_refused_before_memory_is_taken() {
+        assert!(checked_area(1_000_000, 1_000_000).is_err(), "too large");
+        assert!(checked_area(u64::MAX, 2).is_err(), "the product overflows");
+        assert!(checked_area(0, 5).is_err(), "empty");
+        assert_eq!(checked_area(1 << 14, 1 << 14).ok(), Some(1 << 28));
+    }
+}

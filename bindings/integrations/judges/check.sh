@@ -6,8 +6,8 @@ cd "$(dirname "$0")/../../.."
 
 profile="${TEM00_PROFILE:-dev}"
 python -m pip install --quiet --requirement bindings/integrations/judges/requirements.txt
-cargo build --quiet --profile "$profile" --package tem00-cli --package tem00 \
-    --bin tem00 --example calibration_boards --example guide_to_uncertainty --example line_frames --example photon_transfer
+cargo build --quiet --profile "$profile" --package tem00-cli --package tem00-inspect --package tem00 \
+    --bin tem00 --bin tem00-inspect --example calibration_boards --example guide_to_uncertainty --example line_frames --example photon_transfer
 case "$profile" in
     dev) export TEM00_BUILD=target/debug ;;
     *) export TEM00_BUILD="target/$profile" ;;

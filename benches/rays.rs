@@ -359,7 +359,7 @@ fn scene() -> Scene {
 fn renders(criterion: &mut Criterion) {
     let scene = scene();
     let options = RenderOptions::default();
-    let plan = SpecklePlan::new(&scene, options.formulas, 0).expect("a small pattern");
+    let plan = SpecklePlan::new(&scene, 0).expect("a small pattern");
     let model = SpeckleModel::generate(&scene, &plan).expect("a small pattern");
     let mut group = criterion.benchmark_group("camera samples, all threads");
     group.throughput(Throughput::Elements(scene.samples_per_frame(&options)));
@@ -408,7 +408,7 @@ fn corners(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("a corner, all threads");
     for (name, linewidth) in [("one wavelength", "0 nm"), ("surveyed", "1e-7 nm")] {
         let scene = corner(linewidth);
-        let plan = SpecklePlan::new(&scene, scene.render.formulas, 0).expect("a small pattern");
+        let plan = SpecklePlan::new(&scene, 0).expect("a small pattern");
         let model = SpeckleModel::generate(&scene, &plan).expect("a small pattern");
         group.throughput(Throughput::Elements(scene.samples_per_frame(&scene.render)));
         group.bench_function(name, |bencher| {

@@ -59,7 +59,7 @@ fn by_tracer() -> Shown {
         samples_per_pixel: SIDE * SIDE,
         ..RenderOptions::default()
     };
-    let plan = SpecklePlan::new(&scene, options.formulas, 1).expect("a small pattern");
+    let plan = SpecklePlan::new(&scene, 1).expect("a small pattern");
     let model = SpeckleModel::generate(&scene, &plan).expect("a small pattern");
     let render = |frame| {
         let go_on = AtomicBool::new(false);

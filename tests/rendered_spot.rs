@@ -64,7 +64,7 @@ fn render(scene: &Scene, speckle: bool, seed: u64) -> Frame {
         ..RenderOptions::default()
     };
     let model = speckle.then(|| {
-        let plan = SpecklePlan::new(scene, options.formulas, seed).expect("a small pattern");
+        let plan = SpecklePlan::new(scene, seed).expect("a small pattern");
         SpeckleModel::generate(scene, &plan).expect("a small pattern")
     });
     let cancel = AtomicBool::new(false);

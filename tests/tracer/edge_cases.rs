@@ -6,7 +6,7 @@ use std::path::Path;
 use tem00::{
     scene::parse_scene,
     tracer::{
-        Environment, Formulas, Frame, LaserEvents, Light, Material, Method, RenderOptions, Scene,
+        Environment, Frame, LaserEvents, Light, Material, Method, RenderOptions, Scene,
         render_frame,
     },
 };
@@ -191,26 +191,6 @@ fn in_glass_both_ends_find_the_light_of_a_laser_outside() {
         .collect();
     // Tells a square of the index, 2.25, from 1, and the reflected 4 % as well.
     assert_mean("path / light", &ratios, 1.0, 0.02);
-}
-
-#[test]
-fn printed_formulas_find_mirrored_light_whatever_the_events() {
-    let mirror = "[[surface]]\nrectangle = { centre = [0.001, 0, 0.0105], normal = [1, 0, 0], size = [0.02, 0.02] }";
-    let mut scene = plate(mirror);
-    scene.surfaces[1].material = Material::mirror(1.0).unwrap();
-    let frames = [LaserEvents::Beam, LaserEvents::Sampled].map(|laser_events| {
-        let options = RenderOptions {
-            samples_per_pixel: 4,
-            formulas: Formulas::AsPrinted,
-            laser_events,
-            ..RenderOptions::default()
-        };
-        let cancel = AtomicBool::new(false);
-        render_frame(&scene, None, 0, &options, |_| (), &cancel).unwrap()
-    });
-    // The mirror cuts the beam, so that some of the light is mirrored before it meets the plate.
-    assert!(radiance(&frames[0]) > 0.0, "the plate is dark");
-    assert_eq!(frames[0], frames[1], "beam | sampled");
 }
 
 #[test]

@@ -51,7 +51,7 @@ fn options() -> RenderOptions {
 }
 
 fn render(scene: &Scene, options: &RenderOptions) -> Frame {
-    let plan = SpecklePlan::new(scene, options.formulas, 1).unwrap();
+    let plan = SpecklePlan::new(scene, 1).unwrap();
     let model = SpeckleModel::generate(scene, &plan).unwrap();
     let cancel = AtomicBool::new(false);
     render_frame(scene, Some(&model), 0, options, |_| (), &cancel).unwrap()

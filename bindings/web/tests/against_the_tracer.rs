@@ -71,7 +71,7 @@ fn frames_of_the_tracer(values: &Values) -> [Film; 2] {
         max_depth: Some(2),
         ..RenderOptions::default()
     };
-    let plan = SpecklePlan::new(&scene, options.formulas, options.seed).unwrap();
+    let plan = SpecklePlan::new(&scene, options.seed).unwrap();
     let speckle = SpeckleModel::generate(&scene, &plan).unwrap();
     [0, 1].map(|frame| {
         let end = AtomicBool::new(false);

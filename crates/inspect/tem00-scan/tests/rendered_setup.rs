@@ -150,7 +150,7 @@ fn a_frame_out_of_focus_says_how_much_more_speckle_noise_a_camera_sees() {
         })
         .expect("a measurement");
         let scene = measurement.scene();
-        let plan = SpecklePlan::new(scene, scene.render.formulas, 1).expect("a plan");
+        let plan = SpecklePlan::new(scene, 1).expect("a plan");
         let speckle = SpeckleModel::generate(scene, &plan).expect("speckle");
         let frame = measurement.measure(Some(&speckle), 0, |_| (), &AtomicBool::new(false));
         let frame = frame.expect("a frame");

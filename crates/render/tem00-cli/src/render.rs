@@ -16,7 +16,7 @@ use tem00_report::{
     report::Report,
 };
 use tem00_scene::SceneFile;
-use tem00_tracer::{Crop, Formulas, Sampling, Scene};
+use tem00_tracer::{Crop, Sampling, Scene};
 
 pub use self::job::{frames, tracer_failure};
 use self::{
@@ -119,9 +119,6 @@ fn overruled(mut scene: Scene, args: &RenderArgs) -> Result<Scene, Failure> {
         options.sampling = Sampling::TargetError(error);
     }
     options.crop = args.crop.map(tracer_crop).or(options.crop);
-    if args.paper {
-        options.formulas = Formulas::AsPrinted;
-    }
     if let Some(crop) = args.crop {
         check_inside(crop, [scene.camera.width(), scene.camera.height()]).map_err(|error| {
             Failure::input(
@@ -139,7 +136,6 @@ fn report(render: &Render<'_>, Sequence { exposure, finished }: &Sequence) -> Re
     let mut report = Report::new(format!("{}: rendered", render.name));
     report.data("scene", render.args.common.scene.display().to_string());
     report.data("fingerprint", render.fingerprint.to_string());
-    report.data("formulas", render.formulas());
     report.data("seed", options.seed);
     report.data("samples_per_pixel", options.samples_per_pixel);
     report.data("method", options.method.name());

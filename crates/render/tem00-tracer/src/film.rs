@@ -51,8 +51,7 @@ pub struct LaserLayers {
     /// sees no rough surface. [`RenderOptions::speckle_in_the_dark`](crate::RenderOptions) can leave it
     /// at 1 for samples without light, too.
     pub speckle: Grid<f32>,
-    /// Radiance of all light of the laser, each camera sample multiplied by its speckle factor. The
-    /// formulas as printed leave the light that has met more than one rough surface without speckle.
+    /// Radiance of all light of the laser, each camera sample multiplied by its speckle factor.
     pub radiance: Grid<f32>,
     /// The variance of `radiance`.
     pub variance: Grid<f32>,

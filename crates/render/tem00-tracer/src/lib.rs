@@ -36,7 +36,6 @@ mod local_frame;
 mod material;
 mod mesh;
 mod metal;
-mod printed;
 mod render;
 mod sampler;
 mod scene;
@@ -60,8 +59,7 @@ pub use material::{BsdfSample, Material, OpticalRoughness, OpticalRoughnessQuery
 pub use mesh::{MeshError, TriangleMesh};
 pub use metal::Metal;
 pub use render::{
-    Crop, Formulas, LaserEvents, LightEvents, Method, RenderError, RenderOptions, Sampling,
-    render_frame,
+    Crop, LaserEvents, LightEvents, Method, RenderError, RenderOptions, Sampling, render_frame,
 };
 pub use sampler::mean_over_sample_displacements;
 pub use scene::{Scene, SpeckleSettings, Surface, SurfaceSpeckle};

@@ -6,9 +6,7 @@ mod pilot;
 use core::sync::atomic::AtomicBool;
 
 pub use self::error::RenderError;
-pub use self::options::{
-    Crop, Formulas, LaserEvents, LightEvents, Method, RenderOptions, Sampling,
-};
+pub use self::options::{Crop, LaserEvents, LightEvents, Method, RenderOptions, Sampling};
 use self::pass::PathPass;
 use crate::{
     FilterSampler, Frame, Intersector, Scene, SpeckleModel, TracerError,
@@ -110,7 +108,6 @@ pub fn render_frame(
             camera: integrator.camera(),
             intersector: &intersector,
             speckle: speckle.as_ref(),
-            formulas: options.formulas,
             frame,
             max_depth: options.max_depth,
             selection,

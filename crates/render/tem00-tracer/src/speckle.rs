@@ -10,7 +10,6 @@ mod multiple;
 mod notes;
 mod plan;
 mod prescan;
-mod printed;
 
 use glam::{DVec2, DVec3};
 use tem00_shading::SeenPoint;
@@ -51,9 +50,4 @@ impl SpecklePoint {
             normal: self.normal,
         }
     }
-}
-
-/// Turns an image vector with y down, in pixels, into one with y up, and back.
-fn upright(pixel: DVec2) -> DVec2 {
-    DVec2::new(pixel.x, -pixel.y)
 }

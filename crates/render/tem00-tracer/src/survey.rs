@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use crate::{
-    Crop, Formulas, Intersector, RenderOptions, Scene, Segment, SpecklePlan, TracerError,
+    Crop, Intersector, RenderOptions, Scene, Segment, SpecklePlan, TracerError,
     integrator::Vertex,
     light_tracer::{LightJob, LightSelection, LightTracer, WayPoint},
     sampler::{pixel_key, point_in_square},
@@ -46,9 +46,7 @@ impl Scene {
             .any(|l| !l.spectral_line().is_monochromatic());
         let is_depolarised = self.surfaces.iter().any(|s| s.speckle.polarisation < 1.0);
         let is_other_frame = frame != self.reference_frame && self.moves();
-        options.formulas == Formulas::Derived
-            && !self.is_single(options)
-            && (is_broad || is_depolarised || is_other_frame)
+        !self.is_single(options) && (is_broad || is_depolarised || is_other_frame)
     }
 
     /// Tells whether light cannot meet more than one rough surface.
@@ -80,12 +78,9 @@ impl SpecklePlan {
     /// Returns an error if C exceeds Q/2, if the imaging geometry is not possible, if the speckle of
     /// a surface is not a sum of patterns, if something moves in more than 262,144 frames, or if the patterns of no frame
     /// fit the memory that the scene allows.
-    pub fn new(scene: &Scene, formulas: Formulas, seed: u64) -> Result<Self, TracerError> {
-        let options = RenderOptions {
-            formulas,
-            ..scene.render
-        };
-        Self::with_survey(scene, formulas, seed, &|frame, intersector, change| {
+    pub fn new(scene: &Scene, seed: u64) -> Result<Self, TracerError> {
+        let options = &scene.render;
+        Self::with_survey(scene, seed, &|frame, intersector, change| {
             let survey = Survey {
                 scene,
                 frame,
@@ -96,7 +91,7 @@ impl SpecklePlan {
                 cells: PLANNED_CELLS,
             };
             scene
-                .asks_for_survey(frame, &options)
+                .asks_for_survey(frame, options)
                 .then(|| survey.map())?
         })
     }
@@ -222,7 +217,6 @@ impl<'a> Survey<'a> {
             camera,
             intersector: self.intersector,
             speckle: None,
-            formulas: Formulas::Derived,
             frame: self.frame,
             // The surface that the camera sees is one more.
             max_depth: self.max_depth.map(|depth| depth.saturating_sub(1)),

@@ -11,9 +11,9 @@ use tem00::coherence::{
 };
 use tem00::decorrelation::pupil_overlap_correlation;
 use tem00::tracer::{
-    BeamShape, Formulas, Laser, LaserDescription, Material, Rectangle, ReferencePoint,
-    RenderOptions, Rotation, Scene, Shape, SpeckleChange, SpeckleModel, SpecklePlan, Surface,
-    Trajectory, render_frame,
+    BeamShape, Laser, LaserDescription, Material, Rectangle, ReferencePoint, RenderOptions,
+    Rotation, Scene, Shape, SpeckleChange, SpeckleModel, SpecklePlan, Surface, Trajectory,
+    render_frame,
 };
 
 const WAVELENGTH: f64 = 450e-9;
@@ -85,7 +85,7 @@ fn corner(line: SpectralLine, polarisation: f64) -> Scene {
 fn factors(scene: &Scene, frame: u32) -> Vec<f64> {
     const SEEDS: u64 = 32;
     let of_seed = |seed: u64| {
-        let plan = SpecklePlan::new(scene, Formulas::Derived, seed).expect("a plan");
+        let plan = SpecklePlan::new(scene, seed).expect("a plan");
         let model = SpeckleModel::generate(scene, &plan).expect("patterns");
         let options = RenderOptions {
             // Each draws a wave number.

@@ -151,7 +151,7 @@ impl LineFrames {
             seed: self.seed,
             ..RenderOptions::default()
         };
-        let plan = SpecklePlan::new(&scene, options.formulas, self.seed)?;
+        let plan = SpecklePlan::new(&scene, self.seed)?;
         let model = SpeckleModel::generate(&scene, &plan)?;
         let mut places = vec![Vec::new(); methods.len()];
         for line in 0..self.lines {

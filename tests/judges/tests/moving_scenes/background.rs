@@ -88,7 +88,7 @@ fn bodies_that_share_a_pattern_for_the_memory_have_places_of_their_own() {
     let mut scene = scene();
     // 32 slices of 64 × 64 samples of 8 bytes, but not the plate's one beside them.
     scene.speckle.memory = 1 << 20;
-    let plan = tem00::tracer::SpecklePlan::new(&scene, tem00::tracer::Formulas::Derived, 6);
+    let plan = tem00::tracer::SpecklePlan::new(&scene, 6);
     let plan = plan.expect("a pattern").to_string();
     assert!(plan.contains("2 positions in one pattern"), "{plan}");
     judge(&scene);

@@ -157,7 +157,7 @@ pub(crate) fn speckle(scene: &Scene, frames: &[u32], seed: u64) -> Vec<Grid<f32>
         seed,
         ..RenderOptions::default()
     };
-    let plan = SpecklePlan::new(scene, options.formulas, seed).expect("small patterns");
+    let plan = SpecklePlan::new(scene, seed).expect("small patterns");
     let model = SpeckleModel::generate(scene, &plan).expect("small patterns");
     let cancel = AtomicBool::new(false);
     let render = |&frame: &u32| {

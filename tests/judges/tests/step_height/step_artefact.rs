@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use tem00::config::FileAccess;
 use tem00::scan::{MeasuredFrame, MeasuredPoint, Measurement, MeasurementScene, mean_point};
-use tem00::tracer::{Formulas, SpeckleModel, SpecklePlan};
+use tem00::tracer::{SpeckleModel, SpecklePlan};
 
 /// The height of the step, in metres.
 pub(crate) const STEP: f64 = 1e-3;
@@ -22,7 +22,7 @@ pub(crate) fn scene() -> MeasurementScene {
 
 /// Generates the speckle of a scene with its own seed, and prepares to measure it.
 pub(crate) fn prepare(scene: &MeasurementScene) -> (Measurement, SpeckleModel) {
-    let plan = SpecklePlan::new(&scene.scene, Formulas::Derived, scene.scene.render.seed);
+    let plan = SpecklePlan::new(&scene.scene, scene.scene.render.seed);
     let plan = plan.expect("the patterns fit");
     let speckle = SpeckleModel::generate(&scene.scene, &plan).expect("the patterns fit");
     let measurement = Measurement::new(scene.clone()).expect("the scene can be measured");

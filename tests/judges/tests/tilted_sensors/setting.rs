@@ -6,8 +6,7 @@ use tem00::{
     scan::{MeasuredFrame, Measurement, MeasurementScene, ScanSettings},
     scene::parse_scene,
     tracer::{
-        Formulas, Rectangle, RenderOptions, Shape, SpeckleModel, SpecklePlan, Trajectory,
-        render_frame,
+        Rectangle, RenderOptions, Shape, SpeckleModel, SpecklePlan, Trajectory, render_frame,
     },
     triangulation::{CalibrationSettings, DVec2, DVec3, DetectorSettings, SensorDescription},
 };
@@ -144,7 +143,7 @@ pub(crate) struct Prepared {
 
 impl Prepared {
     pub(crate) fn new(scene: MeasurementScene) -> Self {
-        let plan = SpecklePlan::new(&scene.scene, Formulas::Derived, scene.scene.render.seed);
+        let plan = SpecklePlan::new(&scene.scene, scene.scene.render.seed);
         let speckle = SpeckleModel::generate(&scene.scene, &plan.expect("patterns"));
         Self {
             speckle: speckle.expect("patterns"),

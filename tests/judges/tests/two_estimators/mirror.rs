@@ -3,8 +3,8 @@
 use tem00::{
     beam::DVec3,
     tracer::{
-        Formulas, LaserEvents, LaserLayers, Material, Method, Rectangle, Scene, Shape,
-        SpeckleModel, SpecklePlan,
+        LaserEvents, LaserLayers, Material, Method, Rectangle, Scene, Shape, SpeckleModel,
+        SpecklePlan,
     },
 };
 
@@ -107,7 +107,7 @@ fn a_mirror_lights_a_surface_as_the_image_of_the_laser_does() {
     let direct = scene(REFLECTANCE * POWER, fold.image, None);
     let folded = scene(POWER, fold.laser, Some((&fold, fold.mirror)));
     assert!(folded.has_specular_surfaces(), "a mirror");
-    let plan = SpecklePlan::new(&direct, Formulas::Derived, 0).expect("a small pattern");
+    let plan = SpecklePlan::new(&direct, 0).expect("a small pattern");
     let speckle = SpeckleModel::generate(&direct, &plan).expect("a small pattern");
     let path = PATHS.render(&direct, Some(&speckle));
     let light = PATHS.render(&folded, Some(&speckle));

@@ -10,7 +10,7 @@ use tem00_scan::{
     Averaging, HeightMap, MeasuredFrame, MeasuredPoint, Measurement, MeasurementScene, Scan,
     ScanError,
 };
-use tem00_tracer::{Formulas, SpeckleChange, SpeckleModel, SpecklePlan};
+use tem00_tracer::{SpeckleChange, SpeckleModel, SpecklePlan};
 
 use super::{
     files::Files,
@@ -123,8 +123,7 @@ impl<'a> Job<'a> {
         }
         let scene = self.measurement.scene();
         let refused = |error| tracer_failure(&self.args.common.scene, &error);
-        let plan =
-            SpecklePlan::new(scene, Formulas::Derived, scene.render.seed).map_err(refused)?;
+        let plan = SpecklePlan::new(scene, scene.render.seed).map_err(refused)?;
         for line in plan.correlation_notes() {
             output::note(&format!("speckle: {line}"));
         }

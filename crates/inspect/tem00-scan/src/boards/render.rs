@@ -150,7 +150,7 @@ fn electrons(
         },
         ..scene.render
     };
-    let plan = SpecklePlan::new(scene, options.formulas, seed)?;
+    let plan = SpecklePlan::new(scene, seed)?;
     let speckle = SpeckleModel::generate(scene, &plan)?;
     let frame = render_frame(scene, Some(&speckle), 0, &options, progress, cancel)?;
     Ok(Exposure::of_frame(&frame, &scene.camera, sensor).electrons)

@@ -44,10 +44,6 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "ERROR", value_parser = relative_error, conflicts_with = "adaptive")]
     pub(crate) target_error: Option<f64>,
 
-    /// Use the formulas as printed in Bergmann et al. 2016, with their errors, for comparison.
-    #[arg(long)]
-    pub(crate) paper: bool,
-
     /// Render nothing: say what the camera will see of each laser and why, and draw camera, lasers and
     /// parts. Ends with the exit code 3 if it will see no light of a laser.
     #[arg(long)]
@@ -63,7 +59,6 @@ Examples:
   tem00 render examples/scenes/spot.toml                       quick look, into out/spot/
   tem00 render examples/scenes/spot.toml --check               will the camera see the laser? at once
   tem00 render examples/scenes/spot.toml --spp 256 -o good     slower, with less noise
-  tem00 render examples/scenes/spot.toml --paper -o printed    the formulas as printed, to compare
   tem00 render examples/scenes/spot.toml --no-speckle          the same light without interference
   tem00 render examples/scenes/moved_surface.toml --resume     go on after an interruption
   tem00 render examples/scenes/moved_surface.toml --frames 1   one frame, for example of several machines
@@ -115,10 +110,10 @@ mod tests {
 
     #[test]
     fn every_option_of_render_is_understood() {
-        let line = "tem00 render a.toml --paper --white-level 1e3 --resume --crop 1,2,30,40 \
+        let line = "tem00 render a.toml --white-level 1e3 --resume --crop 1,2,30,40 \
                     --method light --max-depth 5 --target-error 0.01 --check";
         let args = parse(line).expect("the line is valid");
-        assert!(args.paper && args.resume && args.check, "all are on");
+        assert!(args.resume && args.check, "all are on");
         assert_eq!(args.white_level, Some(1e3));
         let crop = Crop {
             x: 1,
@@ -135,7 +130,7 @@ mod tests {
     #[test]
     fn a_scene_is_all_that_render_needs() {
         let args = parse("tem00 render a.toml").expect("the line is valid");
-        assert!(!args.paper && !args.resume && !args.check, "{args:?}");
+        assert!(!args.resume && !args.check, "{args:?}");
         assert!(args.crop.is_none(), "{args:?}");
     }
 

@@ -10,7 +10,7 @@ use tem00_report::{
     output::{self, note},
 };
 use tem00_speckle::SpeckleError;
-use tem00_tracer::{Formulas, Scene, SpeckleModel, SpecklePlan, TracerError};
+use tem00_tracer::{Scene, SpeckleModel, SpecklePlan, TracerError};
 
 use super::{record::Fingerprint, report::note_roughness};
 use crate::{
@@ -42,7 +42,7 @@ impl<'a> Render<'a> {
         let folder = output::folder(args.common.output.as_deref(), &name);
         let options = scene.render;
         let plan = (!args.common.no_speckle)
-            .then(|| SpecklePlan::new(&scene, options.formulas, options.seed))
+            .then(|| SpecklePlan::new(&scene, options.seed))
             .transpose()
             .map_err(|error| tracer_failure(&args.common.scene, &error))?;
         // The text as well: standard input is none of the files.
@@ -135,20 +135,12 @@ impl<'a> Render<'a> {
         self.scene.samples_per_frame(&self.scene.render)
     }
 
-    pub(super) const fn formulas(&self) -> &'static str {
-        match self.scene.render.formulas {
-            Formulas::Derived => "derived",
-            Formulas::AsPrinted => "as printed in Bergmann et al. 2016",
-        }
-    }
-
     pub(super) fn description(&self) -> String {
         format!(
-            "{}: {} samples per pixel, seed {}, formulas {}, speckle {}",
+            "{}: {} samples per pixel, seed {}, speckle {}",
             self.name,
             self.scene.render.samples_per_pixel,
             self.scene.render.seed,
-            self.formulas(),
             if self.plan.is_some() { "on" } else { "off" }
         )
     }

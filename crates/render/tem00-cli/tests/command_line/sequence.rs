@@ -187,7 +187,6 @@ fn frames_of_another_render_are_not_mixed_in() {
         "--seed 1",
         "--spp 5",
         "--no-speckle",
-        "--paper",
         "--white-level 3",
         "--max-depth 2",
     ] {

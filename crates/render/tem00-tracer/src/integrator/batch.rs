@@ -4,7 +4,7 @@ use tem00_shading::LaserEventBatch;
 
 use super::{PathRules, Vertex};
 use crate::{
-    Formulas, Hit, Intersector, Segment,
+    Hit, Intersector, Segment,
     sampler::Stream,
     speckle::{SpeckleFrame, SpecklePoint},
 };
@@ -97,13 +97,9 @@ impl LaserSample {
     }
 
     /// Gives the light its speckle.
-    fn settle(&mut self, speckle: f64, formulas: Formulas) {
-        let speckle_of_multiple = match formulas {
-            Formulas::Derived => speckle,
-            Formulas::AsPrinted => 1.0,
-        };
+    const fn settle(&mut self, speckle: f64) {
         self.speckle = speckle;
-        self.radiance = self.single * speckle + self.multiple * speckle_of_multiple;
+        self.radiance = self.single * speckle + self.multiple * speckle;
     }
 }
 
@@ -316,7 +312,7 @@ impl Batch<'_> {
     /// Leaves the light of the samples as it is.
     pub(super) fn settle_without_speckle(&mut self) {
         for laser in &mut self.laser_samples {
-            laser.settle(1.0, Formulas::Derived);
+            laser.settle(1.0);
         }
     }
 
@@ -340,7 +336,7 @@ impl Batch<'_> {
                 }
             }
             for (slot, factor) in look_ups.look_up(speckle, laser) {
-                self.laser_samples[slot].settle(factor, rules.formulas);
+                self.laser_samples[slot].settle(factor);
             }
         }
     }

@@ -7,7 +7,7 @@ use super::{
     lit_points::{LitPoints, density},
     weights::{power_heuristic, random_number},
 };
-use crate::{Formulas, Hit, printed, sampler::Use};
+use crate::{Hit, sampler::Use};
 
 impl<'a> Integrator<'a> {
     /// Connects every rough surface point to every laser.
@@ -15,7 +15,7 @@ impl<'a> Integrator<'a> {
         if !self.rules.finds_lasers {
             return;
         }
-        let mean_direction = self.rules.formulas == Formulas::Derived && !self.rules.samples_beams;
+        let mean_direction = !self.rules.samples_beams;
         if mean_direction {
             let positions = batch.vertices.iter().map(|vertex| vertex.position);
             batch.lit.place(positions);
@@ -144,7 +144,7 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    /// Returns how a laser lights a surface point as printed, or with the density of a drawn direction.
+    /// Returns how a laser lights a surface point from a drawn direction, with its density.
     fn illuminate(
         &self,
         laser: usize,
@@ -152,10 +152,6 @@ impl<'a> Integrator<'a> {
         batch: &Batch<'_>,
     ) -> Option<(LaserEvent, Option<f64>)> {
         let (source, vertex) = (&self.lasers[laser], &batch.vertices[index]);
-        if self.rules.formulas == Formulas::AsPrinted {
-            let light = printed::next_event(source, vertex.position, vertex.seen_normal())?;
-            return Some((light, None));
-        }
         let path = &batch.paths[index];
         let purpose = Use::Laser(path.depth, random_number(laser));
         let stream = batch.samples[path.sample].stream;

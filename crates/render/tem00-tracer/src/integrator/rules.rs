@@ -1,4 +1,4 @@
-use crate::{Formulas, Laser, Light, LightEvents, Method, RenderOptions};
+use crate::{Laser, Light, LightEvents, Method, RenderOptions};
 
 /// The wavelength at which materials are evaluated for lights, in metres: lights are white and
 /// materials grey under them.
@@ -7,7 +7,6 @@ pub(super) const WHITE_LIGHT_WAVELENGTH: f64 = 550e-9;
 /// Rules for the paths that are followed and for the ways in which they find light.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PathRules {
-    pub formulas: Formulas,
     /// The maximum number of surfaces between source and camera.
     pub max_depth: u32,
     /// True if the lasers' light is found from the camera at all.
@@ -22,17 +21,13 @@ pub(crate) struct PathRules {
 impl PathRules {
     /// Tells whether light of lasers over two rough surfaces is found from the first of them, too.
     pub(super) fn connects_to_lit_points(&self) -> bool {
-        self.finds_lasers
-            && !self.samples_beams
-            && self.formulas == Formulas::Derived
-            && self.max_depth > 1
+        self.finds_lasers && !self.samples_beams && self.max_depth > 1
     }
 }
 
 impl From<&RenderOptions> for PathRules {
     fn from(options: &RenderOptions) -> Self {
         Self {
-            formulas: options.formulas,
             max_depth: options.max_depth.unwrap_or(u32::MAX),
             finds_lasers: options.method == Method::Path,
             samples_beams: options.samples_beams(),

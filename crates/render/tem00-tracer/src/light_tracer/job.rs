@@ -1,7 +1,7 @@
 use tem00_camera::Camera;
 use tem00_numerics::Grid;
 
-use crate::{Crop, Formulas, Intersector, Scene, speckle::SpeckleFrame};
+use crate::{Crop, Intersector, Scene, speckle::SpeckleFrame};
 
 /// Follows light from the lasers to the camera, in one frame.
 #[derive(Clone, Copy, Debug)]
@@ -12,7 +12,6 @@ pub(crate) struct LightTracer<'a> {
     /// The surfaces as they stand in the frame, and the area lights behind them.
     pub intersector: &'a Intersector,
     pub speckle: Option<&'a SpeckleFrame<'a>>,
-    pub formulas: Formulas,
     pub frame: u32,
     /// The maximum number of surfaces that light may meet between laser and camera; `None` for no limit.
     pub max_depth: Option<u32>,

@@ -9,8 +9,8 @@ use super::{
     *,
 };
 use crate::{
-    Crop, Formulas, Intersector, LaserDescription, Material, Rectangle, Scene, Shape, Surface,
-    TriangleMesh, testing,
+    Crop, Intersector, LaserDescription, Material, Rectangle, Scene, Shape, Surface, TriangleMesh,
+    testing,
 };
 
 /// A correct light tracer fails a comparison with this probability at the fixed seeds.
@@ -60,7 +60,6 @@ fn try_trace(
         camera: &scene.camera,
         intersector: &intersector,
         speckle: None,
-        formulas: Formulas::Derived,
         frame: 0,
         max_depth: None,
         selection,

@@ -6,9 +6,7 @@ use super::{
     draws::{DrawKey, Draws},
     splats::{Splat, Splats},
 };
-use crate::{
-    Crop, EmittedRay, Formulas, Hit, Laser, LocalFrame, Material, Segment, speckle::SpecklePoint,
-};
+use crate::{Crop, EmittedRay, Hit, Laser, LocalFrame, Material, Segment, speckle::SpecklePoint};
 
 /// Surfaces that a light path always leaves again before it may end by chance.
 const CERTAIN_BOUNCES: u32 = 2;
@@ -227,12 +225,7 @@ impl<'a> Walk<'a> {
             ..
         } = *connection;
         let is_single = vertex.photon.rough == 0;
-        let has_speckle = is_single || self.tracer.formulas == Formulas::Derived;
-        let speckle = if has_speckle {
-            self.speckle_factor(connection)
-        } else {
-            1.0
-        };
+        let speckle = self.speckle_factor(connection);
         splats.push(Splat {
             pixel: index,
             single: if is_single { radiance } else { 0.0 },

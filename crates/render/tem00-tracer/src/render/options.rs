@@ -7,16 +7,6 @@ use crate::{Filter, TracerError};
 /// How often the least number of samples of a pixel can be doubled.
 const DOUBLINGS: u32 = 6;
 
-/// The formulas that a render uses.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Formulas {
-    /// The physics as it was derived and checked for this project.
-    #[default]
-    Derived,
-    /// The formulas as printed in Bergmann et al. 2016, with their errors, for comparison.
-    AsPrinted,
-}
-
 /// The method by which light is followed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
@@ -111,8 +101,6 @@ pub struct RenderOptions {
     pub sampling: Sampling,
     /// The seed of everything random: camera samples, and speckle where its plan takes the same.
     pub seed: u64,
-    /// The formulas.
-    pub formulas: Formulas,
     /// The maximum number of surfaces that light may meet between source and camera; `None` for no limit.
     pub max_depth: Option<u32>,
     /// The method by which light is followed.
@@ -139,7 +127,6 @@ impl Default for RenderOptions {
             samples_per_pixel: 16,
             sampling: Sampling::default(),
             seed: 0,
-            formulas: Formulas::default(),
             max_depth: None,
             method: Method::default(),
             laser_events: LaserEvents::default(),
@@ -152,10 +139,9 @@ impl Default for RenderOptions {
 }
 
 impl RenderOptions {
-    /// Tells whether directions towards lasers are drawn, and paths meet their beams by chance; the
-    /// printed formulas have no such directions.
+    /// Tells whether directions towards lasers are drawn, and paths meet their beams by chance.
     pub(crate) fn samples_beams(&self) -> bool {
-        self.formulas == Formulas::Derived && self.laser_events == LaserEvents::Sampled
+        self.laser_events == LaserEvents::Sampled
     }
 
     /// Returns the numbers of samples that a pixel can get. If there are several, the first is that of the pilot.

@@ -53,13 +53,6 @@ pub(super) struct ReferencePoint {
     way: DVec3,
 }
 
-/// The motion since the reference frame as the formulas of the paper take it, in metres.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Translations {
-    pub surface: DVec3,
-    pub camera: DVec3,
-}
-
 impl BodyChange {
     fn between(before: RigidMotion, now: RigidMotion) -> Self {
         let forth = before.inverse().then(&now);
@@ -319,18 +312,6 @@ impl Change {
             laser: self.laser(laser),
             perspective: &self.perspective,
             geometry,
-        }
-    }
-
-    /// Returns how far the surface has moved at a point, and the camera.
-    pub(super) fn translations(&self, point: &SpecklePoint) -> Translations {
-        let then = self
-            .surfaces
-            .get(point.surface)
-            .map_or(point.position, |body| body.back.point(point.position));
-        Translations {
-            surface: point.position - then,
-            camera: self.cameras[1].position() - self.cameras[0].position(),
         }
     }
 }

@@ -4,7 +4,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec2;
 use tem00_decorrelation::ImagingGeometry;
-use tem00_paper::BilinearStack;
 use tem00_shading::{BLOCK, LightPath, SpeckleShift};
 use tem00_speckle::{PupilField, SlicePath, SpeckleStack};
 
@@ -15,8 +14,6 @@ use super::{
     crossing::Following,
     multiple::{MultipleLight, MultipleMap},
     plan::SurfacePatterns,
-    printed::displacement_and_slice,
-    upright,
 };
 use crate::{Scene, TracerError};
 
@@ -43,11 +40,9 @@ struct Pattern {
     /// The largest shifts to either side of the reference frame that the slices hold, in pupil
     /// diameters.
     reaches: [f64; 2],
-    half_period: usize,
     /// One for each stack.
     fields: Vec<PupilField>,
     path: SlicePath,
-    as_printed: bool,
     /// The lattice points about which the slices of each frame lie; empty where one stack holds those of all frames.
     middles: Vec<[i64; 2]>,
     /// The slices that the last frame has looked up.
@@ -62,14 +57,7 @@ struct Window {
     middle_slice: f64,
     /// The slices that are looked up to either side.
     reach: f64,
-    stacks: Vec<Stack>,
-}
-
-#[derive(Clone, Debug)]
-enum Stack {
-    Derived(SpeckleStack),
-    /// With the speckle size, in samples.
-    AsPrinted(BilinearStack, f64),
+    stacks: Vec<SpeckleStack>,
 }
 
 /// The speckle of a scene in one frame.
@@ -160,7 +148,7 @@ impl LaserPatterns {
     fn generate(geometry: ImagingGeometry, plan: &PatternPlan) -> Result<Self, TracerError> {
         let allocations = plan.allocations().iter().zip(0_u64..);
         let patterns = allocations
-            .map(|(allocation, number)| Pattern::generate(plan, allocation, plan.seed_of(number)))
+            .map(|(allocation, number)| Pattern::generate(allocation, plan.seed_of(number)))
             .collect::<Result<_, _>>()?;
         Ok(Self {
             geometry,
@@ -171,19 +159,13 @@ impl LaserPatterns {
 }
 
 impl Pattern {
-    fn generate(
-        plan: &PatternPlan,
-        allocation: &PatternAllocation,
-        seed: u64,
-    ) -> Result<Self, TracerError> {
+    fn generate(allocation: &PatternAllocation, seed: u64) -> Result<Self, TracerError> {
         let first = allocation.stack.field(seed)?;
         let pattern = Self {
             slices_per_diameter: allocation.stack.slices_per_diameter(),
             reaches: allocation.reaches(),
-            half_period: allocation.half_period(),
             fields: first.independent(allocation.count)?,
             path: allocation.stack.path(),
-            as_printed: plan.is_as_printed(),
             middles: allocation.middles.clone(),
             last: Arc::default(),
         };
@@ -210,11 +192,7 @@ impl Pattern {
     fn generate_window(&self, middle: [i64; 2]) -> Result<Window, TracerError> {
         let stacks = self.fields.iter().map(|field| {
             let field = field.clone().displaced(middle);
-            if self.as_printed {
-                let stack = BilinearStack::generate(&field, self.half_period)?;
-                return Ok(Stack::AsPrinted(stack, field.speckle_size()));
-            }
-            Ok(Stack::Derived(SpeckleStack::generate(&field, self.path)?))
+            SpeckleStack::generate(&field, self.path)
         });
         let diameter = self.fields.first().map_or(1.0, |field| field.diameter()[0]);
         let slices = self.path.slice_count() as f64;
@@ -226,7 +204,7 @@ impl Pattern {
                 // The pupil itself takes a diameter of the path.
                 false => 0.5 * (slices - self.slices_per_diameter),
             },
-            stacks: stacks.collect::<Result<_, TracerError>>()?,
+            stacks: stacks.collect::<Result<_, _>>()?,
         })
     }
 
@@ -347,21 +325,11 @@ impl SpeckleFrame<'_> {
         }
         factors.fill(0.0);
         for part in &surface.parts {
-            match &window.stacks[part.stack] {
-                Stack::Derived(stack) => {
-                    let mut block = self.coordinates(laser, pattern, stack, (points, mixes));
-                    block.u.iter_mut().for_each(|u| *u = window.local(*u));
-                    block.shift(part.offset, stack.size());
-                    block.add(stack, part.fraction, factors);
-                }
-                Stack::AsPrinted(stack, speckle_size) => {
-                    for (factor, point) in factors.iter_mut().zip(points) {
-                        let [x, y, u] = self.as_printed(laser, pattern, *speckle_size, point);
-                        let [x0, y0] = in_samples(part.offset, stack.size());
-                        *factor += part.fraction * stack.intensity_at(x + x0, y + y0, u);
-                    }
-                }
-            }
+            let stack = &window.stacks[part.stack];
+            let mut block = self.coordinates(laser, pattern, stack, (points, mixes));
+            block.u.iter_mut().for_each(|u| *u = window.local(*u));
+            block.shift(part.offset, stack.size());
+            block.add(stack, part.fraction, factors);
         }
     }
 
@@ -415,23 +383,6 @@ impl SpeckleFrame<'_> {
         let u = &mut block.u[..points.len()];
         pattern.coordinates_of(stack, shifts, sign, u);
         block
-    }
-
-    /// Coordinates of a point by the formulas of the paper.
-    fn as_printed(
-        &self,
-        laser: usize,
-        pattern: &Pattern,
-        speckle_size: f64,
-        point: &SpecklePoint,
-    ) -> [f64; 3] {
-        let geometry = &self.model.lasers[laser].geometry;
-        let half_period = pattern.half_period;
-        let (displacement, u) =
-            displacement_and_slice(&self.change, laser, geometry, half_period, point);
-        let pixel = upright(point.pixel);
-        let c = tem00_paper::pattern_coordinate(geometry, pixel, displacement, speckle_size);
-        [c.x, c.y, u]
     }
 }
 

@@ -4,7 +4,7 @@ use glam::DVec2;
 use tem00_decorrelation::ImagingGeometry;
 use tem00_numerics::seed::{Purpose, derived};
 use tem00_shading::{Bandwidth, SurfaceLight};
-use tem00_speckle::{SlicePath, StackNeeds, StackPlan, incoherent_fractions};
+use tem00_speckle::{StackNeeds, StackPlan, incoherent_fractions};
 
 use super::{
     allocation::{self, FrameRequest, Part, PatternAllocation, Request},
@@ -13,7 +13,7 @@ use super::{
     crossing::{CorrelationNote, Followed, Following, Tracks, Waves},
     prescan::{LaserGroups, MotionPrescan, SurveyOfFrame, prescan},
 };
-use crate::{Formulas, Scene, SpeckleSettings, SurfaceSpeckle, TracerError, Trajectory};
+use crate::{Scene, SpeckleSettings, SurfaceSpeckle, TracerError, Trajectory};
 
 /// The speckle patterns that a scene needs, chosen from its camera, image and motion.
 ///
@@ -39,7 +39,6 @@ pub struct PatternPlan {
     /// The names of the surfaces.
     names: Vec<String>,
     notes: Vec<CorrelationNote>,
-    as_printed: bool,
     chosen: bool,
     seed: u64,
 }
@@ -85,7 +84,6 @@ impl SpecklePlan {
     /// `survey` finds the multiple light in a frame.
     pub(crate) fn with_survey(
         scene: &Scene,
-        formulas: Formulas,
         seed: u64,
         survey: &SurveyOfFrame<'_>,
     ) -> Result<Self, TracerError> {
@@ -101,19 +99,13 @@ impl SpecklePlan {
         };
         let memory = scene.speckle.memory / scene.lasers.len().max(1) as u64;
         let prescans = prescan(scene, laser_groups, survey)?;
-        let lights = match formulas {
-            Formulas::Derived => laser_lights(scene, laser_groups)?,
-            Formulas::AsPrinted => {
-                vec![vec![SurfaceLight::single(); scene.surfaces.len()]; scene.lasers.len()]
-            }
-        };
+        let lights = laser_lights(scene, laser_groups)?;
         let lasers = prescans.iter().zip(&geometries).enumerate();
         let patterns = lasers
             .map(|(laser, (prescans, geometry))| {
                 let planner = Planner {
                     scene,
                     laser,
-                    formulas,
                     groups: &groups,
                     lights: &lights[laser],
                 };
@@ -161,7 +153,6 @@ fn groups(scene: &Scene) -> Vec<usize> {
 struct Planner<'a> {
     scene: &'a Scene,
     laser: usize,
-    formulas: Formulas,
     groups: &'a [usize],
     /// The light of the laser on each surface.
     lights: &'a [SurfaceLight],
@@ -200,7 +191,6 @@ impl Planner<'_> {
         let sums = surfaces
             .map(|(surface, light)| Sum::new(&surface.speckle, light))
             .collect::<Result<Vec<_>, _>>()?;
-        let as_printed = self.formulas == Formulas::AsPrinted;
         let settings = &self.scene.speckle;
         let allocate = |followed: &[Followed]| {
             let requests = prescans.iter().zip(followed).enumerate();
@@ -209,10 +199,8 @@ impl Planner<'_> {
                     self.request(group, prescan, followed.following, &sums, geometry)
                 })
                 .collect();
-            let allocations = allocation::allocate(&requests, memory, |plan| {
-                let plan = as_asked(plan, settings);
-                if as_printed { plan.on_circle() } else { plan }
-            })?;
+            let allocations =
+                allocation::allocate(&requests, memory, |plan| as_asked(plan, settings))?;
             Ok::<_, TracerError>((requests, allocations))
         };
         let candidates = prescans.iter().enumerate();
@@ -242,7 +230,6 @@ impl Planner<'_> {
                 .collect(),
             allocations,
             names: self.scene.surfaces.iter().map(|s| s.name.clone()).collect(),
-            as_printed,
             chosen: settings.size.is_none() && settings.diameter.is_none(),
             seed: derived(seed, Purpose::Laser, self.laser as u64),
         })
@@ -255,7 +242,7 @@ impl Planner<'_> {
         prescan: &MotionPrescan,
         geometry: &ImagingGeometry,
     ) -> [Followed; 2] {
-        if prescan.frames.is_empty() || self.formulas == Formulas::AsPrinted {
+        if prescan.frames.is_empty() {
             return [Followed::default(); 2];
         }
         let line = self.scene.lasers[self.laser].spectral_line();
@@ -308,11 +295,7 @@ impl Planner<'_> {
         if reach > 0.0 {
             shifts = [shifts[0].max(shifts[1]) + reach; 2];
         }
-        // Two frames have new speckle beyond a diameter; the circle of the printed formulas has no more for many.
-        let frames = match self.formulas {
-            Formulas::Derived => self.scene.frames,
-            Formulas::AsPrinted => self.scene.frames.min(2),
-        };
+        let frames = self.scene.frames;
         let by_frame = frames > 2 && !prescan.frames.is_empty();
         // What spreads wider makes grains of its own in an image of so many speckles.
         let widest = WIDEST_SPREAD * prescan.image.length() / geometry.speckle_size_in_pixels();
@@ -480,24 +463,9 @@ impl PatternPlan {
         &self.surface_patterns
     }
 
-    pub(super) const fn is_as_printed(&self) -> bool {
-        self.as_printed
-    }
-
     /// Returns the seed of allocation `number`: that of the laser for the first.
     pub(super) const fn seed_of(&self, number: u64) -> u64 {
         derived(self.seed, Purpose::Body, number)
-    }
-}
-
-impl PatternAllocation {
-    pub(super) const fn half_period(&self) -> usize {
-        match self.stack.path() {
-            SlicePath::Still => 1,
-            SlicePath::Circle { half_period } | SlicePath::Straight { half_period, .. } => {
-                half_period
-            }
-        }
     }
 }
 

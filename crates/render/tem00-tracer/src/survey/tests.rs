@@ -48,7 +48,7 @@ fn gaussian(linewidth: f64) -> SpectralLine {
 }
 
 fn render(scene: &Scene, frame: u32, seed: u64) -> Frame {
-    let plan = SpecklePlan::new(scene, Formulas::Derived, seed).unwrap();
+    let plan = SpecklePlan::new(scene, seed).unwrap();
     let model = SpeckleModel::generate(scene, &plan).unwrap();
     let options = RenderOptions {
         samples_per_pixel: 4,

@@ -5,9 +5,7 @@ use tem00_coherence::{
 };
 
 use super::{super::crossing::Waves, *};
-use crate::{
-    Formulas, Keyframe, LaserDescription, Scene, SpeckleModel, SpecklePlan, Trajectory, testing,
-};
+use crate::{Keyframe, LaserDescription, Scene, SpeckleModel, SpecklePlan, Trajectory, testing};
 
 /// A plate under a laser along its normal, seen under 30° about the axis y.
 fn scene(line: SpectralLine, rms_height: f64) -> Scene {
@@ -67,7 +65,7 @@ fn seen(camera: &Camera, pixel: DVec2) -> SpecklePoint {
 }
 
 fn model(scene: &Scene) -> SpeckleModel {
-    let plan = SpecklePlan::new(scene, Formulas::Derived, 11).unwrap();
+    let plan = SpecklePlan::new(scene, 11).unwrap();
     SpeckleModel::generate(scene, &plan).unwrap()
 }
 
@@ -152,7 +150,7 @@ fn correlations_that_are_noted_are_those_of_the_law() {
         // So few pixels that the tilt is one.
         let camera = testing::camera(scene.camera.position(), [48, 36]);
         scene.camera = Camera::new(camera).unwrap();
-        let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
+        let plan = SpecklePlan::new(&scene, 0).unwrap();
         let bandwidth = plan.patterns()[0].surface_patterns()[0].bandwidth.clone();
         let (cell, line) = (cell(&scene), scene.lasers[0].spectral_line());
         let law = PolychromaticSpeckle { line, cell: &cell };
@@ -213,7 +211,7 @@ fn more_patterns_than_can_add_up_are_refused_by_their_name() {
     let extent = SourceExtent::disc(0.02).unwrap();
     scene.lasers[0] = scene.lasers[0].clone().with_source_extent(extent);
     scene.surfaces[0].speckle.patterns = 40;
-    let refused = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap_err();
+    let refused = SpecklePlan::new(&scene, 0).unwrap_err();
     assert_eq!(refused.parameter(), Some("patterns"), "{refused}");
     assert!(refused.to_string().ends_with("got 40"), "{refused}");
 }

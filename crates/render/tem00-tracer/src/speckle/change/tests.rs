@@ -2,8 +2,13 @@ use tem00_decorrelation::{
     Configuration, ConfigurationData, Illumination, SpeckleMotion, equivalent_pupil_shift,
 };
 
-use super::{super::upright, *};
+use super::*;
 use crate::{BeamShape, Keyframe, Rotation, Scene, Trajectory, testing};
+
+/// Turns an image vector with y down, in pixels, into one with y up, and back.
+fn upright(pixel: DVec2) -> DVec2 {
+    DVec2::new(pixel.x, -pixel.y)
+}
 
 /// A plate under a spot that diverges, from the side, a little out of focus.
 fn scene() -> Scene {

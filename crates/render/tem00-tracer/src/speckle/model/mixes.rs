@@ -9,7 +9,7 @@ use tem00_speckle::{Complex, SpeckleStack, StackPlan};
 
 use super::{
     super::{SpecklePoint, crossing::Following, plan::SurfacePatterns},
-    Block, Mix, SpeckleFrame, Stack, Window, in_samples,
+    Block, Mix, SpeckleFrame, Window, in_samples,
 };
 
 /// The fraction of light below which a pattern counts as even: many such leave a contrast below 0.04.
@@ -88,9 +88,8 @@ impl SpeckleFrame<'_> {
         };
         let Some(bandwidth) = &surface.bandwidth else {
             let mut u = [pattern.slices_per_diameter * along];
-            if surface.following == Following::Length
-                && let Stack::Derived(stack) = &self.windows[laser][surface.allocation].stacks[0]
-            {
+            if surface.following == Following::Length {
+                let stack = &self.windows[laser][surface.allocation].stacks[0];
                 let motion = core::slice::from_ref(motion);
                 pattern.coordinates_of(stack, motion, sign, &mut u);
             }
@@ -140,7 +139,8 @@ impl SpeckleFrame<'_> {
         for fields in surface.fields_of(planned, heights.len()) {
             let fraction = fields[0].fraction;
             whole += fraction;
-            if let ([part], Stack::Derived(stack)) = (fields, &window.stacks[fields[0].stack]) {
+            if let [part] = fields {
+                let stack = &window.stacks[part.stack];
                 let mut block = self.block(laser, (window, stack), places, axis);
                 block.shift(part.offset, stack.size());
                 block.shift(beside, stack.size());
@@ -149,9 +149,7 @@ impl SpeckleFrame<'_> {
             }
             let mut amplitudes = vec![Complex::<f64>::ZERO; places.len()];
             for (part, [height, root]) in fields.iter().zip(heights) {
-                let Stack::Derived(stack) = &window.stacks[part.stack] else {
-                    continue;
-                };
+                let stack = &window.stacks[part.stack];
                 let mut block = self.block(laser, (window, stack), places, axis);
                 block.shift(part.offset, stack.size());
                 block.shift(beside, stack.size());

@@ -1,9 +1,7 @@
 use glam::DVec3;
 
 use super::*;
-use crate::{
-    Formulas, LaserDescription, SpectralLine, Surface, SurfaceSpeckle, Trajectory, testing,
-};
+use crate::{LaserDescription, SpectralLine, Surface, SurfaceSpeckle, Trajectory, testing};
 
 /// Two plates that move apart under two lasers, one of them with a sum of patterns.
 fn scene() -> Scene {
@@ -29,8 +27,8 @@ fn scene() -> Scene {
     scene
 }
 
-fn model(scene: &Scene, formulas: Formulas) -> SpeckleModel {
-    let plan = SpecklePlan::new(scene, formulas, 7).unwrap();
+fn model(scene: &Scene) -> SpeckleModel {
+    let plan = SpecklePlan::new(scene, 7).unwrap();
     SpeckleModel::generate(scene, &plan).unwrap()
 }
 
@@ -55,19 +53,17 @@ fn points(scene: &Scene, count: u32) -> Vec<SpecklePoint> {
 #[test]
 fn many_points_have_the_bits_of_one_by_one() {
     let scene = scene();
-    for formulas in [Formulas::Derived, Formulas::AsPrinted] {
-        let model = model(&scene, formulas);
-        let points = points(&scene, 1000);
-        for frame in 0..4 {
-            let speckle = model.in_frame(&scene, frame).unwrap();
-            for laser in 0..2 {
-                let mut factors = vec![f64::NAN; points.len()];
-                speckle.factors(laser, &points, &vec![0.0; points.len()], &mut factors);
-                for (point, factor) in points.iter().zip(&factors) {
-                    let alone = speckle.factor(laser, point);
-                    assert_eq!(alone.to_bits(), factor.to_bits(), "{frame}: {point:?}");
-                    assert!(alone >= 0.0 && alone.is_finite(), "{alone}: {point:?}");
-                }
+    let model = model(&scene);
+    let points = points(&scene, 1000);
+    for frame in 0..4 {
+        let speckle = model.in_frame(&scene, frame).unwrap();
+        for laser in 0..2 {
+            let mut factors = vec![f64::NAN; points.len()];
+            speckle.factors(laser, &points, &vec![0.0; points.len()], &mut factors);
+            for (point, factor) in points.iter().zip(&factors) {
+                let alone = speckle.factor(laser, point);
+                assert_eq!(alone.to_bits(), factor.to_bits(), "{frame}: {point:?}");
+                assert!(alone >= 0.0 && alone.is_finite(), "{alone}: {point:?}");
             }
         }
     }
@@ -76,7 +72,7 @@ fn many_points_have_the_bits_of_one_by_one() {
 #[test]
 fn the_reference_frame_needs_no_motion() {
     let mut scene = scene();
-    let model = model(&scene, Formulas::Derived);
+    let model = model(&scene);
     let moving = model.in_frame(&scene, 1).unwrap();
     for surface in &mut scene.surfaces {
         surface.trajectory = Trajectory::default();
@@ -91,7 +87,7 @@ fn the_reference_frame_needs_no_motion() {
 #[test]
 fn extreme_points_have_finite_factors() {
     let scene = scene();
-    let model = model(&scene, Formulas::Derived);
+    let model = model(&scene);
     let speckle = model.in_frame(&scene, 3).unwrap();
     for far in [0.0, 0.3, 0.3 + 1e-15, 1e3, 1e9] {
         for direction in [DVec3::Z, DVec3::X, -DVec3::Z, DVec3::new(1.0, 1.0, 0.3)] {

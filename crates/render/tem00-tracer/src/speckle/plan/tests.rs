@@ -1,5 +1,6 @@
 use glam::DVec3;
 use tem00_decorrelation::pupil_overlap_correlation;
+use tem00_speckle::SlicePath;
 
 use super::*;
 use crate::{
@@ -32,7 +33,7 @@ fn scene(frames: u32, displacement: DVec3) -> Scene {
 }
 
 fn plan_of(scene: &Scene) -> Result<PatternPlan, TracerError> {
-    let plan = SpecklePlan::new(scene, Formulas::Derived, 0)?;
+    let plan = SpecklePlan::new(scene, 0)?;
     Ok(plan.patterns()[0].clone())
 }
 
@@ -217,7 +218,7 @@ fn sums_of_patterns_take_a_stack_for_each_part() {
         patterns: 3,
         polarisation: 0.5,
     };
-    let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
+    let plan = SpecklePlan::new(&scene, 0).unwrap();
     let plan = &plan.patterns()[0];
     assert_eq!(plan.memory_bytes(), 6 * 64 * (3 << 18), "{plan}");
     assert!(
@@ -232,7 +233,7 @@ fn sums_of_patterns_take_a_stack_for_each_part() {
     }
     // Less memory than that for six stacks of 32 slices.
     scene.speckle.memory = 143 << 20;
-    let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
+    let plan = SpecklePlan::new(&scene, 0).unwrap();
     let plan = &plan.patterns()[0];
     assert_eq!(plan.memory_bytes(), 64 * (3 << 18), "{plan}");
     assert!(plan.to_string().contains("6 positions"), "{plan}");
@@ -241,7 +242,7 @@ fn sums_of_patterns_take_a_stack_for_each_part() {
             patterns,
             polarisation,
         };
-        let plan = SpecklePlan::new(&scene, Formulas::Derived, 0);
+        let plan = SpecklePlan::new(&scene, 0);
         assert!(matches!(plan, Err(TracerError::Speckle(_))), "{plan:?}");
     }
 }
@@ -251,7 +252,7 @@ fn motions_before_and_after_the_reference_frame_add_up() {
     // 1 mm a frame behind a pupil of 3.125 mm: 0.64 diameters before, and 0.96 after.
     let mut scene = scene(6, 1e-3 * DVec3::X);
     scene.reference_frame = 2;
-    let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
+    let plan = SpecklePlan::new(&scene, 0).unwrap();
     let allocation = &plan.patterns()[0].allocations()[0];
     for (shift, expected) in allocation.shifts.iter().zip([2.0, 3.0]) {
         assert!((shift - expected / 3.125).abs() < 0.01, "{plan}");
@@ -274,7 +275,7 @@ fn a_motion_between_two_sampled_frames_is_found_by_its_keyframes() {
     };
     let keyframes = [Keyframe::unmoved(500.0), away, Keyframe::unmoved(502.0)];
     scene.surfaces[0].trajectory = Trajectory::keyframed(DVec3::ZERO, keyframes).unwrap();
-    let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
+    let plan = SpecklePlan::new(&scene, 0).unwrap();
     let shift = plan.patterns()[0].largest_shift();
     assert!((shift - 2.0 / 3.125).abs() < 0.01, "{shift}: {plan}");
 }
@@ -354,7 +355,7 @@ fn frames_that_slices_cannot_follow_are_noted() {
     let mut scene = scene(3, DVec3::ZERO);
     scene.surfaces[0].trajectory = Trajectory::keyframed(DVec3::ZERO, square).unwrap();
     let notes = |scene: &Scene| -> Vec<CorrelationNote> {
-        let plan = SpecklePlan::new(scene, Formulas::Derived, 0).unwrap();
+        let plan = SpecklePlan::new(scene, 0).unwrap();
         plan.correlation_notes().cloned().collect()
     };
     assert_eq!(notes(&scene), []);
@@ -382,7 +383,7 @@ fn frames_far_from_a_reference_frame_without_a_law_are_noted() {
         ..Keyframe::unmoved(frame)
     });
     scene.surfaces[0].trajectory = Trajectory::keyframed(DVec3::ZERO, away).unwrap();
-    let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
+    let plan = SpecklePlan::new(&scene, 0).unwrap();
     let notes: Vec<_> = plan.correlation_notes().collect();
     let [note] = &notes[..] else {
         panic!("one note: {notes:?}");
@@ -439,19 +440,6 @@ fn what_the_scene_asks_for_is_kept_and_said() {
 }
 
 #[test]
-fn printed_formulas_get_the_circle_of_the_paper() {
-    let scene = scene(2, 0.2e-3 * DVec3::X);
-    let plan = SpecklePlan::new(&scene, Formulas::AsPrinted, 0).unwrap();
-    let path = plan.patterns()[0].stack().path();
-    assert_eq!(path, SlicePath::Circle { half_period: 32 }, "{plan}");
-    // No memory gives the circle more than one diameter.
-    let scene = self::scene(3, 2e-3 * DVec3::X);
-    let plan = SpecklePlan::new(&scene, Formulas::AsPrinted, 0).unwrap();
-    assert!(plan.patterns()[0].largest_shift() > 1.0, "{plan}");
-    assert!(!plan.to_string().contains("MORE"), "{plan}");
-}
-
-#[test]
 fn lasers_have_seeds_of_their_own() {
     let second = LaserDescription {
         line: SpectralLine::monochromatic(532e-9).unwrap(),
@@ -459,7 +447,7 @@ fn lasers_have_seeds_of_their_own() {
     };
     let mut scene = scene(2, DVec3::ZERO);
     scene.lasers.push(Laser::new(second).unwrap());
-    let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
+    let plan = SpecklePlan::new(&scene, 0).unwrap();
     let [first, second] = plan.patterns() else {
         panic!("two lasers have two patterns");
     };

@@ -2,7 +2,6 @@ mod bodies;
 mod hierarchy;
 mod lanes;
 mod packet;
-mod plate;
 mod primitive;
 mod query;
 mod segment;
@@ -19,7 +18,6 @@ use self::{
     bodies::{Bodies, Body},
     hierarchy::Placement,
     packet::{LANES, Packet},
-    plate::meet_lone_rectangle,
     query::{Nearest, Query, Shadow},
     traverse::{Leaves, Stacks, follow_many, follow_one},
 };
@@ -117,10 +115,6 @@ impl Intersector {
     /// Panics unless `hits.len() == rays.len()`.
     pub fn intersect_batch(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
         assert_eq!(hits.len(), rays.len(), "one hit for each ray");
-        if let Some(rectangle) = self.bodies.lone_rectangle() {
-            let chunks = rays.chunks(LANES).zip(hits.chunks_mut(LANES));
-            return chunks.for_each(|(rays, hits)| meet_lone_rectangle(rectangle, rays, hits));
-        }
         self.ask_all(
             rays,
             |ray| Nearest::new(*ray),
@@ -181,11 +175,6 @@ impl Intersector {
     pub(crate) fn hides(&self, hit: &Hit, ray: &Ray, distance: f64) -> bool {
         let height = (distance - hit.distance) * hit.normal.dot(ray.direction).abs();
         height > self.clearance
-    }
-
-    /// Tells whether all there is lies in one plane, which hides nothing from itself.
-    pub(crate) fn is_plane(&self) -> bool {
-        self.bodies.lone_rectangle().is_some()
     }
 
     fn hit(&self, query: &Nearest) -> Option<Hit> {

@@ -220,21 +220,11 @@ impl Connections {
 }
 
 impl Batch<'_> {
-    /// Adds what arrives over a connection unless something hides it: at once where nothing can.
+    /// Notes what arrives over a connection unless something hides it.
     #[inline(always)]
-    pub(super) fn connect(
-        &mut self,
-        segment: Segment,
-        arrival: Arrival,
-        intersector: &Intersector,
-    ) {
-        if intersector.is_plane() {
-            self.rays_followed += 1;
-            arrival.add_to(&mut self.laser_samples, &mut self.samples);
-        } else {
-            self.connections.segments.push(segment);
-            self.connections.arrivals.push(arrival);
-        }
+    pub(super) fn connect(&mut self, segment: Segment, arrival: Arrival) {
+        self.connections.segments.push(segment);
+        self.connections.arrivals.push(arrival);
     }
 
     /// Adds what arrives over the connections that nothing hides, and forgets them all.

@@ -78,7 +78,7 @@ impl<'a> Integrator<'a> {
                 is_single: path.rough == 0,
             };
             let segment = vertex.segment_to(light.point);
-            batch.connect(segment, arrival, self.intersector);
+            batch.connect(segment, arrival);
         }
     }
 
@@ -122,7 +122,7 @@ impl<'a> Integrator<'a> {
                 is_single: false,
             };
             let segment = vertex.segment_to(point.hit.position);
-            batch.connect(segment, arrival, self.intersector);
+            batch.connect(segment, arrival);
         }
     }
 

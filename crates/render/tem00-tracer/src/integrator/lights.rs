@@ -71,7 +71,7 @@ impl<'a> Integrator<'a> {
             sample: path.sample,
             radiance: weight * radiance,
         };
-        batch.connect(segment, arrival, self.intersector);
+        batch.connect(segment, arrival);
     }
 
     /// Adds the radiance of the light that a ray meets, or of the environment.

@@ -10,7 +10,7 @@ use super::{
     traverse::{Leaves, Stacks, follow_many, follow_one},
     triangles::MeshHierarchy,
 };
-use crate::{Hit, MeshInstance, Rectangle, Shape, mesh};
+use crate::{Hit, MeshInstance, Shape, mesh};
 
 /// A part of a scene, and the shape to which it belongs.
 #[derive(Clone, Debug)]
@@ -125,19 +125,6 @@ impl Bodies {
             hierarchy,
             bodies,
             order: leaves.into_things(),
-        }
-    }
-
-    /// Returns the only body, if it is a rectangle.
-    pub(super) fn lone_rectangle(&self) -> Option<&Rectangle> {
-        match self.bodies.as_slice() {
-            [
-                Body {
-                    content: Content::Primitive(Primitive::Rectangle(rectangle)),
-                    ..
-                },
-            ] => Some(rectangle),
-            _ => None,
         }
     }
 

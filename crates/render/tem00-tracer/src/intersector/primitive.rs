@@ -132,22 +132,15 @@ impl Primitive {
     }
 }
 
-/// Returns the distance to a rectangle and where it is met, as fractions of the half edges.
+/// Returns the distance to a rectangle and where it is met, as fractions of the half edges. No ray
+/// along its plane has finite ones.
 #[inline(always)]
 fn meet_rectangle(ray: &Ray, rectangle: &Rectangle) -> Option<(f64, f64, f64)> {
-    let [distance, u, v] = meet_plane(ray, rectangle);
-    (u.abs() <= 1.0 && v.abs() <= 1.0).then_some((distance, u, v))
-}
-
-/// Returns the distance to the plane of a rectangle and where it is met, as fractions of the half
-/// edges. No ray along the plane has finite ones.
-#[inline(always)]
-pub(super) fn meet_plane(ray: &Ray, rectangle: &Rectangle) -> [f64; 3] {
     let Ray { origin, direction } = *ray;
     let offset = rectangle.centre() - origin;
     let distance = rectangle.normal().dot(offset) / rectangle.normal().dot(direction);
     let [u, v] = rectangle.fractions(distance * direction - offset);
-    [distance, u, v]
+    (u.abs() <= 1.0 && v.abs() <= 1.0).then_some((distance, u, v))
 }
 
 /// Returns the nearest positive distance to a sphere.

@@ -160,34 +160,3 @@ fn as_many_hits_as_rays_are_asked_for() {
     let intersector = build(&mixed_scene());
     intersector.intersect_batch(&[ray(DVec3::Z, -DVec3::Z)], &mut []);
 }
-
-#[test]
-fn a_rectangle_alone_is_met_where_it_is_among_other_shapes() {
-    let mut uniform = uniforms(14);
-    let plate = rectangle(
-        DVec3::new(0.1, 0.2, 0.3),
-        DVec3::new(0.3, 0.4, 0.0),
-        DVec3::new(0.0, 0.0, 0.7),
-    );
-    let [alone, among] = [
-        build(core::slice::from_ref(&plate)),
-        build(&[plate, sphere(DVec3::splat(-4.0), 1e-3)]),
-    ];
-    let mut rays = rays(3000, 1.0, &mut uniform);
-    // Along the plate, on it, and those that have no direction.
-    rays[70].direction = DVec3::Z;
-    rays[71] = ray(DVec3::new(0.1, 0.2, 0.3), DVec3::new(0.6, 0.8, 0.0));
-    rays[72].direction = DVec3::NAN;
-    rays[73].origin = DVec3::INFINITY;
-    rays[74].direction = DVec3::ZERO;
-    let expected = intersect_all(&among, &rays);
-    assert!(expected.iter().flatten().count() > 500, "many meet it");
-    for length in [0, 1, 63, 64, 65, rays.len()] {
-        let hits = intersect_all(&alone, &rays[..length]);
-        assert_eq!(hits, expected[..length], "{length} rays");
-    }
-    assert!(
-        alone.is_plane() && !among.is_plane(),
-        "one of them is a plane"
-    );
-}

@@ -90,7 +90,10 @@ fn frames_have_the_same_bits_for_any_number_of_threads() {
         options(),
         RenderOptions {
             sampling: Sampling::TargetError(0.2),
-            filter: Filter::Tent { radius: 1.0 },
+            filter: Filter::Gaussian {
+                radius: 1.5,
+                standard_deviation: 0.5,
+            },
             ..options()
         },
         RenderOptions {

@@ -104,7 +104,7 @@ fn scenes_that_cannot_be_measured_say_why() {
         "spot.waist_radius = \"1 mm\"",
     );
     let upright = SCENE.replace("line_direction = [1, 0, 0]", "line_direction = [0, 1, 0]");
-    let filter = SCENE.replace("[render]", "[render]\nfilter = \"tent\"");
+    let filter = SCENE.replace("[render]", "[render]\nfilter = \"gaussian\"");
     let crop = SCENE.replace("[render]", "[render]\ncrop = [0, 0, 8, 8]");
     let light = SCENE.replace("[render]", "[render]\nmethod = \"light\"");
     for (text, why) in [

@@ -1,19 +1,15 @@
 use tem00_config::{Choice, NUMBER, Problem, Section, rejected};
 use tem00_tracer::{Filter, FilterSampler};
 
-const KEYS: &[&str] = &["box", "tent", "gaussian", "mitchell_netravali", "lanczos"];
+const KEYS: &[&str] = &["box", "gaussian"];
 const FILTERS: &[Choice] = &[
     ("box", &["radius"]),
-    ("tent", &["radius"]),
     ("gaussian", &["radius", "standard_deviation"]),
-    ("mitchell_netravali", &["radius", "b", "c"]),
-    ("lanczos", &["radius"]),
 ];
 
 /// The filters by name, with the parameters that they usually have.
 const USUAL: &[(&str, Filter)] = &[
     ("box", Filter::Box { radius: 0.5 }),
-    ("tent", Filter::Tent { radius: 1.0 }),
     (
         "gaussian",
         Filter::Gaussian {
@@ -21,15 +17,6 @@ const USUAL: &[(&str, Filter)] = &[
             standard_deviation: 0.5,
         },
     ),
-    (
-        "mitchell_netravali",
-        Filter::MitchellNetravali {
-            radius: 2.0,
-            b: 1.0 / 3.0,
-            c: 1.0 / 3.0,
-        },
-    ),
-    ("lanczos", Filter::Lanczos { radius: 3.0 }),
 ];
 
 /// Reads a reconstruction filter: its name, or a table with its parameters.
@@ -60,18 +47,11 @@ fn with_parameters(filter: Filter, section: &Section<'_>) -> Result<Filter, Prob
     let radius = number("radius", filter.radius())?;
     Ok(match filter {
         Filter::Box { .. } => Filter::Box { radius },
-        Filter::Tent { .. } => Filter::Tent { radius },
         Filter::Gaussian {
             standard_deviation, ..
         } => Filter::Gaussian {
             radius,
             standard_deviation: number("standard_deviation", standard_deviation)?,
         },
-        Filter::MitchellNetravali { b, c, .. } => Filter::MitchellNetravali {
-            radius,
-            b: number("b", b)?,
-            c: number("c", c)?,
-        },
-        Filter::Lanczos { .. } => Filter::Lanczos { radius },
     })
 }

@@ -1,10 +1,7 @@
 mod table;
 
-use core::f64::consts::PI;
-
 use glam::DVec2;
 use tem00_camera::IMAGE_MARGIN;
-use tem00_numerics::sinc;
 
 use self::table::HalfTable;
 use crate::TracerError;
@@ -14,20 +11,10 @@ const MAXIMUM_RADIUS: f64 = IMAGE_MARGIN;
 
 /// Reconstruction filter: a kernel k(x) k(y) that weights the samples around a pixel, with x and y
 /// in pixels from the centre of the pixel, 0 beyond its radius.
-///
-/// # References
-///
-/// - D. P. Mitchell and A. N. Netravali, *Reconstruction Filters in Computer Graphics*, 1988, eq. 8.
-/// - C. E. Duchon, *Lanczos Filtering in One and Two Dimensions*, 1979.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Filter {
     /// k = 1. With the radius ½ pixels do not overlap and are what the pixels of a sensor are.
     Box {
-        /// The radius, in pixels.
-        radius: f64,
-    },
-    /// k = 1 − |x| / radius.
-    Tent {
         /// The radius, in pixels.
         radius: f64,
     },
@@ -37,21 +24,6 @@ pub enum Filter {
         radius: f64,
         /// The standard deviation σ, in pixels, at least an eighth of the radius.
         standard_deviation: f64,
-    },
-    /// The cubic splines of Mitchell and Netravali; B = C = ⅓ is their compromise between blur,
-    /// ringing and blocks.
-    MitchellNetravali {
-        /// The radius, in pixels; 2 in the original.
-        radius: f64,
-        /// The parameter B, between 0 and 1.
-        b: f64,
-        /// The parameter C, between 0 and 1.
-        c: f64,
-    },
-    /// k = sinc(x) sinc(x / radius), with sinc x = sin(πx) / (πx). Its negative lobes ring at edges.
-    Lanczos {
-        /// The radius, in pixels, at least 1.
-        radius: f64,
     },
 }
 
@@ -66,59 +38,33 @@ impl Filter {
     /// Returns the radius beyond which the kernel is 0, in pixels.
     pub const fn radius(&self) -> f64 {
         match *self {
-            Self::Box { radius }
-            | Self::Tent { radius }
-            | Self::Gaussian { radius, .. }
-            | Self::MitchellNetravali { radius, .. }
-            | Self::Lanczos { radius } => radius,
+            Self::Box { radius } | Self::Gaussian { radius, .. } => radius,
         }
     }
 
     /// Returns the kernel k at `x`, in pixels, not normalised.
-    ///
-    /// # Examples
-    ///
-    /// A Lanczos filter leaves the neighbours of a pixel out:
-    ///
-    /// ```
-    /// use tem00_tracer::Filter;
-    ///
-    /// let filter = Filter::Lanczos { radius: 3.0 };
-    /// assert_eq!(filter.kernel(0.0), 1.0);
-    /// assert!(filter.kernel(1.0).abs() < 1e-15);
-    /// assert!(filter.kernel(1.5) < -0.1);
-    /// ```
     pub fn kernel(&self, x: f64) -> f64 {
-        let x = x.abs();
-        if x > self.radius() {
+        if x.abs() > self.radius() {
             return 0.0;
         }
         match *self {
             Self::Box { .. } => 1.0,
-            Self::Tent { radius } => 1.0 - x / radius,
             Self::Gaussian {
                 standard_deviation, ..
             } => {
                 let z = x / standard_deviation;
                 libm::exp(-0.5 * z * z)
             }
-            Self::MitchellNetravali { radius, b, c } => mitchell_netravali(2.0 * x / radius, b, c),
-            Self::Lanczos { radius } => sinc(PI * x) * sinc(PI * x / radius),
         }
     }
 
     fn check(&self) -> Result<(), TracerError> {
-        let smallest = if matches!(self, Self::Lanczos { .. }) {
-            1.0
-        } else {
-            f64::MIN_POSITIVE
-        };
         let radius = self.radius();
         check(
             "radius",
             radius,
-            smallest..=MAXIMUM_RADIUS,
-            "positive and at most 16 pixels, of a Lanczos filter at least 1",
+            f64::MIN_POSITIVE..=MAXIMUM_RADIUS,
+            "positive and at most 16 pixels",
         )?;
         match *self {
             Self::Gaussian {
@@ -129,11 +75,7 @@ impl Filter {
                 radius / 8.0..=f64::MAX,
                 "finite and at least an eighth of the radius (in pixels)",
             ),
-            Self::MitchellNetravali { b, c, .. } => {
-                check("b", b, 0.0..=1.0, "between 0 and 1")?;
-                check("c", c, 0.0..=1.0, "between 0 and 1")
-            }
-            _ => Ok(()),
+            Self::Box { .. } => Ok(()),
         }
     }
 }
@@ -143,11 +85,11 @@ impl Filter {
 pub struct FilterSample {
     /// The offset from the centre of the pixel, in pixels.
     pub offset: DVec2,
-    /// The factor on what is seen there; negative in the negative lobes of the kernel.
+    /// The factor on what is seen there, of mean 1.
     pub weight: f64,
 }
 
-/// Draws samples for a [`Filter`], in proportion to the magnitude of its kernel.
+/// Draws samples for a [`Filter`], in proportion to its kernel.
 ///
 /// The mean of weight times value is the filtered value:
 ///
@@ -157,8 +99,8 @@ pub struct FilterSample {
 ///
 /// Each coordinate grows with its uniform number, so that strata of the square stay strata. The
 /// density is a table of 256 straight pieces to each side of the kernel; as the weights are formed
-/// with the density of the table itself, there is no error from it. They differ from
-/// ±(∫|k| dx / ∫k dx)² by 1 % or less, except beside the zeros of the kernel.
+/// with the density of the table itself, there is no error from it. They differ from 1 by 1 % or
+/// less, except in the faint tail of a Gaussian.
 ///
 /// # Examples
 ///
@@ -185,8 +127,8 @@ impl FilterSampler {
     ///
     /// # Errors
     ///
-    /// Returns an error if the radius is not positive, exceeds 16 pixels or, of a Lanczos filter,
-    /// falls below 1, or if another parameter is outside of its range.
+    /// Returns an error if the radius is not positive or exceeds 16 pixels, or if the standard deviation
+    /// is below an eighth of it.
     pub fn new(filter: Filter) -> Result<Self, TracerError> {
         filter.check()?;
         let tabulated = !matches!(filter, Filter::Box { .. });
@@ -227,27 +169,6 @@ impl FilterSampler {
             }
         }
     }
-}
-
-/// The kernel for `x` in [0, 2].
-fn mitchell_netravali(x: f64, b: f64, c: f64) -> f64 {
-    let coefficients = if x < 1.0 {
-        [
-            6.0 - 2.0 * b,
-            0.0,
-            -18.0 + 12.0 * b + 6.0 * c,
-            12.0 - 9.0 * b - 6.0 * c,
-        ]
-    } else {
-        [
-            8.0 * b + 24.0 * c,
-            -12.0 * b - 48.0 * c,
-            6.0 * b + 30.0 * c,
-            -b - 6.0 * c,
-        ]
-    };
-    let [k0, k1, k2, k3] = coefficients;
-    (k0 + x * (k1 + x * (k2 + x * k3))) / 6.0
 }
 
 fn check(

@@ -76,17 +76,10 @@ const TABLES: &[(&str, &str, &str)] = &[
     ("render", "[render]", "?"),
     ("filter", "[render]", "filter = { ? }"),
     ("filter_radius", "[render]", "filter = { box = { ? } }"),
-    ("filter_radius", "[render]", "filter = { tent = { ? } }"),
-    ("filter_radius", "[render]", "filter = { lanczos = { ? } }"),
     (
         "filter_gaussian",
         "[render]",
         "filter = { gaussian = { ? } }",
-    ),
-    (
-        "filter_mitchell_netravali",
-        "[render]",
-        "filter = { mitchell_netravali = { ? } }",
     ),
     ("speckle", "[speckle]", "?"),
 ];

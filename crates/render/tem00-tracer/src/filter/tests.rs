@@ -1,25 +1,19 @@
+use core::f64::consts::PI;
+
 use approx::assert_relative_eq;
 
 use super::*;
 
-fn filters() -> Vec<Filter> {
-    let mitchell = |b, c| Filter::MitchellNetravali { radius: 2.0, b, c };
+fn filters() -> [Filter; 4] {
     let gaussian = |radius, standard_deviation| Filter::Gaussian {
         radius,
         standard_deviation,
     };
-    vec![
+    [
         Filter::default(),
         Filter::Box { radius: 1.7 },
-        Filter::Tent { radius: 1.0 },
         gaussian(1.5, 0.5),
         gaussian(4.0, 0.5),
-        mitchell(1.0 / 3.0, 1.0 / 3.0),
-        mitchell(1.0, 0.0),
-        mitchell(0.0, 1.0),
-        Filter::Lanczos { radius: 3.0 },
-        Filter::Lanczos { radius: 1.0 },
-        Filter::Lanczos { radius: 2.5 },
     ]
 }
 
@@ -100,39 +94,12 @@ fn the_density_is_that_of_the_drawn_positions() {
 }
 
 #[test]
-fn kernels_are_those_of_their_authors() {
-    // B-spline: (1/6)(3|x|³ − 6x² + 4) and (2 − |x|)³/6. Catmull–Rom: 1 at 0 and 0 at 1.
-    let spline = Filter::MitchellNetravali {
-        radius: 2.0,
-        b: 1.0,
-        c: 0.0,
-    };
-    assert_relative_eq!(spline.kernel(0.5), 2.875 / 6.0, max_relative = 1e-15);
-    assert_relative_eq!(spline.kernel(-1.5), 0.125 / 6.0, max_relative = 1e-14);
-    let catmull_rom = Filter::MitchellNetravali {
-        radius: 2.0,
-        b: 0.0,
-        c: 0.5,
-    };
-    assert_relative_eq!(catmull_rom.kernel(0.0), 1.0, max_relative = 1e-15);
-    assert!(catmull_rom.kernel(1.0).abs() < 1e-15, "interpolates");
-    assert_relative_eq!(catmull_rom.kernel(1.5), -0.0625, max_relative = 1e-14);
-    // Cubic splines of this family sum to 1 over whole pixels.
-    for filter in filters() {
-        if let Filter::MitchellNetravali { .. } = filter {
-            let sum: f64 = (-2..=2).map(|i| filter.kernel(0.3 + f64::from(i))).sum();
-            assert_relative_eq!(sum, 1.0, max_relative = 1e-14);
-        }
-    }
+fn kernels_end_at_their_radius() {
     let gaussian = Filter::Gaussian {
         radius: 1.0,
         standard_deviation: 0.5,
     };
     assert_relative_eq!(gaussian.kernel(0.5), (-0.5_f64).exp(), max_relative = 1e-15);
-    let lanczos = Filter::Lanczos { radius: 2.0 };
-    // sinc(½) sinc(¼) = (2/π)(2√2/π).
-    let expected = 4.0 * 2.0_f64.sqrt() / (PI * PI);
-    assert_relative_eq!(lanczos.kernel(0.5), expected, max_relative = 1e-14);
     for filter in filters() {
         let beyond = filter.radius() * 1.001;
         assert!(filter.kernel(beyond).abs() <= 0.0, "{filter:?} ends");
@@ -171,7 +138,7 @@ fn the_box_of_one_pixel_leaves_samples_as_they_are() {
 }
 
 #[test]
-fn weights_are_signed_and_nearly_equal() {
+fn weights_are_nearly_equal() {
     for filter in filters() {
         let sampler = FilterSampler::new(filter).unwrap();
         let magnitude = integral(filter, |x| filter.kernel(x).signum()) / integral(filter, |_| 1.0);
@@ -207,12 +174,10 @@ fn every_number_gives_a_sample() {
 
 #[test]
 fn impossible_filters_are_refused() {
-    let mitchell = |b, c| Filter::MitchellNetravali { radius: 2.0, b, c };
     for filter in [
         Filter::Box { radius: 0.0 },
-        Filter::Tent { radius: f64::NAN },
-        Filter::Tent { radius: 17.0 },
-        Filter::Lanczos { radius: 0.9 },
+        Filter::Box { radius: f64::NAN },
+        Filter::Box { radius: 17.0 },
         Filter::Gaussian {
             radius: 1.0,
             standard_deviation: 0.1,
@@ -221,8 +186,6 @@ fn impossible_filters_are_refused() {
             radius: 1.0,
             standard_deviation: f64::INFINITY,
         },
-        mitchell(-0.1, 0.5),
-        mitchell(0.5, 1.1),
     ] {
         assert!(FilterSampler::new(filter).is_err(), "{filter:?}");
     }

@@ -56,17 +56,9 @@ typedef enum {
      */
     TEM00_STATUS_MEMORY = 3,
     /**
-     * A file could not be opened, read or written.
-     */
-    TEM00_STATUS_IO = 4,
-    /**
-     * A file is no speckle stack, or damaged, cut short or from a newer version.
-     */
-    TEM00_STATUS_FILE = 5,
-    /**
      * The library failed: a bug, to be reported with its message.
      */
-    TEM00_STATUS_PANIC = 6,
+    TEM00_STATUS_PANIC = 4,
 } tem00_status;
 
 /**
@@ -1708,29 +1700,6 @@ tem00_status tem00_stack_create(const tem00_stack_description *description,
  * The pointers are null or valid.
  */
 tem00_status tem00_stack_plan(const tem00_stack_needs *needs, tem00_stack_description *description);
-
-/**
- * Reads a stack that `tem00_stack_write` or the library in another language has written, if its
- * slices take no more than `memory_limit` bytes.
- *
- * `path` is a file name in UTF-8, `threads` the number of threads as in `tem00_stack_description`. On
- * failure `*stack` is null.
- *
- * The pointers are null or valid, `path` for a string that ends with a zero.
- */
-tem00_status tem00_stack_read(const char *path,
-                              uint64_t memory_limit,
-                              uint32_t threads,
-                              tem00_stack **stack);
-
-/**
- * Writes a stack as a file, which keeps its bits.
- *
- * `path` is a file name in UTF-8; a file of that name is replaced once all is written.
- *
- * The pointers are null or valid, `path` for a string that ends with a zero.
- */
-tem00_status tem00_stack_write(const tem00_stack *stack, const char *path);
 
 /**
  * Tells what a stack is.

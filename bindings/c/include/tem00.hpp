@@ -356,18 +356,6 @@ public:
         handle_.reset(handle);
     }
 
-    /** Reads a stack from a file, if its slices take no more than `memory_limit` bytes, on `threads`
-        threads or, for 0, on all the cores of the machine. */
-    static stack read(const std::string &path, std::uint64_t memory_limit,
-                      std::uint32_t threads = 0) {
-        tem00_stack *handle = nullptr;
-        check(tem00_stack_read(path.c_str(), memory_limit, threads, &handle));
-        return stack(handle);
-    }
-
-    /** Writes the stack as a file. */
-    void write(const std::string &path) const { check(tem00_stack_write(get(), path.c_str())); }
-
     /** What the stack is. */
     tem00_stack_info info() const {
         tem00_stack_info info;

@@ -1,11 +1,9 @@
-//! Speckle: a stack is made from a description or a file, then looked up.
+//! Speckle: a stack is made from a description, then looked up.
 
 mod description;
-mod file;
 mod look_up;
 
 pub use description::*;
-pub use file::*;
 pub use look_up::*;
 
 use tem00_speckle::SpeckleStack;

@@ -10,7 +10,7 @@ use tem00_beam::BeamError;
 use tem00_coherence::CoherenceError;
 use tem00_decorrelation::DecorrelationError;
 use tem00_shading::ShadingError;
-use tem00_speckle::{SpeckleError, StackFileError};
+use tem00_speckle::SpeckleError;
 
 /// Success of a call, or the kind of its failure. The message is that of `tem00_last_error`.
 #[repr(C)]
@@ -24,12 +24,8 @@ pub enum Status {
     InvalidPointer = 2,
     /// The memory is more than the limit, or than the machine has.
     Memory = 3,
-    /// A file could not be opened, read or written.
-    Io = 4,
-    /// A file is no speckle stack, or damaged, cut short or from a newer version.
-    File = 5,
     /// The library failed: a bug, to be reported with its message.
-    Panic = 6,
+    Panic = 4,
 }
 
 /// Failure of a call.
@@ -105,27 +101,6 @@ impl From<ShadingError> for Failure {
                 Self::argument("motion", format!("motion: {error}"))
             }
             _ => Self::argument(error.parameter().unwrap_or_default(), error),
-        }
-    }
-}
-
-impl From<StackFileError> for Failure {
-    fn from(error: StackFileError) -> Self {
-        match error {
-            StackFileError::Stack(error) => {
-                let status = Self::from(error).status;
-                let status = match status {
-                    Status::Memory => Status::Memory,
-                    _ => Status::File,
-                };
-                Self::new(
-                    status,
-                    error.parameter(),
-                    format!("stack in the file: {error}"),
-                )
-            }
-            StackFileError::Io(_) => Self::new(Status::Io, "path", error),
-            _ => Self::new(Status::File, "path", error),
         }
     }
 }

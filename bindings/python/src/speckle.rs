@@ -5,7 +5,6 @@ use pyo3::prelude::*;
 mod arguments;
 mod exposure;
 mod field;
-mod files;
 mod images;
 mod options;
 mod path;

@@ -311,13 +311,6 @@ def test_poses_move_and_change_the_pattern_by_the_law_of_motion() -> None:
         assert measured == pytest.approx(law, abs=3.3 * 0.03)
 
 
-def test_a_stack_file_is_the_stack_it_holds(tmp_path: Path) -> None:
-    file = tmp_path / "stack.t00"
-    stack_of(seed=3).write_to(file)
-    from_file = {**DIRECT, "file": str(file)}
-    assert np.array_equal(picture(from_file), picture({**DIRECT, "seed": 3}))
-
-
 def corner(**lights: Node) -> Node:
     """Return a plate and a wall beside it that only light from the plate reaches."""
     wall = {
@@ -541,8 +534,6 @@ def test_a_thin_lens_determines_the_speckle_size() -> None:
         ("pupil_shift", float("inf")),
         ("shift_x", float("nan")),
         ("shift_y", "far"),
-        ("file", "nowhere.t00"),
-        ("file", 3.0),
         ("speckle", 1),
         ("hide_emitters", "no"),
         ("speckle_sise", 4.5),
@@ -594,16 +585,6 @@ def test_the_table_takes_no_more_than_it_may() -> None:
     assert caught.value.parameter == "speckle_size"
 
 
-def test_tables_of_a_file_for_several_lasers_fit_the_memory_or_are_refused(tmp_path: Path) -> None:
-    file = tmp_path / "stack.t00"
-    speckle.SpeckleStack.generate(
-        speckle.PupilField(256, 128, 1), speckle.SlicePath.still()
-    ).write_to(file)
-    # A stack of half a MiB, and five tables of 1/4 MiB.
-    with pytest.raises(ParameterError, match="amplitude would take 1.25 MiB, and `memory` allows 1 MiB"):
-        generate(settings(file=str(file), memory=1), [SPECKLE_SIZE] * 5, (32, 24), ALIKE)
-
-
 @pytest.mark.parametrize("outer", ["aov", "moment"])
 def test_it_is_refused_inside_another_integrator_by_name(outer: str) -> None:
     around: Node = {"type": outer, "inner": DIRECT}
@@ -612,13 +593,6 @@ def test_it_is_refused_inside_another_integrator_by_name(outer: str) -> None:
     with pytest.raises(RuntimeError) as caught:
         picture(around, 1)
     assert "speckle: cannot stand inside another integrator" in text_of(caught.value)
-
-
-def test_a_file_refuses_what_it_determines(tmp_path: Path) -> None:
-    file = tmp_path / "stack.t00"
-    stack_of().write_to(file)
-    with pytest.raises(Exception, match="half_period.*stack file"):
-        picture({**DIRECT, "file": str(file), "half_period": 4}, 1)
 
 
 def test_a_pinhole_needs_the_speckle_size() -> None:

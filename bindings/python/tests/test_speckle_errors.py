@@ -98,7 +98,6 @@ REFUSED: list[tuple[Callable[[], object], str, str]] = [
     (lambda: PixelArray((1, 1), (-1.0, 1.0)), "pitch", "-1"),
     (lambda: PixelArray((1, 1), (1.0, 1.0)).with_size((-1.0, 1.0)), "size", "-1"),
     (lambda: PixelArray((1, 1), (1.0, 1.0)).with_origin((2e12, 0.0)), "origin", "2e12"),
-    (lambda: SpeckleStack.read_from(__file__, 1 << 20), "file", "stack"),
 ]
 
 
@@ -157,7 +156,5 @@ def test_errors_of_patterns_come_through_their_mean() -> None:
 
 
 def test_files_that_are_not_there_are_os_errors(tmp_path: Path) -> None:
-    with pytest.raises(FileNotFoundError):
-        SpeckleStack.read_from(tmp_path / "none", 1 << 20)
     with pytest.raises(FileNotFoundError):
         FIELD.pattern().write_npy(tmp_path / "no folder" / "pattern.npy")

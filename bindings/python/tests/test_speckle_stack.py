@@ -273,14 +273,6 @@ def test_numpy_reads_what_patterns_and_fields_write(field: PupilField, tmp_path:
     np.testing.assert_array_equal(np.load(tmp_path / "field.npy"), amplitude.values)
 
 
-def test_a_stack_file_keeps_the_bits(stack: SpeckleStack, tmp_path: Path) -> None:
-    file = tmp_path / "stack.tem00"
-    stack.write_to(file)
-    assert SpeckleStack.read_from(file, 1 << 20) == stack
-    with pytest.raises(MemoryError, match="at most 1000 bytes"):
-        SpeckleStack.read_from(file, 1000)
-
-
 def test_arrays_in_single_precision_are_answered_in_it(stack: SpeckleStack) -> None:
     x, y = (places.astype(np.float32) for places in points(5000))
     u = 0.25

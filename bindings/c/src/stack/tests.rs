@@ -1,7 +1,6 @@
 //! The functions of a stack against the library that they call.
 #![expect(clippy::float_cmp, reason = "the same bits are asked for")]
 
-mod files;
 mod look_ups;
 mod made;
 mod refusals;

@@ -275,8 +275,9 @@ impl StackPlan {
         options: &StackOptions,
     ) -> PyResult<SpeckleStack> {
         let seed = seed.unsigned("seed")?;
+        let field = self.0.field(seed).or_raise()?;
         let stack = py.detach(|| self.0.stack(seed, options.0));
-        Ok(SpeckleStack(stack.or_raise()?))
+        Ok(SpeckleStack(stack.or_raise()?, field))
     }
 
     fn __repr__(&self) -> String {

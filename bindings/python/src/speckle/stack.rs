@@ -1,17 +1,14 @@
-use std::{fs::File, io::BufReader, path::PathBuf};
-
 use numpy::{Complex32, PyArray2};
 use pyo3::{
     prelude::*,
-    types::{PyBytes, PyComplex},
+    types::PyComplex,
 };
 use tem00_speckle as physics;
 
 use super::{
     arguments::{INTERPOLATIONS, finite_pair, index, name_of},
     field::PupilField,
-    files::OrRaiseFile,
-    images::{check_bytes, view},
+    images::view,
     options::StackOptions,
     path::SlicePath,
     slice_law::SliceLaw,
@@ -28,7 +25,11 @@ use crate::{
 /// pattern repeats after its size, along u after ``slice_count`` slices.
 #[pyclass(frozen, eq, module = "tem00.speckle")]
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct SpeckleStack(pub(super) physics::SpeckleStack);
+pub(crate) struct SpeckleStack(
+    pub(super) physics::SpeckleStack,
+    /// What it was generated from, before a straight path closed it.
+    pub(super) physics::PupilField,
+);
 
 #[pymethods]
 impl SpeckleStack {
@@ -58,33 +59,7 @@ impl SpeckleStack {
         let (field, path) = (&field.0, path.0);
         let options = options.map_or_else(physics::StackOptions::default, |options| options.0);
         let stack = py.detach(|| physics::SpeckleStack::generate_with(field, path, options));
-        Ok(Self(stack.or_raise()?))
-    }
-
-    /// Read a stack that ``write_to`` has written.
-    ///
-    /// Parameters
-    /// ----------
-    /// file : str or os.PathLike
-    ///     File to read.
-    /// memory_limit : int
-    ///     Bytes that the slices may take.
-    #[staticmethod]
-    fn read_from(py: Python<'_>, file: PathBuf, memory_limit: Whole<'_>) -> PyResult<Self> {
-        let limit = memory_limit.unsigned("memory_limit")?;
-        let stack = py
-            .detach(|| physics::SpeckleStack::read_from(BufReader::new(File::open(file)?), limit));
-        Ok(Self(stack.or_raise_file()?))
-    }
-
-    /// Write the stack to a file that keeps its bits.
-    ///
-    /// Parameters
-    /// ----------
-    /// file : str or os.PathLike
-    ///     Where to write.
-    fn write_to(&self, py: Python<'_>, file: PathBuf) -> PyResult<()> {
-        Ok(py.detach(|| self.0.save(&file))?)
+        Ok(Self(stack.or_raise()?, field.clone()))
     }
 
     /// Return the coefficients that look-ups interpolate, complex64 [row, column].
@@ -225,21 +200,10 @@ impl SpeckleStack {
         )
     }
 
-    /// Makes a stack again from the bytes of its file.
-    #[staticmethod]
-    fn _restore(py: Python<'_>, file: &[u8]) -> PyResult<Self> {
-        let stack = py.detach(|| physics::SpeckleStack::read_from(file, u64::MAX));
-        Ok(Self(stack.or_raise_file()?))
-    }
-
-    /// A stack is pickled as its file.
+    /// A stack is pickled as the field and the path that it is made of.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        check_bytes(self.0.memory_bytes().saturating_mul(2))?;
-        let file = py.detach(|| {
-            let mut file = Vec::new();
-            self.0.write_to(&mut file).map(|()| file)
-        })?;
-        by_constructor::<Self>(py, "_restore", (PyBytes::new(py, &file),))
+        let parts = (PupilField(self.1.clone()), self.path());
+        by_constructor::<Self>(py, "generate", parts)
     }
 
     fn __repr__(&self) -> String {
@@ -256,7 +220,7 @@ impl SpeckleStack {
 methods! {
     impl SpeckleStack as this: this.0;
 
-    unmade "generate or read_from";
+    unmade "generate";
 
     /// Field the slices were cut from. That of a straight path closes on itself after the length of
     /// the path.

@@ -2,9 +2,7 @@
 //!
 //! # Files
 //!
-//! [`SpeckleStack::write_to`] keeps a stack with its bits, to be read again or mapped into
-//! memory; [`NpyReader`], [`write_npy`] and the methods of that name exchange fields and patterns
-//! with NumPy.
+//! [`NpyReader`], [`write_npy`] and the methods of that name exchange fields and patterns with NumPy.
 //!
 //! # On a graphics card
 //!
@@ -55,6 +53,6 @@ pub use pupil::{
     Transmission,
 };
 pub use stack::{
-    SliceLaw, SlicePath, SpeckleStack, StackFileError, StackNeeds, StackOptions, StackPlan,
+    SliceLaw, SlicePath, SpeckleStack, StackNeeds, StackOptions, StackPlan,
     StackSource,
 };

@@ -12,7 +12,7 @@ mod view;
 
 pub use aperture::Aperture;
 pub use field::PupilField;
-pub(crate) use field::{Layout, too_large};
+pub(crate) use field::too_large;
 pub use pattern::{SpeckleField, SpecklePattern};
 pub use shape::{Phasors, Pupil};
 pub use transmission::Transmission;

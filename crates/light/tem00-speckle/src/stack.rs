@@ -7,7 +7,6 @@ use crate::{
 };
 
 mod blend;
-mod file;
 mod join;
 mod look_up;
 mod memory;
@@ -18,7 +17,6 @@ mod slice_law;
 mod source;
 mod workers;
 
-pub use file::StackFileError;
 pub(crate) use join::Slice;
 use join::join_all;
 pub use memory::StackOptions;

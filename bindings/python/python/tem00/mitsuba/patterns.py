@@ -117,18 +117,13 @@ def generate(
     lasers = len(speckle_sizes)
     lights = lights or [[None] * len(surfaces)] * lasers
     memory = settings.memory_bytes // max(lasers, 1)
-    if settings.file is not None:
-        _refuse_lines(lights, "does not go with a stack file, which is of one wavelength")
-        stack = _read(settings.file, settings.memory_bytes)
-        of_lasers = [_places_in(stack, surfaces, number, lasers) for number in range(lasers)]
-    else:
-        plans = [_plan(settings, size, image, memory) for size in speckle_sizes]
-        motions = 1 + max(surface.motion for surface in surfaces)
-        fields = [_fields(settings.seed, plan, number, motions) for number, plan in enumerate(plans)]
-        of_lasers = [
-            _parts(settings, of_motions, memory, list(zip(surfaces, of_laser, strict=True)))
-            for of_motions, of_laser in zip(fields, lights, strict=True)
-        ]
+    plans = [_plan(settings, size, image, memory) for size in speckle_sizes]
+    motions = 1 + max(surface.motion for surface in surfaces)
+    fields = [_fields(settings.seed, plan, number, motions) for number, plan in enumerate(plans)]
+    of_lasers = [
+        _parts(settings, of_motions, memory, list(zip(surfaces, of_laser, strict=True)))
+        for of_motions, of_laser in zip(fields, lights, strict=True)
+    ]
     speckles = [parts for laser in of_lasers for parts in laser]
     table = _table(speckles, settings)
     if table == "amplitude":
@@ -209,14 +204,12 @@ def _refuse_lines(lights: list[list[LineLight | None]], why: str) -> None:
         raise refused("linewidth", why)
 
 
-def _places_in(
-    stack: SpeckleStack, surfaces: list[Surface], first: int = 0, step: int = 1
-) -> list[list[Part]]:
-    """Return the patterns on each surface as places far apart in one stack: a first number, and the step to others."""
+def _places_in(stack: SpeckleStack, surfaces: list[Surface]) -> list[list[Part]]:
+    """Return the patterns on each surface as places far apart in one stack."""
     counts = _counts([(surface, len(surface.fractions)) for surface in surfaces])
     return [
         [
-            Part(fraction, stack, StackPlan.place(first + step * (sum(counts[: surface.motion]) + index)))
+            Part(fraction, stack, StackPlan.place(sum(counts[: surface.motion]) + index))
             for index, fraction in enumerate(surface.fractions)
         ]
         for surface in surfaces
@@ -275,14 +268,6 @@ def _path(settings: PatternSettings) -> SlicePath:
     if settings.path == "straight":
         return SlicePath.straight(half_period=settings.half_period, length=settings.length)
     return SlicePath.still()
-
-
-def _read(file: str, memory: int) -> SpeckleStack:
-    path = mi.file_resolver().resolve(file)
-    try:
-        return SpeckleStack.read_from(str(path), memory_limit=memory)
-    except OSError as error:
-        raise refused("file", f"{path} cannot be read: {error}") from error
 
 
 def _table(speckles: list[list[Part]], settings: PatternSettings) -> str:

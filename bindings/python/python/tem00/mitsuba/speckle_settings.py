@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
 PATHS = ("still", "straight", "circle")
 TABLES = ("auto", "intensity", "amplitude")
-# What a stack file says itself.
-_OF_THE_FILE = ("seed", "pattern_size", "pattern_diameter", "path", "half_period", "length")
 _LARGEST_SEED = 2**63 - 1
 _LARGEST_SIDE = 2**15
 _SMALLEST_DIAMETER = 8
@@ -37,7 +35,6 @@ class PatternSettings:
     path: str
     half_period: int
     length: int
-    file: str | None
     memory: int
     table: str
 
@@ -49,7 +46,6 @@ class PatternSettings:
     @classmethod
     def read(cls, props: mi.Properties) -> PatternSettings:
         """Read the properties."""
-        file = _file(props)
         return cls(
             speckle_size=_speckle_size(props),
             seed=whole(props, "seed", 0, (0, _LARGEST_SEED)),
@@ -58,7 +54,6 @@ class PatternSettings:
             path=choice(props, "path", PATHS),
             half_period=whole(props, "half_period", 64, (1, _LARGEST_SIDE)),
             length=whole(props, "length", 2, (1, _LARGEST_SIDE)),
-            file=file,
             memory=whole(props, "memory", 1024, (1, 2**20)),
             table=choice(props, "table", TABLES),
         )
@@ -114,15 +109,3 @@ def _speckle_size(props: mi.Properties) -> float | None:
 def _side(props: mi.Properties, name: str, smallest: int) -> int | None:
     largest = smallest * (_LARGEST_SIDE // (2 * _SMALLEST_DIAMETER))
     return whole(props, name, 0, (smallest, largest)) if name in props else None
-
-
-def _file(props: mi.Properties) -> str | None:
-    file = props.get("file", None)
-    if file is None:
-        return None
-    if not isinstance(file, str):
-        raise refused("file", f"must be the name of a stack file, got {file!r}")
-    for name in _OF_THE_FILE:
-        if name in props:
-            raise refused(name, "does not go with a stack file, which determines it")
-    return file

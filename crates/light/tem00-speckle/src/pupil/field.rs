@@ -283,26 +283,6 @@ impl PupilField {
         self.lattice.nearest([to[0] - from[0], to[1] - from[1]])
     }
 
-    /// Makes a field again of what it was made of.
-    pub(crate) fn restore(
-        lattice: Lattice,
-        layout: Layout,
-        pupil: Pupil,
-    ) -> Result<Self, SpeckleError> {
-        pupil.check()?;
-        if let Source::Measured(samples) = &lattice.source {
-            check_samples(samples)?;
-        }
-        let [x, y] = Layout::new(layout.size, layout.speckle_size)?.diameter;
-        // The constructors round the one or the other.
-        let agrees = |a: f64, b: f64| (a - b).abs() < 1e-12 * a;
-        if !(agrees(x, layout.diameter[0]) && agrees(y, layout.diameter[1])) {
-            let largest = layout.size[0] as f64 / layout.diameter[0];
-            return Err(not_a_speckle_size(layout.speckle_size, largest));
-        }
-        Self::build(lattice, layout, pupil)
-    }
-
     fn build(lattice: Lattice, layout: Layout, pupil: Pupil) -> Result<Self, SpeckleError> {
         let Layout { size, diameter, .. } = layout;
         let mask = Mask::new(&pupil, diameter, [0.0; 2]);

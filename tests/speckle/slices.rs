@@ -5,7 +5,7 @@ use core::f64::consts::{PI, TAU};
 use proptest::prelude::*;
 use tem00::{
     numerics::Grid,
-    speckle::{Complex, Interpolation, Phasors, PupilField, SlicePath, SpeckleStack, StackOptions},
+    speckle::{Complex, Phasors, PupilField, SlicePath, SpeckleField, SpeckleStack},
     statistics::{exponential_cumulative, kolmogorov_smirnov, pearson_correlation},
 };
 
@@ -21,20 +21,13 @@ fn paths() -> impl Strategy<Value = SlicePath> {
     ]
 }
 
-fn interpolations() -> impl Strategy<Value = Interpolation> {
-    prop_oneof![
-        Just(Interpolation::CubicSpline),
-        Just(Interpolation::Bilinear),
-        Just(Interpolation::Nearest),
-    ]
+fn stack(field: &PupilField, path: SlicePath) -> SpeckleStack {
+    SpeckleStack::generate(field, path).expect("a small stack")
 }
 
-fn stack(field: &PupilField, path: SlicePath, interpolation: Interpolation) -> SpeckleStack {
-    let options = StackOptions {
-        interpolation,
-        ..StackOptions::default()
-    };
-    SpeckleStack::generate_with(field, path, options).expect("a small stack")
+/// The field that a slice shows, at its samples.
+fn on_demand(stack: &SpeckleStack, index: usize) -> SpeckleField {
+    stack.field().speckle(stack.offset(index), 0.0)
 }
 
 /// The centre of a slice's pupil, in lattice points.
@@ -81,9 +74,9 @@ fn counted_overlaps(
 fn correlation_in_the_lattice(stack: &SpeckleStack, i: usize, j: usize) -> Complex<f64> {
     let step = shift(stack, i, j);
     let size = stack.size();
-    let (a, b) = (stack.coefficients(i), stack.coefficients(j));
+    let (a, b) = (on_demand(stack, i), on_demand(stack, j));
     let mut sum = Complex::new(0.0, 0.0);
-    for (y, (row, other)) in a.rows().zip(b.rows()).enumerate() {
+    for (y, (row, other)) in a.values().rows().zip(b.values().rows()).enumerate() {
         for (x, (here, there)) in row.iter().zip(other).enumerate() {
             let turns = (step[0] * signed(x)) as f64 / size[0] as f64
                 + (step[1] * signed(y)) as f64 / size[1] as f64;
@@ -113,31 +106,28 @@ fn slice_below(stack: &SpeckleStack, u: f64) -> usize {
 }
 
 fn intensity(stack: &SpeckleStack, index: usize) -> Grid<f32> {
-    stack.coefficients(index).map(Complex::norm_sqr)
+    on_demand(stack, index).values().map(Complex::norm_sqr)
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn slices_are_the_fields_on_demand(case in cases(20..90, 5.0), path in paths()) {
+    fn a_lattice_that_closes_shows_what_the_endless_one_has_about_the_origin(case in cases(20..90, 5.0), path in paths()) {
         let field = case.field();
-        let stack = stack(&field, path, Interpolation::Bilinear);
+        let stack = stack(&field, path);
         let reach = period(&stack) as f64 / stack.field().diameter()[0] / 2.0 - 0.51;
         for index in 0..stack.slice_count() {
             let offset = stack.offset(index);
-            let demanded = stack.field().speckle(offset, 0.0);
-            prop_assert_eq!(demanded.values(), stack.coefficients(index));
-            // The lattice that closes shows what the endless one has about the origin.
             if offset[0] < reach {
-                prop_assert_eq!(field.speckle(offset, 0.0), demanded);
+                prop_assert_eq!(field.speckle(offset, 0.0), on_demand(&stack, index));
             }
         }
     }
 
     #[test]
-    fn splines_pass_through_the_field_on_demand(case in cases(20..90, 5.0), path in paths()) {
-        let stack = stack(&case.field(), path, Interpolation::CubicSpline);
+    fn splines_pass_through_the_field_on_demand(case in cases(20..90, 9.0), path in paths()) {
+        let stack = stack(&case.field(), path);
         for (index, u) in (0..stack.slice_count()).zip(0_u32..) {
             let pattern = stack.field().pattern_at(stack.offset(index), 0.0);
             let mut square = 0.0;
@@ -161,7 +151,7 @@ proptest! {
         case in cases(40..90, 3.0), path in paths(), first in 0_usize..12,
     ) {
         let case = Case { phasors: Phasors::Unit, ..case };
-        let stack = stack(&case.field(), path, Interpolation::Nearest);
+        let stack = stack(&case.field(), path);
         let lattice = Lattice::of(stack.field(), [0.0; 2]);
         let (count, correlations) = (lattice.phasors(), lattice.correlations());
         let first = first % stack.slice_count();
@@ -197,7 +187,7 @@ proptest! {
     fn slices_stand_on_their_path_within_half_a_lattice_point(
         case in cases(20..90, 5.0), path in paths(),
     ) {
-        let stack = stack(&case.field(), path, Interpolation::Nearest);
+        let stack = stack(&case.field(), path);
         let diameter = stack.field().diameter();
         for index in 0..stack.slice_count() {
             let offset = stack.offset(index);
@@ -223,7 +213,7 @@ proptest! {
         // Behind other pupils the circle's law depends on the direction.
         let round = matches!(case.shape, Shape::Circle | Shape::Annulus(_) | Shape::Gaussian(_));
         prop_assume!(round);
-        let stack = stack(&case.field(), path, Interpolation::Nearest);
+        let stack = stack(&case.field(), path);
         let diameter = stack.field().diameter();
         let first = first % stack.slice_count();
         for second in 0..stack.slice_count() {
@@ -247,7 +237,7 @@ proptest! {
 
     #[test]
     fn look_ups_are_exponential_at_any_fraction(
-        case in cases(70..110, 3.0), path in paths(), interpolation in interpolations(),
+        case in cases(70..110, 3.0), path in paths(),
         fractions in [0.0_f64..1.0, 0.0_f64..1.0], u in 0.0_f64..12.0,
     ) {
         const TILES: u64 = 4;
@@ -255,7 +245,7 @@ proptest! {
         let stride = Lattice::of(&field, [0.0; 2]).stride([0, 0]);
         let mut samples = Vec::new();
         for tile in 0..TILES {
-            let stack = stack(&field.clone().with_seed(case.seed ^ tile), path, interpolation);
+            let stack = stack(&field.clone().with_seed(case.seed ^ tile), path);
             let [columns, rows] = stack.size().map(|side| side / stride);
             for y in 0..rows {
                 for x in 0..columns {
@@ -272,11 +262,11 @@ proptest! {
 
     #[test]
     fn the_mean_of_look_ups_is_one_at_any_fraction(
-        case in cases(40..70, 5.0), path in paths(), interpolation in interpolations(),
+        case in cases(40..70, 5.0), path in paths(),
         fractions in [0.0_f64..1.0, 0.0_f64..1.0], u in 0.0_f64..12.0,
     ) {
         let case = Case { phasors: Phasors::Unit, ..case };
-        let stack = stack(&case.field(), path, interpolation);
+        let stack = stack(&case.field(), path);
         // Points a period of the pattern apart have the same wave, and add noise to the tile.
         let here = slice_below(&stack, u);
         prop_assume!(is_alone(&stack, shift(&stack, here, (here + 1) % stack.slice_count())));

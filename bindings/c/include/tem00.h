@@ -99,24 +99,6 @@ typedef enum {
 } tem00_slice_path;
 
 /**
- * Interpolation of the amplitude between the samples of a slice.
- */
-typedef enum {
-    /**
-     * Cubic B-spline, the most exact.
-     */
-    TEM00_INTERPOLATION_CUBIC_SPLINE = 0,
-    /**
-     * Bilinear.
-     */
-    TEM00_INTERPOLATION_BILINEAR = 1,
-    /**
-     * The nearest sample.
-     */
-    TEM00_INTERPOLATION_NEAREST = 2,
-} tem00_interpolation;
-
-/**
  * Meaning of `focus` of a description: the position of the surface in focus before a lens.
  */
 typedef enum {
@@ -873,10 +855,6 @@ typedef struct {
      */
     size_t length;
     /**
-     * Interpolation of look-ups: a `tem00_interpolation`.
-     */
-    uint32_t interpolation;
-    /**
      * Bytes that the slices may take; `UINT64_MAX` for all the machine has.
      */
     uint64_t memory_limit;
@@ -954,10 +932,6 @@ typedef struct {
      * Length of a straight path in pupil diameters, 0 for others.
      */
     size_t length;
-    /**
-     * Interpolation of look-ups.
-     */
-    tem00_interpolation interpolation;
     /**
      * Bytes that the slices take.
      */

@@ -1,8 +1,7 @@
 use core::fmt;
 
 use tem00_speckle::{
-    Interpolation, PupilField, SliceLaw, SlicePath, SpeckleStack, StackOptions, StackSource,
-    closed_form,
+    PupilField, SliceLaw, SlicePath, SpeckleStack, StackOptions, StackSource, closed_form,
 };
 use wgpu::{
     BindGroup, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType,
@@ -60,7 +59,6 @@ pub struct GpuStack {
 /// What look-ups know of a stack beside its coefficients.
 struct Laws {
     size: [usize; 2],
-    interpolation: Interpolation,
     slices: Vec<SliceLaw>,
 }
 
@@ -75,7 +73,7 @@ impl fmt::Debug for GpuStack {
 }
 
 impl GpuStack {
-    /// Generates the slices of `field` along `path` on the card, for look-ups by cubic splines.
+    /// Generates the slices of `field` along `path` on the card.
     ///
     /// # Errors
     ///
@@ -109,7 +107,6 @@ impl GpuStack {
             }
             let laws = Laws {
                 size: field.size(),
-                interpolation: source.interpolation(),
                 slices: source.laws(),
             };
             Self::assemble(gpu, &coefficients, &laws)
@@ -133,7 +130,6 @@ impl GpuStack {
             }
             let laws = Laws {
                 size: stack.size(),
-                interpolation: stack.interpolation(),
                 slices: (0..stack.slice_count())
                     .map(|slice| stack.slice_law(slice))
                     .collect(),
@@ -145,14 +141,9 @@ impl GpuStack {
     fn assemble(gpu: &Gpu, coefficients: &Buffer, laws: &Laws) -> Result<Self, GpuError> {
         let rows: Vec<_> = laws.slices.iter().map(|law| law.rows(laws.size)).collect();
         let rows = uploaded(gpu, "the laws of the slices", rows.as_flattened())?;
-        let interpolation = match laws.interpolation {
-            Interpolation::CubicSpline => 0,
-            Interpolation::Bilinear => 1,
-            Interpolation::Nearest => 2,
-        };
         let [width, height] = laws.size.map(to_u32);
         let slices = laws.slices.len();
-        let stack = uniform(gpu, &[width, height, to_u32(slices), interpolation]);
+        let stack = uniform(gpu, &[width, height, to_u32(slices), 0]);
         let layout = Self::bind_group_layout(gpu);
         let group = bind(gpu, &layout, &[&stack, coefficients, &rows]);
         Ok(Self {

@@ -43,7 +43,6 @@ tem00_stack_description stack_description() {
     description.seed = 7;
     description.path = TEM00_SLICE_PATH_CIRCLE;
     description.half_period = 4;
-    description.interpolation = TEM00_INTERPOLATION_CUBIC_SPLINE;
     description.memory_limit = UINT64_MAX;
     return description;
 }

@@ -60,7 +60,6 @@ REFUSED: list[tuple[Callable[[], object], str, str]] = [
     (lambda: Transmission.from_complex(np.array([[2j]])), "amplitude", "2"),
     (lambda: SlicePath.circle(half_period=0), "half_period", "0"),
     (lambda: SlicePath.straight(half_period=4, length=1), "length", "1"),
-    (lambda: StackOptions("linear"), "interpolation", "'linear'"),  # type: ignore[arg-type]
     (lambda: StackOptions(memory_limit=-5), "memory_limit", "-5"),
     (lambda: STACK.coefficients(4), "index", "4"),
     (lambda: STACK.slice_law(-5), "index", "-5"),

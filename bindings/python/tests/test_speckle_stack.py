@@ -107,21 +107,6 @@ def test_look_ups_between_slices_blend_amplitudes(field: PupilField) -> None:
             np.testing.assert_allclose(stack.intensity_at(x, y, index + f), expected, atol=SINGLE)
 
 
-@pytest.mark.parametrize("interpolation", ["bilinear", "nearest"])
-def test_look_ups_without_a_spline_interpolate_samples(
-    field: PupilField, interpolation: Literal["bilinear", "nearest"]
-) -> None:
-    stack = SpeckleStack.generate(field, CIRCLE, StackOptions(interpolation))
-    assert stack.interpolation == interpolation
-    np.testing.assert_allclose(stack.coefficients(0), field.speckle((0.5, 0), 0).values, atol=1e-5)
-    x, y = points(200)
-    x, y = (x, y) if interpolation == "bilinear" else (np.round(x), np.round(y))
-    amplitude = spline(stack, 0, x, y, order=1 if interpolation == "bilinear" else 0)
-    square = polynomial(stack.slice_law(0).mean_square, x, y)
-    expected = np.abs(amplitude) ** 2 / square
-    np.testing.assert_allclose(stack.intensity_at(x, y, 0), expected, atol=SINGLE)
-
-
 def test_the_closed_forms_are_sums_over_the_pupil(stack: SpeckleStack) -> None:
     k = np.arange(-DIAMETER // 2, DIAMETER // 2 + 1)
     inside = np.hypot(k, k[:, np.newaxis]) <= DIAMETER / 2

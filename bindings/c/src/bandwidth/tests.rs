@@ -10,7 +10,7 @@ use tem00_decorrelation::{
 
 use super::*;
 use crate::{
-    Interpolation, SlicePath, Stack, StackDescription,
+    SlicePath, Stack, StackDescription,
     status::Status,
     tem00_stack_amplitude, tem00_stack_create, tem00_stack_destroy,
     testing::{each_is_refused, last_parameter, number_is_refused, pointer_is_refused},
@@ -217,7 +217,6 @@ fn stacks(count: u64) -> Vec<*mut Stack> {
             path: SlicePath::Straight as u32,
             half_period: 48,
             length: 3,
-            interpolation: Interpolation::CubicSpline as u32,
             memory_limit: 1 << 27,
             threads: 0,
         };

@@ -21,18 +21,6 @@ pub enum SlicePath {
     Straight = 2,
 }
 
-/// Interpolation of the amplitude between the samples of a slice.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Interpolation {
-    /// Cubic B-spline, the most exact.
-    CubicSpline = 0,
-    /// Bilinear.
-    Bilinear = 1,
-    /// The nearest sample.
-    Nearest = 2,
-}
-
 /// Parameters of a stack.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
@@ -55,8 +43,6 @@ pub struct StackDescription {
     pub half_period: usize,
     /// Length of a straight path in pupil diameters, at least 2; not read for others.
     pub length: usize,
-    /// Interpolation of look-ups: a `tem00_interpolation`.
-    pub interpolation: u32,
     /// Bytes that the slices may take; `UINT64_MAX` for all the machine has.
     pub memory_limit: u64,
     /// Number of threads that generate it, at most 1024; 0 for all the cores of the machine. The stack is
@@ -87,7 +73,10 @@ pub struct StackNeeds {
 
 impl StackDescription {
     fn stack(&self) -> Result<Stack, Failure> {
-        let (path, options, field) = (self.slice_path()?, self.options()?, self.field()?);
+        let (path, field) = (self.slice_path()?, self.field()?);
+        let options = StackOptions {
+            memory_limit: self.memory_limit,
+        };
         let stack = on_threads(self.threads, || {
             SpeckleStack::generate_with(&field, path, options)
         })?;
@@ -133,15 +122,6 @@ impl StackDescription {
             &[Still, Circle { half_period }, straight],
         )
     }
-
-    fn options(&self) -> Result<StackOptions, Failure> {
-        use tem00_speckle::Interpolation::{Bilinear, CubicSpline, Nearest};
-        let interpolations = [CubicSpline, Bilinear, Nearest];
-        Ok(StackOptions {
-            interpolation: code("interpolation", self.interpolation, &interpolations)?,
-            memory_limit: self.memory_limit,
-        })
-    }
 }
 
 impl StackNeeds {
@@ -166,7 +146,6 @@ impl StackNeeds {
             path: path as u32,
             half_period,
             length,
-            interpolation: Interpolation::CubicSpline as u32,
             memory_limit: self.memory_limit,
             threads: 0,
         })

@@ -2,7 +2,7 @@ use tem00_speckle::SpeckleStack;
 
 use super::{
     Stack,
-    description::{Interpolation, SlicePath, path_numbers},
+    description::{SlicePath, path_numbers},
 };
 use crate::{
     numbers::{check_coordinates, check_finite, check_length},
@@ -28,15 +28,12 @@ pub struct StackInfo {
     pub half_period: usize,
     /// Length of a straight path in pupil diameters, 0 for others.
     pub length: usize,
-    /// Interpolation of look-ups.
-    pub interpolation: Interpolation,
     /// Bytes that the slices take.
     pub memory_bytes: u64,
 }
 
 impl StackInfo {
     fn new(Stack(stack): &Stack) -> Self {
-        use tem00_speckle::Interpolation as I;
         let [width, height] = stack.size();
         let (path, half_period, length) = path_numbers(stack.path());
         Self {
@@ -47,11 +44,6 @@ impl StackInfo {
             path,
             half_period,
             length,
-            interpolation: match stack.interpolation() {
-                I::CubicSpline => Interpolation::CubicSpline,
-                I::Bilinear => Interpolation::Bilinear,
-                I::Nearest => Interpolation::Nearest,
-            },
             memory_bytes: stack.memory_bytes(),
         }
     }

@@ -24,7 +24,6 @@ const DESCRIPTION: StackDescription = StackDescription {
     path: SlicePath::Straight as u32,
     half_period: 6,
     length: 3,
-    interpolation: Interpolation::CubicSpline as u32,
     memory_limit: 1 << 20,
     threads: 1,
 };

@@ -49,6 +49,5 @@ Boundary: TypeAlias = Literal["periodic", "finite"]
 Dtype: TypeAlias = Literal["float64", "float32"] | type[np.float64] | type[np.float32]
 Errors: TypeAlias = Literal["relative", "equal"] | Vector
 FocusCurve: TypeAlias = Literal["equal_distance", "equal_plane"]
-Interpolation: TypeAlias = Literal["cubic_spline", "bilinear", "nearest"]
 Phasors: TypeAlias = Literal["unit", "gaussian"]
 Purpose: TypeAlias = Literal["laser", "body"]

@@ -2,7 +2,7 @@ from collections.abc import Iterable, Sequence
 from typing import ClassVar, Literal, SupportsIndex, final, overload
 import numpy as np
 from numpy.typing import NDArray
-from tem00._typing import ComplexArray, Counts, File, FloatArray, Interpolation, Numbers, Phasors, Purpose, RealArray, Vector
+from tem00._typing import ComplexArray, Counts, File, FloatArray, Numbers, Phasors, Purpose, RealArray, Vector
 
 __all__ = [
     "Exposure",
@@ -247,8 +247,6 @@ class SpeckleStack:
     @property
     def path(self) -> SlicePath: ...
     @property
-    def interpolation(self) -> Interpolation: ...
-    @property
     def size(self) -> tuple[int, int]: ...
     @property
     def speckle_size(self) -> float: ...
@@ -307,11 +305,8 @@ class StackNeeds:
 class StackOptions:
     def __new__(
         cls,
-        interpolation: Interpolation = "cubic_spline",
         memory_limit: SupportsIndex | None = None,
     ) -> StackOptions: ...
-    @property
-    def interpolation(self) -> Interpolation: ...
     @property
     def memory_limit(self) -> int: ...
     def __eq__(self, value: object, /) -> bool: ...

@@ -1,7 +1,7 @@
 //! Arguments that are checked where their name is known.
 
 use pyo3::prelude::*;
-use tem00_speckle::{Interpolation, Phasors};
+use tem00_speckle::Phasors;
 
 use crate::{arrays::Whole, error::refused};
 
@@ -39,12 +39,6 @@ pub(crate) fn finite_pair(name: &str, [x, y]: [f64; 2]) -> PyResult<[f64; 2]> {
 
 /// The choices of a parameter that Python gives as a string, and their names.
 pub(crate) type Choices<T, const N: usize> = [(&'static str, T); N];
-
-pub(crate) const INTERPOLATIONS: Choices<Interpolation, 3> = [
-    ("cubic_spline", Interpolation::CubicSpline),
-    ("bilinear", Interpolation::Bilinear),
-    ("nearest", Interpolation::Nearest),
-];
 
 pub(crate) const PHASORS: Choices<Phasors, 2> =
     [("unit", Phasors::Unit), ("gaussian", Phasors::Gaussian)];

@@ -267,7 +267,7 @@ impl StackPlan {
     /// seed : int
     ///     Seed of the phasors, 0 to 2**64 - 1.
     /// options : StackOptions
-    ///     Interpolation and memory limit.
+    ///     Memory limit.
     fn stack(
         &self,
         py: Python<'_>,

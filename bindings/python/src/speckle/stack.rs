@@ -1,12 +1,9 @@
 use numpy::{Complex32, PyArray2};
-use pyo3::{
-    prelude::*,
-    types::PyComplex,
-};
+use pyo3::{prelude::*, types::PyComplex};
 use tem00_speckle as physics;
 
 use super::{
-    arguments::{INTERPOLATIONS, finite_pair, index, name_of},
+    arguments::{finite_pair, index},
     field::PupilField,
     images::view,
     options::StackOptions,
@@ -42,7 +39,7 @@ impl SpeckleStack {
     /// path : SlicePath
     ///     Path of the pupil over the field.
     /// options : StackOptions, optional
-    ///     Interpolation and memory limit; by default cubic splines and all that the machine has.
+    ///     Memory limit; by default all that the machine has.
     ///
     /// Raises
     /// ------
@@ -64,8 +61,7 @@ impl SpeckleStack {
 
     /// Return the coefficients that look-ups interpolate, complex64 [row, column].
     ///
-    /// They are the samples of the slice's amplitude, or those of the prefiltered spline: a read-only
-    /// view without a copy.
+    /// They are those of the prefiltered spline: a read-only view without a copy.
     ///
     /// Parameters
     /// ----------
@@ -208,11 +204,10 @@ impl SpeckleStack {
 
     fn __repr__(&self) -> String {
         format!(
-            "<SpeckleStack: size={:?}, speckle_size={}, path={}, interpolation='{}'>",
+            "<SpeckleStack: size={:?}, speckle_size={}, path={}>",
             self.size(),
             self.speckle_size(),
-            self.path().__repr__(),
-            self.interpolation()
+            self.path().__repr__()
         )
     }
 }
@@ -228,9 +223,6 @@ methods! {
 
     /// Path of the pupil.
     get path -> SlicePath = SlicePath(this.0.path());
-
-    /// Interpolation of look-ups in the plane.
-    get interpolation -> &'static str = name_of(&INTERPOLATIONS, this.0.interpolation());
 
     /// Width and height, which are the periods in the plane, in samples.
     get size -> (usize, usize);

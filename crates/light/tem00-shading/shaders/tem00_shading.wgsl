@@ -54,7 +54,7 @@ struct Tem00SpeckleFrame {
     rayleigh_squared: vec2<f32>,
     /// Where the axis of the camera meets the pattern, in samples.
     origin: vec2<f32>,
-    /// Width, height, slices and interpolation of the stack.
+    /// Width, height and slices of the stack.
     stack: vec4<f32>,
 }
 
@@ -80,7 +80,7 @@ fn tem00_factor(frame: Tem00SpeckleFrame, point: vec3<f32>, normal: vec3<f32>) -
         return 1.0;
     }
     let stack = vec4<u32>(frame.stack);
-    return tem00_stack_intensity(Tem00Stack(stack.xy, stack.z, stack.w), at.place.x, at.place.y, at.slice);
+    return tem00_stack_intensity(Tem00Stack(stack.xy, stack.z), at.place.x, at.place.y, at.slice);
 }
 
 /// Returns where the speckle of a point is looked up: `SpeckleFrame::shift`.

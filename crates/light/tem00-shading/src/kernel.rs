@@ -197,7 +197,6 @@ impl KernelFrame<'_> {
             DVec2::from_array(wave.rayleigh_range_squared)
                 .extend(on_axis.x)
                 .extend(on_axis.y),
-            // Cubic splines between the samples.
             size.extend(self.plan.path().slice_count() as f64)
                 .extend(0.0),
         ]

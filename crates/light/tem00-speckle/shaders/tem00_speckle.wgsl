@@ -33,8 +33,6 @@ struct Tem00Stack {
     size: vec2<u32>,
     /// The number of slices, which is the period of u.
     slices: u32,
-    /// Between the samples: 0 the cubic spline, 1 bilinear, 2 the nearest sample.
-    interpolation: u32,
 }
 
 /// Returns the intensity, with mean 1, at (x, y) in samples and u in slices, all finite.
@@ -264,7 +262,10 @@ fn tem00_stack_blend_(
     slice: i32,
     slice_fraction: f32,
 ) -> Tem00Blend_ {
-    let place = tem00_place_(stack, cell, fraction);
+    let place = Tem00Place_(
+        vec2<u32>(tem00_wrapped_(cell.x, stack.size.x), tem00_wrapped_(cell.y, stack.size.y)),
+        fraction,
+    );
     let here = tem00_wrapped_(slice, stack.slices);
     let own = tem00_slice_(stack, here, place);
     if stack.slices == 1u || slice_fraction <= 0.0 {
@@ -280,17 +281,6 @@ fn tem00_stack_blend_(
         g * own.amplitude + f * turned,
         g * g * own.mean_square + f * f * next.mean_square + 2.0 * f * g * both,
     );
-}
-
-/// The place on the torus; of the nearest sample where no other is asked for.
-fn tem00_place_(stack: Tem00Stack, cell: vec2<i32>, fraction: vec2<f32>) -> Tem00Place_ {
-    var at = cell;
-    var f = fraction;
-    if stack.interpolation == 2u {
-        at += vec2<i32>(fraction >= vec2<f32>(0.5));
-        f = vec2<f32>(0.0);
-    }
-    return Tem00Place_(vec2<u32>(tem00_wrapped_(at.x, stack.size.x), tem00_wrapped_(at.y, stack.size.y)), f);
 }
 
 fn tem00_slice_(stack: Tem00Stack, slice: u32, place: Tem00Place_) -> Tem00Blend_ {
@@ -348,19 +338,11 @@ fn tem00_join_phase_(stack: Tem00Stack, step: vec2<f32>, place: Tem00Place_) -> 
 
 fn tem00_interpolated_(stack: Tem00Stack, slice: u32, place: Tem00Place_) -> vec2<f32> {
     let cell = place.cell;
-    if stack.interpolation == 2u {
-        return tem00_stack_coefficient(slice, cell);
-    }
     let next = vec2<u32>(
         select(cell.x + 1u, 0u, cell.x + 1u == stack.size.x),
         select(cell.y + 1u, 0u, cell.y + 1u == stack.size.y),
     );
     let f = place.fraction;
-    if stack.interpolation == 1u {
-        let upper = mix(tem00_stack_coefficient(slice, cell), tem00_stack_coefficient(slice, vec2<u32>(next.x, cell.y)), f.x);
-        let lower = mix(tem00_stack_coefficient(slice, vec2<u32>(cell.x, next.y)), tem00_stack_coefficient(slice, next), f.x);
-        return mix(upper, lower, f.y);
-    }
     let columns = tem00_around_(cell.x, next.x, stack.size.x);
     let rows = tem00_around_(cell.y, next.y, stack.size.y);
     let x = tem00_cubic_weights_(f.x);

@@ -43,7 +43,6 @@ mod pupil;
 mod stack;
 
 pub use error::SpeckleError;
-pub use interpolation::Interpolation;
 pub use light::{Exposure, PixelArray, incoherent_fractions};
 pub use npy::{NpyError, NpyReader, write_npy, write_real_npy};
 /// The complex number of [`SpeckleField`], from `num-complex`.
@@ -53,6 +52,5 @@ pub use pupil::{
     Transmission,
 };
 pub use stack::{
-    SliceLaw, SlicePath, SpeckleStack, StackNeeds, StackOptions, StackPlan,
-    StackSource,
+    SliceLaw, SlicePath, SpeckleStack, StackNeeds, StackOptions, StackPlan, StackSource,
 };

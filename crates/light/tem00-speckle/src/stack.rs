@@ -2,7 +2,7 @@ use num_complex::Complex;
 use tem00_numerics::{Grid, disc_overlap};
 
 use crate::{
-    Interpolation, PupilField, SpeckleError,
+    PupilField, SpeckleError,
     interpolation::{spline::Variance, taps::Period},
 };
 
@@ -44,7 +44,7 @@ use workers::map_with_scratch;
 /// Slices hold complex amplitudes, not intensities: interpolated amplitudes of a Gaussian random
 /// process are Gaussian again, so that the intensity keeps its exponential law at every coordinate
 /// once it is divided by the variance that the interpolation leaves. In the plane that is the
-/// chosen [`Interpolation`], a cubic B-spline by default, with the variance in closed form.
+/// cubic B-spline over 4 × 4 coefficients, prefiltered in the pupil, with the variance in closed form.
 /// Between slices it is a linear blend in the common frame of the lattice:
 ///
 /// ```text
@@ -98,7 +98,6 @@ use workers::map_with_scratch;
 pub struct SpeckleStack {
     pub(crate) field: PupilField,
     pub(crate) law: PathLaw,
-    pub(crate) interpolation: Interpolation,
     /// The periods along x, y and u.
     pub(crate) periods: [Period; 3],
     pub(crate) slices: Vec<Slice>,
@@ -107,7 +106,7 @@ pub struct SpeckleStack {
 }
 
 impl SpeckleStack {
-    /// Generates the slices of `field` along `path`, for look-ups by cubic splines.
+    /// Generates the slices of `field` along `path`.
     ///
     /// # Errors
     ///
@@ -117,7 +116,7 @@ impl SpeckleStack {
         Self::generate_with(field, path, StackOptions::default())
     }
 
-    /// Generates the slices of `field` along `path`.
+    /// Generates the slices of `field` along `path` within a limit of memory.
     ///
     /// # Errors
     ///
@@ -130,7 +129,7 @@ impl SpeckleStack {
     ///
     /// let field = PupilField::new(64, 16, 7)?;
     /// let path = SlicePath::Circle { half_period: 4 };
-    /// let frugal = StackOptions { memory_limit: 200_000, ..StackOptions::default() };
+    /// let frugal = StackOptions { memory_limit: 200_000 };
     ///
     /// let refused = SpeckleStack::generate_with(&field, path, frugal);
     /// let needed = 8 * 64 * 64 * 8; // slices of 64 × 64 samples of 8 bytes
@@ -150,26 +149,19 @@ impl SpeckleStack {
             Ok(slice)
         });
         let slices = slices.into_iter().collect::<Result<_, _>>()?;
-        Ok(Self::assemble(
-            source.into_field(),
-            path,
-            options.interpolation,
-            slices,
-        ))
+        Ok(Self::assemble(source.into_field(), path, slices))
     }
 
     /// Joins the coefficients of the slices of `field`, a field that the path has closed.
     pub(crate) fn assemble(
         field: PupilField,
         path: SlicePath,
-        interpolation: Interpolation,
         coefficients: Vec<Grid<Complex<f32>>>,
     ) -> Self {
         let periods = [field.size()[0], field.size()[1], coefficients.len()].map(Period::new);
-        let (slices, variances) = join_all(&field, path, interpolation, coefficients);
+        let (slices, variances) = join_all(&field, path, coefficients);
         Self {
             law: PathLaw::new(path, field.pupil()),
-            interpolation,
             periods,
             slices,
             variances,
@@ -188,13 +180,7 @@ impl SpeckleStack {
         self.law.path
     }
 
-    /// Returns the interpolation in the plane.
-    pub const fn interpolation(&self) -> Interpolation {
-        self.interpolation
-    }
-
-    /// Returns the coefficients of slice `index` that the look-up interpolates: the samples of its
-    /// amplitude, or those of the prefiltered spline.
+    /// Returns the coefficients of slice `index` that the look-up interpolates: those of the prefiltered spline.
     ///
     /// # Panics
     ///

@@ -2,21 +2,17 @@ use tem00_speckle::{PupilField, StackOptions, StackPlan};
 
 use super::*;
 
-fn peer(
-    path: tem00_speckle::SlicePath,
-    interpolation: tem00_speckle::Interpolation,
-) -> SpeckleStack {
+fn peer(path: tem00_speckle::SlicePath) -> SpeckleStack {
     let field = PupilField::from_speckle_size([64, 48], 3.0, 11).unwrap();
     let options = StackOptions {
-        interpolation,
         memory_limit: 1 << 20,
     };
     SpeckleStack::generate_with(&field, path, options).unwrap()
 }
 
 #[test]
-fn every_path_and_interpolation_makes_the_stack_of_the_library() {
-    use tem00_speckle::{Interpolation as I, SlicePath as P};
+fn every_path_makes_the_stack_of_the_library() {
+    use tem00_speckle::SlicePath as P;
     let (half_period, length) = (6, 3);
     let straight = P::Straight {
         half_period,
@@ -27,21 +23,12 @@ fn every_path_and_interpolation_makes_the_stack_of_the_library() {
         (SlicePath::Circle, P::Circle { half_period }),
         (SlicePath::Straight, straight),
     ];
-    let interpolations = [
-        (Interpolation::CubicSpline, I::CubicSpline),
-        (Interpolation::Bilinear, I::Bilinear),
-        (Interpolation::Nearest, I::Nearest),
-    ];
     for (path, of_library) in paths {
-        for (interpolation, interpolation_of_library) in interpolations {
-            let stack = Owned::new(&StackDescription {
-                path: path as u32,
-                interpolation: interpolation as u32,
-                ..DESCRIPTION
-            });
-            let same = *stack.library() == peer(of_library, interpolation_of_library);
-            assert!(same, "{path:?} with {interpolation:?}");
-        }
+        let stack = Owned::new(&StackDescription {
+            path: path as u32,
+            ..DESCRIPTION
+        });
+        assert!(*stack.library() == peer(of_library), "{path:?}");
     }
 }
 
@@ -92,13 +79,7 @@ fn a_description_from_a_plan_makes_the_stack_of_the_plan() {
             seed: 5,
             ..description
         });
-        let expected = plan.stack(
-            5,
-            StackOptions {
-                memory_limit,
-                ..StackOptions::default()
-            },
-        );
+        let expected = plan.stack(5, StackOptions { memory_limit });
         assert!(*stack.library() == expected.unwrap(), "{plan:?}");
     }
 }
@@ -126,7 +107,6 @@ fn a_stack_tells_what_it_is() {
         path: SlicePath::Straight,
         half_period: 6,
         length: 3,
-        interpolation: Interpolation::CubicSpline,
         memory_bytes: 64 * 48 * 12 * 8,
     };
     let blank = StackInfo {

@@ -21,7 +21,6 @@ fn descriptions_are_refused_by_the_name_of_what_is_wrong() {
             ("diameter", |d| (d.height, d.diameter) = (64, 33)),
             ("half_period", |d| d.half_period = 0),
             ("path", |d| d.path = 3),
-            ("interpolation", |d| d.interpolation = 3),
         ],
         create,
     );

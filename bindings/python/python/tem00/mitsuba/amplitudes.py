@@ -14,7 +14,6 @@ from tem00.mitsuba.look_up import AFTER, BEFORE, Cell, cell_of, cubic_weights
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from tem00._typing import Interpolation
     from tem00.mitsuba.look_up import Weights
     from tem00.speckle import SpeckleStack
 
@@ -52,7 +51,6 @@ class AmplitudeTable:
         count = stack.slice_count
         index, f = floor(u) % count, u - floor(u)
         following = (index + 1) % count
-        self._interpolation = stack.interpolation
         self._slices = [_Slice(stack.coefficients(index), 1.0 - f if count > 1 else 1.0)]
         if count > 1:
             self._slices.append(_Slice(stack.coefficients(following), f))
@@ -67,9 +65,7 @@ class AmplitudeTable:
     def at(self, x: mi.Float, y: mi.Float) -> mi.Float:
         """Return the intensities at x and y, in samples."""
         column, row = cell_of(x, self.columns), cell_of(y, self.rows)
-        if self._interpolation == "nearest":
-            column, row = _nearest(column, self.columns), _nearest(row, self.rows)
-        weights = tuple(_weights(cell.fraction, self._interpolation) for cell in (column, row))
+        weights = tuple(cubic_weights(cell.fraction) for cell in (column, row))
         index = row.node * (BEFORE + self.columns + AFTER) + column.node
         real, imaginary = self._slices[0].at(index, *weights)
         for following in self._slices[1:]:
@@ -138,15 +134,3 @@ def _blended_law(stack: SpeckleStack, index: int, f: float) -> NDArray[np.float6
 def _shapes(f: mi.Float) -> list[mi.Float]:
     p = f * (1.0 - f)
     return [mi.Float(1.0), p, p * p, p * p * p]
-
-
-def _nearest(cell: Cell, period: int) -> Cell:
-    """Return the nearer node of a cell."""
-    node = dr.select(cell.fraction >= 0.5, cell.node + 1, cell.node)
-    return Cell(dr.select(node == period, 0, node), mi.Float(0.0))
-
-
-def _weights(f: mi.Float, interpolation: Interpolation) -> Weights:
-    if interpolation == "cubic_spline":
-        return cubic_weights(f)
-    return mi.Float(0.0), 1.0 - f, f, mi.Float(0.0)

@@ -5,7 +5,7 @@
 //! of two responses over the pupil, one axis times the other. Along each axis the real part of
 //! such a product is even about f = ½ and the imaginary part odd, so that both are
 //! polynomials of `p = f (1 − f)`, the odd one after division by `p (1 − 2f)`. Of one slice this is exact:
-//! degree 3 in p for the cubic spline, 1 for two taps. Of two slices, whose pupils stand apart, the
+//! degree 3 in p. Of two slices, whose pupils stand apart, the
 //! products also turn with f, and the polynomials leave 1e−6 at most, of the odd parts, which a symmetric
 //! pupil cancels, 2e−5.
 
@@ -17,7 +17,7 @@ use tem00_numerics::{
 };
 
 use crate::{
-    Interpolation, PupilField,
+    PupilField,
     interpolation::spline::{Variance, lag_products, response},
     pupil::mask::{Row, Span},
 };
@@ -132,14 +132,14 @@ fn shapes_at(f: f32) -> [f32; SHAPES] {
 pub(crate) struct Responses([Vec<[Complex<f64>; SHAPES]>; 2]);
 
 impl Responses {
-    pub(crate) fn new(field: &PupilField, interpolation: Interpolation) -> Self {
+    pub(crate) fn new(field: &PupilField) -> Self {
         let fractions = fractions();
         Self([0, 1].map(|axis| {
             let (corner, size) = (field.mask.corner()[axis], field.size()[axis]);
             (0..field.mask.extent()[axis])
                 .map(|index| {
                     let k = corner + to_signed(index);
-                    fractions.map(|f| response(interpolation, k, f, size))
+                    fractions.map(|f| response(k, f, size))
                 })
                 .collect()
         }))
@@ -350,12 +350,12 @@ fn basis<const N: usize>(nodes: [f64; N]) -> [[f64; N]; N] {
 }
 
 /// The mean square of one slice as a polynomial, instead of the sum over lags.
-pub(crate) fn mean_square(variance: &Variance, interpolation: Interpolation) -> Even {
+pub(crate) fn mean_square(variance: &Variance) -> Even {
     let (basis, fractions) = (basis(nodes::<EVEN>()), fractions());
     // For each lag, the polynomial of Σ w(t) w(t + lag).
     let mut lags = [[0.0; EVEN]; 4];
     for (polynomial, f) in basis.iter().zip(fractions) {
-        for (lag, product) in lags.iter_mut().zip(lag_products(interpolation, f)) {
+        for (lag, product) in lags.iter_mut().zip(lag_products(f)) {
             for (entry, c) in lag.iter_mut().zip(polynomial) {
                 *entry += c * product;
             }

@@ -9,18 +9,12 @@ use tem00_numerics::{
     cast::{to_f32, to_signed},
 };
 
-use crate::{
-    Interpolation,
-    pupil::{PupilField, mask::Mask},
-};
+use crate::pupil::{PupilField, mask::Mask};
 
 /// Factor on the pupil point k: the reciprocal of the spline's Fourier transform,
-/// `sinc⁻⁴(π k / Q)`. The other interpolations go through the samples themselves.
-pub(crate) fn prefilter(k: i64, size: usize, interpolation: Interpolation) -> f64 {
-    match interpolation {
-        Interpolation::CubicSpline => tem00_numerics::sinc(PI * k as f64 / size as f64).powi(-4),
-        Interpolation::Bilinear | Interpolation::Nearest => 1.0,
-    }
+/// `sinc⁻⁴(π k / Q)`.
+fn prefilter(k: i64, size: usize) -> f64 {
+    tem00_numerics::sinc(PI * k as f64 / size as f64).powi(-4)
 }
 
 /// The lattice points along one axis of the mask's box.
@@ -30,10 +24,10 @@ fn points(mask: &Mask, axis: usize) -> impl Iterator<Item = i64> {
 }
 
 /// The prefilter over the bounding box of the pupil, for each axis.
-pub(crate) fn prefilters(field: &PupilField, interpolation: Interpolation) -> [Vec<f32>; 2] {
+pub(crate) fn prefilters(field: &PupilField) -> [Vec<f32>; 2] {
     [0, 1].map(|axis| {
         points(&field.mask, axis)
-            .map(|k| to_f32(prefilter(k, field.size()[axis], interpolation)))
+            .map(|k| to_f32(prefilter(k, field.size()[axis])))
             .collect()
     })
 }
@@ -55,17 +49,13 @@ pub(crate) struct Variance {
 
 impl Variance {
     /// The expected variance over random phasors.
-    pub(crate) fn expected(field: &PupilField, interpolation: Interpolation) -> Self {
-        Self::new(field, interpolation, |y| field.mask.powers(y))
+    pub(crate) fn expected(field: &PupilField) -> Self {
+        Self::new(field, |y| field.mask.powers(y))
     }
 
     /// The variance of the external field in the pupil, given over the mask's box.
-    pub(crate) fn of_light(
-        seen: &Grid<Complex<f32>>,
-        field: &PupilField,
-        interpolation: Interpolation,
-    ) -> Self {
-        Self::new(field, interpolation, |y| {
+    pub(crate) fn of_light(seen: &Grid<Complex<f32>>, field: &PupilField) -> Self {
+        Self::new(field, |y| {
             let square = |z: &Complex<f32>| to_c64(*z).norm_sqr();
             seen.row(y).iter().map(square).enumerate()
         })
@@ -73,11 +63,10 @@ impl Variance {
 
     fn new<P: Iterator<Item = (usize, f64)>>(
         field: &PupilField,
-        interpolation: Interpolation,
         powers: impl Fn(usize) -> P,
     ) -> Self {
-        let columns = weighted_cosines(field, 0, interpolation);
-        let rows = weighted_cosines(field, 1, interpolation);
+        let columns = weighted_cosines(field, 0);
+        let rows = weighted_cosines(field, 1);
         let mut total = 0.0;
         let mut table = [[0.0_f64; 4]; 4];
         for (y, row_weights) in rows.iter().enumerate() {
@@ -118,27 +107,19 @@ impl Variance {
 }
 
 /// `cos(2π k l / Q) b(k)²` for l = 0 to 3, for each lattice point k along an axis.
-fn weighted_cosines(
-    field: &PupilField,
-    axis: usize,
-    interpolation: Interpolation,
-) -> Vec<[f64; 4]> {
+fn weighted_cosines(field: &PupilField, axis: usize) -> Vec<[f64; 4]> {
     let size = field.size()[axis];
     let weighted = |k: i64| {
         let angle = 2.0 * PI * k as f64 / size as f64;
-        let filter = prefilter(k, size, interpolation).powi(2);
+        let filter = prefilter(k, size).powi(2);
         [0.0, 1.0, 2.0, 3.0].map(|lag: f64| (lag * angle).cos() * filter)
     };
     points(&field.mask, axis).map(weighted).collect()
 }
 
 /// The weights of the taps −1, 0, 1 and 2 at the fraction `f` of the way from 0 to 1.
-fn weights(interpolation: Interpolation, f: f64) -> [f64; 4] {
-    match interpolation {
-        Interpolation::CubicSpline => [-1.0, 0.0, 1.0, 2.0].map(|tap: f64| kernel((tap - f).abs())),
-        Interpolation::Bilinear => [0.0, 1.0 - f, f, 0.0],
-        Interpolation::Nearest => [0.0, 1.0, 0.0, 0.0],
-    }
+fn weights(f: f64) -> [f64; 4] {
+    [-1.0, 0.0, 1.0, 2.0].map(|tap: f64| kernel((tap - f).abs()))
 }
 
 /// The cubic B-spline at the distance x from its middle.
@@ -149,8 +130,8 @@ fn kernel(x: f64) -> f64 {
 }
 
 /// Σ w(t) w(t + l) for the lags l = 0 to 3.
-pub(crate) fn lag_products(interpolation: Interpolation, f: f64) -> [f64; 4] {
-    let w = weights(interpolation, f);
+pub(crate) fn lag_products(f: f64) -> [f64; 4] {
+    let w = weights(f);
     core::array::from_fn(|lag| w[lag..].iter().zip(&w).map(|(a, b)| a * b).sum())
 }
 
@@ -159,20 +140,13 @@ pub(crate) fn lag_products(interpolation: Interpolation, f: f64) -> [f64; 4] {
 /// ```text
 /// g(k; f) = b(k) Σ w(t) exp(−2πi k (t − f) / Q)
 /// ```
-///
-/// A nearest sample stands for itself, so that its response is 1.
-pub(crate) fn response(interpolation: Interpolation, k: i64, f: f64, size: usize) -> Complex<f64> {
-    if interpolation == Interpolation::Nearest {
-        return Complex::new(1.0, 0.0);
-    }
+pub(crate) fn response(k: i64, f: f64, size: usize) -> Complex<f64> {
     let angle = 2.0 * PI * k as f64 / size as f64;
-    let taps = weights(interpolation, f)
-        .into_iter()
-        .zip([-1.0, 0.0, 1.0, 2.0]);
+    let taps = weights(f).into_iter().zip([-1.0, 0.0, 1.0, 2.0]);
     let sum: Complex<f64> = taps
         .map(|(weight, tap)| Complex::from_polar(weight, -angle * (tap - f)))
         .sum();
-    sum * prefilter(k, size, interpolation)
+    sum * prefilter(k, size)
 }
 
 #[cfg(test)]

@@ -89,25 +89,20 @@ fn low_bits(x: f64) -> usize {
 ///
 /// The points of a batch lie side by side, so that one vector instruction serves several.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Taps<const N: usize, const L: usize> {
-    /// The first of the N cells, one after the other on the torus.
+pub(crate) struct Taps<const L: usize> {
+    /// The first of the four cells, one after the other on the torus.
     first: [usize; L],
-    weights: [[f32; L]; N],
+    weights: [[f32; L]; 4],
     /// The fractions that the weights belong to.
     pub(crate) fractions: [f32; L],
     /// The coordinates that the taps stand for, in one period.
     pub(crate) positions: [f64; L],
 }
 
-/// Interpolation by N taps along an axis.
-pub(crate) trait Kernel<const L: usize>: Copy {
+impl<const L: usize> Taps<L> {
     /// The taps around `x`.
-    fn around(x: &[f64; L], period: &Period) -> Self;
-}
-
-impl<const L: usize> Kernel<L> for Taps<4, L> {
     #[inline(always)]
-    fn around(x: &[f64; L], period: &Period) -> Self {
+    pub(crate) fn around(x: &[f64; L], period: &Period) -> Self {
         let (cells, f) = period.split(x);
         let fractions = to_single(&f);
         let mut weights = [[0.0; L]; 4];
@@ -125,37 +120,6 @@ impl<const L: usize> Kernel<L> for Taps<4, L> {
             weights,
             fractions,
             positions: positions(&cells, &f),
-        }
-    }
-}
-
-impl<const L: usize> Kernel<L> for Taps<2, L> {
-    #[inline(always)]
-    fn around(x: &[f64; L], period: &Period) -> Self {
-        let (cells, f) = period.split(x);
-        let fractions = to_single(&f);
-        Self {
-            first: cells,
-            weights: [fractions.map(|f| 1.0 - f), fractions],
-            fractions,
-            positions: positions(&cells, &f),
-        }
-    }
-}
-
-impl<const L: usize> Kernel<L> for Taps<1, L> {
-    #[inline(always)]
-    fn around(x: &[f64; L], period: &Period) -> Self {
-        let (mut cells, f) = period.split(x);
-        for (cell, f) in cells.iter_mut().zip(f) {
-            // No branch: which of two samples is nearer, no processor can foresee.
-            *cell = period.wrap(*cell + usize::from(f >= 0.5));
-        }
-        Self {
-            first: cells,
-            weights: [[1.0; L]],
-            fractions: [0.0; L],
-            positions: cells.map(|n| n as f64),
         }
     }
 }
@@ -195,21 +159,23 @@ pub(crate) fn cubic_weights(f: f32) -> [f32; 4] {
 
 /// The interpolated amplitudes, real and imaginary parts.
 #[inline(always)]
-pub(crate) fn amplitudes<const N: usize, const L: usize>(
+pub(crate) fn amplitudes<const L: usize>(
     coefficients: &Grid<Complex<f32>>,
-    x: &Taps<N, L>,
-    y: &Taps<N, L>,
+    x: &Taps<L>,
+    y: &Taps<L>,
 ) -> [[f32; L]; 2] {
     let (width, height) = (coefficients.width(), coefficients.height());
     let mut halves = [[0.0; 4]; L];
     for (i, halves) in halves.iter_mut().enumerate() {
         let (column, row) = (x.first[i], y.first[i]);
         let mut sums = Sums::default();
-        if column + N <= width && row + N <= height {
+        if column + 4 <= width && row + 4 <= height {
             let from = row * width + column;
-            let window = &coefficients.values()[from..from + (N - 1) * width + N];
+            let window = &coefficients.values()[from..from + 3 * width + 4];
             for (t, weights) in y.weights.iter().enumerate() {
-                sums.add(&window[t * width..t * width + N], weights[i]);
+                if let Some(taps) = window[t * width..].first_chunk() {
+                    sums.add(taps, weights[i]);
+                }
             }
         } else {
             sums = across_a_seam(coefficients, [column, row], y, i);
@@ -227,35 +193,32 @@ pub(crate) fn amplitudes<const N: usize, const L: usize>(
 /// The sums over the rows where the taps lie on both sides of a seam.
 #[cold]
 #[inline(never)]
-fn across_a_seam<const N: usize, const L: usize>(
+fn across_a_seam<const L: usize>(
     coefficients: &Grid<Complex<f32>>,
     [column, row]: [usize; 2],
-    y: &Taps<N, L>,
+    y: &Taps<L>,
     i: usize,
 ) -> Sums {
     let mut sums = Sums::default();
     for (t, weights) in y.weights.iter().enumerate() {
         let values = coefficients.row((row + t) % coefficients.height());
-        let taps: [_; N] = core::array::from_fn(|x| values[(column + x) % values.len()]);
+        let taps: [_; 4] = core::array::from_fn(|x| values[(column + x) % values.len()]);
         sums.add(&taps, weights[i]);
     }
     sums
 }
 
-/// Σ over the rows of up to four columns: real and imaginary parts of two columns side by side, as
+/// Σ over the rows of the four columns: real and imaginary parts of two columns side by side, as
 /// vector instructions take them.
 #[derive(Clone, Copy, Default)]
 struct Sums([[f32; 4]; 2]);
 
 impl Sums {
     #[inline(always)]
-    fn add(&mut self, taps: &[Complex<f32>], weight: f32) {
-        for (sums, pair) in self.0.iter_mut().zip(taps.chunks(2)) {
-            let values = match pair {
-                [a, b] => [a.re, a.im, b.re, b.im],
-                [a, ..] => [a.re, a.im, 0.0, 0.0],
-                [] => [0.0; 4],
-            };
+    fn add(&mut self, taps: &[Complex<f32>; 4], weight: f32) {
+        let [a, b, c, d] = taps;
+        let pairs = [[a.re, a.im, b.re, b.im], [c.re, c.im, d.re, d.im]];
+        for (sums, values) in self.0.iter_mut().zip(pairs) {
             for (sum, value) in sums.iter_mut().zip(values) {
                 *sum += value * weight;
             }
@@ -264,15 +227,10 @@ impl Sums {
 
     /// Σ over every other column.
     #[inline(always)]
-    fn weighted<const N: usize, const L: usize>(&self, x: &Taps<N, L>, i: usize) -> [f32; 4] {
+    fn weighted<const L: usize>(&self, x: &Taps<L>, i: usize) -> [f32; 4] {
         let mut total = [0.0; 4];
-        for (t, sums) in self.0.iter().enumerate().take(N.div_ceil(2)) {
-            let a = x.weights[2 * t][i];
-            let b = if 2 * t + 1 < N {
-                x.weights[2 * t + 1][i]
-            } else {
-                0.0
-            };
+        for (t, sums) in self.0.iter().enumerate() {
+            let (a, b) = (x.weights[2 * t][i], x.weights[2 * t + 1][i]);
             let weights = [a, a, b, b];
             for (total, (sum, weight)) in total.iter_mut().zip(sums.iter().zip(weights)) {
                 *total += sum * weight;

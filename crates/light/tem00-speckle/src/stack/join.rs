@@ -4,7 +4,7 @@ use num_complex::Complex;
 use tem00_numerics::{Grid, cast::to_c64, cast::to_signed};
 
 use crate::{
-    Interpolation, PupilField, SlicePath,
+    PupilField, SlicePath,
     interpolation::{
         covariance::{Covariance, Even, Responses, mean_square},
         spline::Variance,
@@ -38,7 +38,6 @@ pub(crate) struct Join {
 /// Data that the slices of one stack share.
 struct Joiner<'a> {
     field: &'a PupilField,
-    interpolation: Interpolation,
     responses: Responses,
     /// The variance of all slices of random phasors.
     expected: Variance,
@@ -49,15 +48,13 @@ struct Joiner<'a> {
 pub(super) fn join_all<C: Send>(
     field: &PupilField,
     path: SlicePath,
-    interpolation: Interpolation,
     coefficients: Vec<C>,
 ) -> (Vec<Slice<C>>, Vec<Variance>) {
     let count = coefficients.len();
     let joiner = Joiner {
         field,
-        interpolation,
-        responses: Responses::new(field, interpolation),
-        expected: Variance::expected(field, interpolation),
+        responses: Responses::new(field),
+        expected: Variance::expected(field),
     };
     let centre = |index: usize| path.centre(to_signed(index % count), field);
     let joined = map_with_scratch(coefficients, |index, coefficients, _| {
@@ -66,7 +63,7 @@ pub(super) fn join_all<C: Send>(
         let slice = Slice {
             coefficients,
             centre,
-            mean_square: mean_square(&variance, interpolation),
+            mean_square: mean_square(&variance),
             join,
         };
         (slice, variance)
@@ -90,7 +87,7 @@ impl Joiner<'_> {
         let (here, next) = (self.field.seen(centre), self.field.seen(next));
         let overlap = shared(&here, &next, shift);
         let covariance = self.responses.of_light(&here, &next, shift);
-        let variance = Variance::of_light(&here, self.field, self.interpolation);
+        let variance = Variance::of_light(&here, self.field);
         (self.with(shift, overlap, covariance), variance)
     }
 

@@ -6,8 +6,8 @@ use num_complex::Complex;
 use tem00_numerics::{cast::to_i64, vectorised};
 
 use crate::{
-    Interpolation, SpeckleStack,
-    interpolation::taps::{Kernel, Taps},
+    SpeckleStack,
+    interpolation::taps::Taps,
     stack::quadrature::{Node, mean_nodes},
 };
 
@@ -22,12 +22,17 @@ impl SpeckleStack {
     ///
     /// A coordinate that is not finite, as that of a degenerate ray, is no place of the pattern. Nothing is known of the
     /// speckle there but its mean, 1, which is returned: light that is multiplied by it stays as it is.
+    #[inline(always)]
     pub fn intensity_at(&self, x: f64, y: f64, u: f64) -> f64 {
-        match self.interpolation {
-            Interpolation::CubicSpline => self.intensity::<4>(x, y, u),
-            Interpolation::Bilinear => self.intensity::<2>(x, y, u),
-            Interpolation::Nearest => self.intensity::<1>(x, y, u),
+        if !is_place([x, y, u]) {
+            return 1.0;
         }
+        let positions = self.positions(&[u]);
+        let layer = self.layer(positions.slices[0], positions.between[0]);
+        let [along_x, along_y, _] = &self.periods;
+        let (x, y) = (Taps::around(&[x], along_x), Taps::around(&[y], along_y));
+        let [intensity] = layer.intensities(&x, &y, &positions.fractions);
+        intensity
     }
 
     /// Returns the amplitude, of mean square 1, whose squared magnitude [`intensity_at`](Self::intensity_at)
@@ -37,11 +42,15 @@ impl SpeckleStack {
     /// frame, so that their amplitudes add at one place; those of other places and slices add after
     /// [`ramp_at`](Self::ramp_at). It is 1 where a coordinate is not finite.
     pub fn amplitude_at(&self, x: f64, y: f64, u: f64) -> Complex<f64> {
-        match self.interpolation {
-            Interpolation::CubicSpline => self.amplitude::<4>(x, y, u),
-            Interpolation::Bilinear => self.amplitude::<2>(x, y, u),
-            Interpolation::Nearest => self.amplitude::<1>(x, y, u),
+        if !is_place([x, y, u]) {
+            return Complex::new(1.0, 0.0);
         }
+        let positions = self.positions(&[u]);
+        let layer = self.layer(positions.slices[0], positions.between[0]);
+        let [along_x, along_y, _] = &self.periods;
+        let (x, y) = (Taps::around(&[x], along_x), Taps::around(&[y], along_y));
+        let ([re, im], mean_square) = layer.amplitudes(&x, &y, &positions.fractions);
+        Complex::new(f64::from(re[0]), f64::from(im[0])) / f64::from(mean_square[0]).sqrt()
     }
 
     /// Returns the phase, in radians, that takes the [`amplitude_at`](Self::amplitude_at) a position into the frame of the
@@ -90,11 +99,7 @@ impl SpeckleStack {
             "coordinates of lengths {lengths:?} for {} intensities",
             intensity.len()
         );
-        match self.interpolation {
-            Interpolation::CubicSpline => self.batch::<4>([x, y, u], intensity),
-            Interpolation::Bilinear => self.batch::<2>([x, y, u], intensity),
-            Interpolation::Nearest => self.batch::<1>([x, y, u], intensity),
-        }
+        self.batch([x, y, u], intensity);
     }
 
     /// Returns the mean of the intensity over a box of `size` samples about `centre`, at u: what a
@@ -107,8 +112,7 @@ impl SpeckleStack {
     /// at most one period of the pattern along each axis, however large the box. It errs by less than
     /// 4e−5 of the amplitude of the finest fringes, those at the intensity's cut-off, and by far less of
     /// all others. The images that cubic splines leave of the finest fringes, (2s − 1)⁻⁴ of them for
-    /// speckles of s samples, the kinks of bilinear amplitudes and the jumps of nearest samples are met
-    /// by such a sum by chance. It is 1 where `centre`, `size` or `u` is not finite.
+    /// speckles of s samples, are met by such a sum by chance. It is 1 where `centre`, `size` or `u` is not finite.
     ///
     /// # Panics
     ///
@@ -143,49 +147,10 @@ impl SpeckleStack {
             let finest = layer.finest(axis, period, self.speckle_size());
             mean_nodes(centre[axis], size[axis], period, finest)
         });
-        match self.interpolation {
-            Interpolation::CubicSpline => self.weighted::<4>(&nodes, u),
-            Interpolation::Bilinear => self.weighted::<2>(&nodes, u),
-            Interpolation::Nearest => self.weighted::<1>(&nodes, u),
-        }
+        self.weighted(&nodes, u)
     }
 
-    fn amplitude<const N: usize>(&self, x: f64, y: f64, u: f64) -> Complex<f64>
-    where
-        Taps<N, 1>: Kernel<1>,
-    {
-        if !is_place([x, y, u]) {
-            return Complex::new(1.0, 0.0);
-        }
-        let positions = self.positions(&[u]);
-        let layer = self.layer(positions.slices[0], positions.between[0]);
-        let [along_x, along_y, _] = &self.periods;
-        let (x, y) = (Taps::around(&[x], along_x), Taps::around(&[y], along_y));
-        let ([re, im], mean_square) = layer.amplitudes::<N, 1>(&x, &y, &positions.fractions);
-        Complex::new(f64::from(re[0]), f64::from(im[0])) / f64::from(mean_square[0]).sqrt()
-    }
-
-    #[inline(always)]
-    fn intensity<const N: usize>(&self, x: f64, y: f64, u: f64) -> f64
-    where
-        Taps<N, 1>: Kernel<1>,
-    {
-        if !is_place([x, y, u]) {
-            return 1.0;
-        }
-        let positions = self.positions(&[u]);
-        let layer = self.layer(positions.slices[0], positions.between[0]);
-        let [along_x, along_y, _] = &self.periods;
-        let (x, y) = (Taps::around(&[x], along_x), Taps::around(&[y], along_y));
-        let [intensity] = layer.intensities::<N, 1>(&x, &y, &positions.fractions);
-        intensity
-    }
-
-    fn batch<const N: usize>(&self, [x, y, u]: [&[f64]; 3], intensity: &mut [f64])
-    where
-        Taps<N, 1>: Kernel<1>,
-        Taps<N, LANES>: Kernel<LANES>,
-    {
+    fn batch(&self, [x, y, u]: [&[f64]; 3], intensity: &mut [f64]) {
         let (x, x_rest) = x.as_chunks();
         let (y, y_rest) = y.as_chunks();
         let (u, u_rest) = u.as_chunks();
@@ -194,20 +159,16 @@ impl SpeckleStack {
             #[inline(always)]
             || {
                 for (i, block) in blocks.iter_mut().enumerate() {
-                    self.block::<N>([&x[i], &y[i], &u[i]], block);
+                    self.block([&x[i], &y[i], &u[i]], block);
                 }
             },
         );
-        self.one_by_one::<N>([x_rest, y_rest, u_rest], rest);
+        self.one_by_one([x_rest, y_rest, u_rest], rest);
     }
 
     /// Points of one layer are looked up together.
     #[inline(always)]
-    fn block<const N: usize>(&self, [x, y, u]: [&[f64; LANES]; 3], intensity: &mut [f64; LANES])
-    where
-        Taps<N, 1>: Kernel<1>,
-        Taps<N, LANES>: Kernel<LANES>,
-    {
+    fn block(&self, [x, y, u]: [&[f64; LANES]; 3], intensity: &mut [f64; LANES]) {
         let positions = self.positions(u);
         let (slice, between) = (positions.slices[0], positions.between[0]);
         let alike = positions
@@ -220,38 +181,32 @@ impl SpeckleStack {
             .fold(alike, |alike, b| alike & (*b == between));
         let together = (0..LANES).fold(alike, |all, i| all & is_place([x[i], y[i], u[i]]));
         if !together {
-            self.one_by_one::<N>([x, y, u], intensity);
+            self.one_by_one([x, y, u], intensity);
             return;
         }
         let [along_x, along_y, _] = &self.periods;
         let (x, y) = (Taps::around(x, along_x), Taps::around(y, along_y));
         let layer = self.layer(slice, between);
-        *intensity = layer.intensities::<N, LANES>(&x, &y, &positions.fractions);
+        *intensity = layer.intensities(&x, &y, &positions.fractions);
     }
 
-    fn one_by_one<const N: usize>(&self, [x, y, u]: [&[f64]; 3], intensity: &mut [f64])
-    where
-        Taps<N, 1>: Kernel<1>,
-    {
+    fn one_by_one(&self, [x, y, u]: [&[f64]; 3], intensity: &mut [f64]) {
         let points = x.iter().zip(y).zip(u);
         for (intensity, ((&x, &y), &u)) in intensity.iter_mut().zip(points) {
-            *intensity = self.intensity::<N>(x, y, u);
+            *intensity = self.intensity_at(x, y, u);
         }
     }
 
     /// Σ over the nodes of both axes of weight · intensity.
-    fn weighted<const N: usize>(&self, [columns, rows]: &[Vec<Node>; 2], u: f64) -> f64
-    where
-        Taps<N, 1>: Kernel<1>,
-    {
+    fn weighted(&self, [columns, rows]: &[Vec<Node>; 2], u: f64) -> f64 {
         let positions = self.positions(&[u]);
         let layer = self.layer(positions.slices[0], positions.between[0]);
         let [along_x, along_y, _] = &self.periods;
-        let columns: Vec<(Taps<N, 1>, f64)> = columns
+        let columns: Vec<(Taps<1>, f64)> = columns
             .iter()
             .map(|node| (Taps::around(&[node.position], along_x), node.weight))
             .collect();
-        let along = |y: &Taps<N, 1>| -> f64 {
+        let along = |y: &Taps<1>| -> f64 {
             let terms = columns.iter();
             terms
                 .map(|(x, weight)| weight * layer.intensities(x, y, &positions.fractions)[0])

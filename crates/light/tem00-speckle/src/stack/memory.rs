@@ -3,13 +3,11 @@
 use num_complex::Complex;
 use tem00_numerics::{Grid, available_memory};
 
-use crate::{Interpolation, SlicePath, SpeckleError, pupil::too_large};
+use crate::{SlicePath, SpeckleError, pupil::too_large};
 
 /// Options of a [`SpeckleStack`](crate::SpeckleStack).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StackOptions {
-    /// Interpolation in the plane.
-    pub interpolation: Interpolation,
     /// The bytes that the slices may take, [`u64::MAX`] by default.
     ///
     /// Many systems grant any memory that is asked for and end the program when it is used. Where the
@@ -21,7 +19,6 @@ pub struct StackOptions {
 impl Default for StackOptions {
     fn default() -> Self {
         Self {
-            interpolation: Interpolation::default(),
             memory_limit: u64::MAX,
         }
     }

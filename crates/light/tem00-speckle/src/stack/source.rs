@@ -1,7 +1,7 @@
 use tem00_numerics::cast::to_signed;
 
 use crate::{
-    Aperture, Interpolation, PupilField, SliceLaw, SlicePath, SpeckleError, StackOptions,
+    Aperture, PupilField, SliceLaw, SlicePath, SpeckleError, StackOptions,
     interpolation::spline::prefilters,
     stack::{check_limit, join_all},
 };
@@ -26,7 +26,6 @@ use crate::{
 pub struct StackSource {
     field: PupilField,
     path: SlicePath,
-    options: StackOptions,
     filters: [Vec<f32>; 2],
 }
 
@@ -45,11 +44,10 @@ impl StackSource {
         path.check()?;
         check_limit(path.memory_bytes(field.size()), options.memory_limit)?;
         let field = path.close(field);
-        let filters = prefilters(&field, options.interpolation);
+        let filters = prefilters(&field);
         Ok(Self {
             field,
             path,
-            options,
             filters,
         })
     }
@@ -69,11 +67,6 @@ impl StackSource {
         self.path
     }
 
-    /// Returns the interpolation in the plane.
-    pub const fn interpolation(&self) -> Interpolation {
-        self.options.interpolation
-    }
-
     /// Returns what slice `index` is transformed from, prefiltered for the interpolation: its amplitudes are the
     /// coefficients of the stack.
     pub fn slice(&self, index: usize) -> Aperture<'_> {
@@ -84,7 +77,7 @@ impl StackSource {
     /// Returns the closed forms of all slices and of their joins.
     pub fn laws(&self) -> Vec<SliceLaw> {
         let slices = vec![(); self.path.slice_count()];
-        let (slices, _) = join_all(&self.field, self.path, self.interpolation(), slices);
+        let (slices, _) = join_all(&self.field, self.path, slices);
         slices.iter().map(SliceLaw::of).collect()
     }
 }

@@ -4,12 +4,6 @@ use std::collections::BTreeMap;
 use super::*;
 use crate::{Pupil, Transmission};
 
-const ALL: [Interpolation; 3] = [
-    Interpolation::CubicSpline,
-    Interpolation::Bilinear,
-    Interpolation::Nearest,
-];
-
 /// The cubic B-spline by its definition (Unser 1999, eq. 5).
 fn spline(x: f64) -> f64 {
     let x = x.abs();
@@ -22,22 +16,16 @@ fn spline(x: f64) -> f64 {
 
 /// What a look-up at r = `f` makes of the pupil point k, by the sum over its taps: the phase of each tap,
 /// and of k itself where the tap stands.
-fn looked_up(interpolation: Interpolation, k: f64, f: f64, size: f64) -> Complex<f64> {
+fn looked_up(k: f64, f: f64, size: f64) -> Complex<f64> {
     let turn = |x: f64| Complex::cis(-2.0 * PI * k * x / size);
-    match interpolation {
-        Interpolation::CubicSpline => {
-            let half = PI * k / size;
-            let filter = if half == 0.0 {
-                1.0
-            } else {
-                (half / half.sin()).powi(4)
-            };
-            let tap = |t: f64| turn(t) * (filter * spline(t - f));
-            tap(-1.0) + tap(0.0) + tap(1.0) + tap(2.0)
-        }
-        Interpolation::Bilinear => turn(0.0) * (1.0 - f) + turn(1.0) * f,
-        Interpolation::Nearest => turn((f + 0.5).floor()),
-    }
+    let half = PI * k / size;
+    let filter = if half == 0.0 {
+        1.0
+    } else {
+        (half / half.sin()).powi(4)
+    };
+    let tap = |t: f64| turn(t) * (filter * spline(t - f));
+    tap(-1.0) + tap(0.0) + tap(1.0) + tap(2.0)
 }
 
 /// Points of the pupil with their transmissions.
@@ -58,7 +46,6 @@ fn points(field: &PupilField) -> Vec<([i64; 2], Complex<f64>)> {
 
 /// Where two slices of a stack are looked up.
 struct Place {
-    interpolation: Interpolation,
     shift: [i64; 2],
     fractions: [f64; 2],
     f: f64,
@@ -91,20 +78,11 @@ fn blended(
 
 /// The blend of the interpolated amplitudes at r = `cell` + fractions.
 fn interpolated(field: &PupilField, place: &Place, cell: [f64; 2]) -> Vec<Complex<f64>> {
-    let stand = place.fractions.map(|f| match place.interpolation {
-        Interpolation::Nearest => (f + 0.5).floor(),
-        _ => f,
-    });
-    let frame = wave(field, place.shift, stand) * wave(field, place.shift, cell);
+    let frame = wave(field, place.shift, place.fractions) * wave(field, place.shift, cell);
     blended(field, place, frame, |k| {
         let along = |axis: usize| {
             let size = field.size()[axis] as f64;
-            looked_up(
-                place.interpolation,
-                k[axis] as f64,
-                place.fractions[axis],
-                size,
-            )
+            looked_up(k[axis] as f64, place.fractions[axis], size)
         };
         along(0) * along(1) * wave(field, k, cell)
     })
@@ -129,14 +107,11 @@ fn correlation(u: &[Complex<f64>], v: &[Complex<f64>]) -> f64 {
 
 #[expect(clippy::cast_possible_truncation, reason = "look-ups run in f32")]
 fn mean_square_of_look_ups(field: &PupilField, place: &Place) -> f64 {
-    let variance = Variance::expected(field, place.interpolation);
-    let responses = Responses::new(field, place.interpolation);
+    let variance = Variance::expected(field);
+    let responses = Responses::new(field);
     let covariance = responses.of_phasors(field, place.shift);
-    let [x, y] = match place.interpolation {
-        Interpolation::Nearest => [0.0; 2],
-        _ => place.fractions.map(|f| f as f32),
-    };
-    let [own] = even_at(&mean_square(&variance, place.interpolation), &[x], &[y]);
+    let [x, y] = place.fractions.map(|f| f as f32);
+    let [own] = even_at(&mean_square(&variance), &[x], &[y]);
     let [both] = covariance.at(&[x], &[y]);
     let f = place.f;
     let (own, both) = (f64::from(own), f64::from(both));
@@ -179,28 +154,25 @@ const FRACTIONS: [[f64; 2]; 5] = [
 fn the_mean_square_between_slices_is_the_sum_over_the_points_of_both_pupils() {
     let mut worst = 0.0_f64;
     for field in fields() {
-        for interpolation in ALL {
-            for shift in [[0, 0], [-5, 6], [9, 4], [2, -14]] {
-                for fractions in FRACTIONS {
-                    for f in [0.5, 0.25] {
-                        let place = Place {
-                            interpolation,
-                            shift,
-                            fractions,
-                            f,
-                        };
-                        let points = interpolated(&field, &place, [0.0; 2]);
-                        let expected = square(&points) / field.mask.power();
-                        let got = mean_square_of_look_ups(&field, &place);
-                        worst = worst.max((got - expected).abs());
-                        // Sums of some ten terms in f32 (1e−6), the polynomials (1e−6) and the odd
-                        // terms that are left out (2e−6), each halved by 2 f (1 − f).
-                        assert!(
-                            (got - expected).abs() < 2e-6,
-                            "{interpolation:?}, {:?}, {shift:?}, {fractions:?}, {f}: {got} | {expected}",
-                            field.pupil()
-                        );
-                    }
+        for shift in [[0, 0], [-5, 6], [9, 4], [2, -14]] {
+            for fractions in FRACTIONS {
+                for f in [0.5, 0.25] {
+                    let place = Place {
+                        shift,
+                        fractions,
+                        f,
+                    };
+                    let points = interpolated(&field, &place, [0.0; 2]);
+                    let expected = square(&points) / field.mask.power();
+                    let got = mean_square_of_look_ups(&field, &place);
+                    worst = worst.max((got - expected).abs());
+                    // Sums of some ten terms in f32 (1e−6), the polynomials (1e−6) and the odd
+                    // terms that are left out (2e−6), each halved by 2 f (1 − f).
+                    assert!(
+                        (got - expected).abs() < 2e-6,
+                        "{:?}, {shift:?}, {fractions:?}, {f}: {got} | {expected}",
+                        field.pupil()
+                    );
                 }
             }
         }
@@ -211,7 +183,7 @@ fn the_mean_square_between_slices_is_the_sum_over_the_points_of_both_pupils() {
 #[test]
 fn an_external_field_has_the_covariance_of_what_its_pupils_see() {
     let field = PupilField::from_speckle_size([40, 48], 2.0, 5).unwrap();
-    let responses = Responses::new(&field, Interpolation::Bilinear);
+    let responses = Responses::new(&field);
     let shift = [4, -7];
     let phasors = responses.of_phasors(&field, shift);
     // Phasors of magnitude 1 are light like any other.
@@ -235,33 +207,26 @@ fn an_external_field_has_the_covariance_of_what_its_pupils_see() {
 /// Against the fields of both slices, blended without any interpolation in the plane.
 #[test]
 fn between_slices_correlations_deviate_as_documented() {
-    for (interpolation, stated) in [
-        (Interpolation::CubicSpline, [3.8e-3, 1.3e-4, 7e-6]),
-        (Interpolation::Bilinear, [0.07, 0.018, 4.3e-3]),
-        (Interpolation::Nearest, [0.81, 0.52, 0.25]),
-    ] {
-        for ((size, lag), stated) in [(48, 2.0), (96, 3.0), (192, 5.0)].into_iter().zip(stated) {
-            let field = PupilField::from_speckle_size([size; 2], size as f64 / 24.0, 0).unwrap();
-            // Neighbours of 4 and 32 slices.
-            let worst = [[12, 12], [1, 0]]
-                .map(|shift| deviation(&field, interpolation, shift, lag))
-                .into_iter()
-                .fold(0.0, f64::max);
-            assert!(
-                worst < stated && worst > 0.8 * stated,
-                "{interpolation:?}, Q/C = {}: {worst:e}",
-                size / 24
-            );
-        }
+    for (size, lag, stated) in [(48, 2.0, 3.8e-3), (96, 3.0, 1.3e-4), (192, 5.0, 7e-6)] {
+        let field = PupilField::from_speckle_size([size; 2], size as f64 / 24.0, 0).unwrap();
+        // Neighbours of 4 and 32 slices.
+        let worst = [[12, 12], [1, 0]]
+            .map(|shift| deviation(&field, shift, lag))
+            .into_iter()
+            .fold(0.0, f64::max);
+        assert!(
+            worst < stated && worst > 0.8 * stated,
+            "Q/C = {}: {worst:e}",
+            size / 24
+        );
     }
 }
 
 /// The largest deviation half-way between two slices, over fractions and over lags that include the
 /// steepest.
-fn deviation(field: &PupilField, interpolation: Interpolation, shift: [i64; 2], lag: f64) -> f64 {
+fn deviation(field: &PupilField, shift: [i64; 2], lag: f64) -> f64 {
     const STEPS: [f64; 4] = [0.0, 0.25, 0.499_99, 0.75];
     let place = |fractions| Place {
-        interpolation,
         shift,
         fractions,
         f: 0.5,

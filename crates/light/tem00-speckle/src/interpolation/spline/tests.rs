@@ -12,27 +12,15 @@ fn kernel(x: f64) -> f64 {
 }
 
 /// What interpolation at the fraction `f` makes of the wave `exp(−2πi k x / Q)`, over the wave.
-fn gain(interpolation: Interpolation, k: f64, f: f64, size: usize) -> Complex<f64> {
+fn gain(k: f64, f: f64, size: usize) -> Complex<f64> {
     let angle = 2.0 * PI * k / size as f64;
-    let taps = match interpolation {
-        Interpolation::CubicSpline => {
-            let filter = (0.5 * angle / (0.5 * angle).sin()).powi(4);
-            let filter = if filter.is_nan() { 1.0 } else { filter };
-            [-1.0, 0.0, 1.0, 2.0].map(|t| (t, filter * kernel(t - f)))
-        }
-        Interpolation::Bilinear => [(0.0, 1.0 - f), (1.0, f), (0.0, 0.0), (0.0, 0.0)],
-        Interpolation::Nearest => [(f.round(), 1.0), (0.0, 0.0), (0.0, 0.0), (0.0, 0.0)],
-    };
-    taps.iter()
-        .map(|(t, weight)| Complex::from_polar(*weight, -angle * (t - f)))
+    let filter = (0.5 * angle / (0.5 * angle).sin()).powi(4);
+    let filter = if filter.is_nan() { 1.0 } else { filter };
+    [-1.0, 0.0, 1.0, 2.0]
+        .map(|t| Complex::from_polar(filter * kernel(t - f), -angle * (t - f)))
+        .iter()
         .sum()
 }
-
-const ALL: [Interpolation; 3] = [
-    Interpolation::CubicSpline,
-    Interpolation::Bilinear,
-    Interpolation::Nearest,
-];
 
 fn points(mask: &Mask) -> Vec<([f64; 2], f64)> {
     let [x0, y0] = mask.corner();
@@ -59,25 +47,18 @@ const FRACTIONS: [[f64; 2]; 5] = [
 ];
 
 /// Σ |t|² |gain|² / Σ |t|² at the fractions.
-fn mean_square_gain(field: &PupilField, interpolation: Interpolation, [fx, fy]: [f64; 2]) -> f64 {
+fn mean_square_gain(field: &PupilField, [fx, fy]: [f64; 2]) -> f64 {
     let [width, height] = field.size();
     let term = |&([x, y], power): &([f64; 2], f64)| {
-        let (x, y) = (
-            gain(interpolation, x, fx, width),
-            gain(interpolation, y, fy, height),
-        );
+        let (x, y) = (gain(x, fx, width), gain(y, fy, height));
         power * (x * y).norm_sqr()
     };
     points(&field.mask).iter().map(term).sum::<f64>() / field.mask.power()
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "exact fractions")]
-fn variance_at(variance: &Variance, interpolation: Interpolation, [x, y]: [f64; 2]) -> f64 {
-    let [value] = even_at(
-        &mean_square(variance, interpolation),
-        &[x as f32],
-        &[y as f32],
-    );
+fn variance_at(variance: &Variance, [x, y]: [f64; 2]) -> f64 {
+    let [value] = even_at(&mean_square(variance), &[x as f32], &[y as f32]);
     value.into()
 }
 
@@ -99,17 +80,15 @@ fn the_closed_variance_is_the_mean_square_gain() {
             crate::Pupil::Sampled(slanted.clone()),
         ] {
             let field = field(size, speckle_size, pupil.clone());
-            for interpolation in ALL {
-                let variance = Variance::expected(&field, interpolation);
-                for fractions in FRACTIONS {
-                    let expected = mean_square_gain(&field, interpolation, fractions);
-                    let got = variance_at(&variance, interpolation, fractions);
-                    // Sums of 16 terms of at most 4 in f32.
-                    assert!(
-                        (got - expected).abs() < 1e-6,
-                        "{interpolation:?}, {pupil:?}, {size:?}, {fractions:?}: {got} | {expected}"
-                    );
-                }
+            let variance = Variance::expected(&field);
+            for fractions in FRACTIONS {
+                let expected = mean_square_gain(&field, fractions);
+                let got = variance_at(&variance, fractions);
+                // Sums of 16 terms of at most 4 in f32.
+                assert!(
+                    (got - expected).abs() < 1e-6,
+                    "{pupil:?}, {size:?}, {fractions:?}: {got} | {expected}"
+                );
             }
         }
     }
@@ -117,7 +96,7 @@ fn the_closed_variance_is_the_mean_square_gain() {
 
 /// The largest deviation of the correlation of two look-ups from that of the field, over fractions
 /// and over lags that include the steepest.
-fn deviation(field: &PupilField, interpolation: Interpolation, cells: &[[f64; 2]]) -> f64 {
+fn deviation(field: &PupilField, cells: &[[f64; 2]]) -> f64 {
     const STEPS: [f64; 6] = [0.0, 0.25, 0.499_99, 0.5, 0.625, 0.75];
     let size = field.size()[0] as f64;
     let wave =
@@ -126,7 +105,7 @@ fn deviation(field: &PupilField, interpolation: Interpolation, cells: &[[f64; 2]
     let fractions = || STEPS.iter().flat_map(|&x| STEPS.map(|y| [x, y]));
     let looked_up = |f: [f64; 2]| -> Vec<Complex<f64>> {
         let side = field.size()[0];
-        let along = |axis: usize, k: f64| gain(interpolation, k, f[axis], side);
+        let along = |axis: usize, k: f64| gain(k, f[axis], side);
         let value = |k: &[f64; 2]| wave(*k, f) * along(0, k[0]) * along(1, k[1]);
         let values: Vec<_> = points.iter().map(value).collect();
         let power: f64 = values.iter().map(Complex::norm_sqr).sum();
@@ -151,22 +130,16 @@ fn deviation(field: &PupilField, interpolation: Interpolation, cells: &[[f64; 2]
 }
 
 #[test]
-fn the_error_of_each_interpolation_is_as_documented() {
+fn the_error_of_the_spline_is_as_documented() {
     let cells = |lag: f64| [[0.0, 0.0], [lag, 0.0], [lag - 1.0, 0.0], [2.0, 2.0]];
-    for (interpolation, stated) in [
-        (Interpolation::CubicSpline, [3.8e-3, 1.3e-4, 7e-6]),
-        (Interpolation::Bilinear, [0.07, 0.018, 4.3e-3]),
-        (Interpolation::Nearest, [0.75, 0.48, 0.25]),
-    ] {
-        for ((size, lag), stated) in [(48, 2.0), (96, 3.0), (192, 5.0)].into_iter().zip(stated) {
-            let field = field([size; 2], size as f64 / 24.0, crate::Pupil::Circle);
-            let worst = deviation(&field, interpolation, &cells(lag));
-            assert!(
-                worst < stated && worst > 0.8 * stated,
-                "{interpolation:?}, Q/C = {}: {worst:e}",
-                size / 24
-            );
-        }
+    for (size, lag, stated) in [(48, 2.0, 3.8e-3), (96, 3.0, 1.3e-4), (192, 5.0, 7e-6)] {
+        let field = field([size; 2], size as f64 / 24.0, crate::Pupil::Circle);
+        let worst = deviation(&field, &cells(lag));
+        assert!(
+            worst < stated && worst > 0.8 * stated,
+            "Q/C = {}: {worst:e}",
+            size / 24
+        );
     }
 }
 
@@ -176,7 +149,7 @@ fn the_field_of_the_spline_is_as_documented() {
         let field = field([size; 2], size as f64 / 32.0, crate::Pupil::Circle);
         let mut rms = 0.0_f64;
         for [fx, fy] in FRACTIONS {
-            let along = |k, f| gain(Interpolation::CubicSpline, k, f, size);
+            let along = |k, f| gain(k, f, size);
             let square: f64 = points(&field.mask)
                 .iter()
                 .map(|([x, y], _)| (along(*x, fx) * along(*y, fy) - 1.0).norm_sqr())

@@ -66,10 +66,10 @@ impl Layer<'_> {
     /// The amplitudes, as real and imaginary parts, at points whose fractions of the way to the next slice
     /// are `f`, and their mean squares.
     #[inline(always)]
-    pub(super) fn amplitudes<const N: usize, const L: usize>(
+    pub(super) fn amplitudes<const L: usize>(
         &self,
-        x: &Taps<N, L>,
-        y: &Taps<N, L>,
+        x: &Taps<L>,
+        y: &Taps<L>,
         f: &[f32; L],
     ) -> ([[f32; L]; 2], [f32; L]) {
         let mut amplitude = amplitudes(&self.here.coefficients, x, y);
@@ -83,10 +83,10 @@ impl Layer<'_> {
 
     /// The intensities at points whose fractions of the way to the next slice are `f`.
     #[inline(always)]
-    pub(super) fn intensities<const N: usize, const L: usize>(
+    pub(super) fn intensities<const L: usize>(
         &self,
-        x: &Taps<N, L>,
-        y: &Taps<N, L>,
+        x: &Taps<L>,
+        y: &Taps<L>,
         f: &[f32; L],
     ) -> [f64; L] {
         let (amplitude, mean_square) = self.amplitudes(x, y, f);
@@ -100,11 +100,11 @@ impl Layer<'_> {
 
     /// (1 − f) U + f U' exp(2πi turns), in the frame of this slice.
     #[inline(always)]
-    fn blend<const N: usize, const L: usize>(
+    fn blend<const L: usize>(
         &self,
         next: &Slice,
         amplitude: &mut [[f32; L]; 2],
-        [x, y]: [&Taps<N, L>; 2],
+        [x, y]: [&Taps<L>; 2],
         f: &[f32; L],
     ) {
         let there = amplitudes(&next.coefficients, x, y);
@@ -122,11 +122,11 @@ impl Layer<'_> {
 
     /// (1 − f)² v + f² v' + 2 f (1 − f) c.
     #[inline(always)]
-    fn blended_square<const N: usize, const L: usize>(
+    fn blended_square<const L: usize>(
         &self,
         next: &Slice,
         here: &[f32; L],
-        [x, y]: [&Taps<N, L>; 2],
+        [x, y]: [&Taps<L>; 2],
         f: &[f32; L],
     ) -> [f32; L] {
         let there = even_at(&next.mean_square, &x.fractions, &y.fractions);

@@ -6,13 +6,7 @@ use tem00_numerics::{Grid, cast::to_f32};
 use tem00_statistics::rectangular_pixel_contrast;
 
 use super::*;
-use crate::{Phasors, PupilField, SlicePath, StackOptions, pupil::lattice::unit_phasor};
-
-const ALL: [Interpolation; 3] = [
-    Interpolation::CubicSpline,
-    Interpolation::Bilinear,
-    Interpolation::Nearest,
-];
+use crate::{Phasors, PupilField, SlicePath, pupil::lattice::unit_phasor};
 
 const PATHS: [SlicePath; 3] = [
     SlicePath::Still,
@@ -23,19 +17,12 @@ const PATHS: [SlicePath; 3] = [
     },
 ];
 
-fn options(interpolation: Interpolation) -> StackOptions {
-    StackOptions {
-        interpolation,
-        ..StackOptions::default()
-    }
-}
-
 fn circle(half_period: usize) -> SlicePath {
     SlicePath::Circle { half_period }
 }
 
-fn stack(field: &PupilField, path: SlicePath, interpolation: Interpolation) -> SpeckleStack {
-    SpeckleStack::generate_with(field, path, options(interpolation)).unwrap()
+fn stack(field: &PupilField, path: SlicePath) -> SpeckleStack {
+    SpeckleStack::generate(field, path).unwrap()
 }
 
 /// An external field: phasors under an envelope that falls to one side, so that no two pupils
@@ -62,65 +49,13 @@ fn mean(stack: &SpeckleStack, [fx, fy]: [f64; 2], u: f64) -> f64 {
 }
 
 #[test]
-fn samples_are_those_of_the_pattern_without_a_spline() {
-    for field in [
-        PupilField::from_speckle_size([40, 28], 2.5, 3).unwrap(),
-        measured([48, 48], 3.0),
-    ] {
-        for interpolation in [Interpolation::Bilinear, Interpolation::Nearest] {
-            let stack = stack(&field, circle(3), interpolation);
-            for (index, u) in (0..6).zip(0_u32..) {
-                let pattern = stack.field().pattern_at(stack.offset(index), 0.0);
-                for (y, row) in (0_u32..).zip(pattern.values().rows()) {
-                    for (x, &expected) in (0_u32..).zip(row) {
-                        let got = stack.intensity_at(x.into(), y.into(), u.into());
-                        let error = (got - f64::from(expected)).abs() / (1.0 + got);
-                        // Two transforms in f32 and the phases that centre one of them: 16 ε each.
-                        assert!(
-                            error < 4e-6,
-                            "{interpolation:?} at ({x}, {y}, {u}): {error:e}"
-                        );
-                    }
-                }
-            }
-        }
-    }
-}
-
-#[test]
-fn the_nearest_sample_is_the_nearest() {
-    let field = PupilField::new(32, 8, 5).unwrap();
-    let stack = stack(&field, circle(2), Interpolation::Nearest);
-    for (x, sample) in [
-        (3.49, 3.0),
-        (3.5, 4.0),
-        (31.6, 0.0),
-        (-0.4, 0.0),
-        (-0.6, 31.0),
-    ] {
-        for u in [0.0, 1.25] {
-            let (got, expected) = (
-                stack.intensity_at(x, 7.0, u),
-                stack.intensity_at(sample, 7.0, u),
-            );
-            assert!((got - expected).abs() < 1e-12, "{got} | {expected} at {x}");
-        }
-    }
-}
-
-#[test]
 fn an_external_field_has_the_mean_of_one_between_samples() {
-    for interpolation in ALL {
-        let stack = stack(&measured([48, 40], 2.5), circle(2), interpolation);
-        for fractions in [[0.0, 0.0], [0.5, 0.5], [0.3, 0.8]] {
-            for u in [0.0, 1.0, 2.0, 0.5, 1.5, 3.25] {
-                let mean = mean(&stack, fractions, u);
-                // By Parseval, but for the rounding of f32.
-                assert!(
-                    (mean - 1.0).abs() < 3e-6,
-                    "{interpolation:?}, {fractions:?}, {u}: {mean}"
-                );
-            }
+    let stack = stack(&measured([48, 40], 2.5), circle(2));
+    for fractions in [[0.0, 0.0], [0.5, 0.5], [0.3, 0.8]] {
+        for u in [0.0, 1.0, 2.0, 0.5, 1.5, 3.25] {
+            let mean = mean(&stack, fractions, u);
+            // By Parseval, but for the rounding of f32.
+            assert!((mean - 1.0).abs() < 3e-6, "{fractions:?}, {u}: {mean}");
         }
     }
 }
@@ -129,12 +64,10 @@ fn an_external_field_has_the_mean_of_one_between_samples() {
 fn where_no_light_falls_the_look_up_is_dark() {
     let dark = Grid::filled(8, 8, Complex::new(0.0, 0.0));
     let field = PupilField::from_samples(dark, [32, 32], 4.0).unwrap();
-    for interpolation in ALL {
-        let stack = stack(&field, circle(2), interpolation);
-        for (x, u) in [(0.0, 0.0), (3.3, 0.5), (-7.7, 2.9)] {
-            let dark = stack.intensity_at(x, x, u);
-            assert!(dark.abs() <= 0.0, "{interpolation:?}: {dark}");
-        }
+    let stack = stack(&field, circle(2));
+    for (x, u) in [(0.0, 0.0), (3.3, 0.5), (-7.7, 2.9)] {
+        let dark = stack.intensity_at(x, x, u);
+        assert!(dark.abs() <= 0.0, "{dark}");
     }
 }
 
@@ -146,10 +79,10 @@ proptest! {
     fn batches_are_the_bits_of_single_look_ups(
         points in prop::collection::vec((-1e3_f64..1e3, -1e9_f64..1e9, -50.0_f64..50.0), 0..70),
         spread in prop::sample::select(vec![0.0, 1e-3, 1.0]), whole: bool,
-        (width, height) in (16_usize..40, 16_usize..40), kind in 0_usize..3, path in 0_usize..3,
+        (width, height) in (16_usize..40, 16_usize..40), path in 0_usize..3,
     ) {
         let field = PupilField::from_speckle_size([width, height], 2.0, 9).unwrap();
-        let stack = stack(&field, PATHS[path], ALL[kind]);
+        let stack = stack(&field, PATHS[path]);
         let x: Vec<_> = points.iter().map(|p| p.0).collect();
         let y: Vec<_> = points.iter().map(|p| p.1).collect();
         let u = |p: &(f64, f64, f64)| spread * p.2 + if whole { 1.0 } else { 0.7 };
@@ -167,10 +100,10 @@ proptest! {
         x in -(1_i64 << 33)..1 << 33, y in -(1_i64 << 33)..1 << 33, u in -(1_i64 << 33)..1 << 33,
         turns in prop::array::uniform3(-(1_i64 << 23)..1 << 23),
         (width, height) in (16_usize..260, 16_usize..260),
-        kind in 0_usize..3, path in 0_usize..3,
+        path in 0_usize..3,
     ) {
         let field = PupilField::from_speckle_size([width, height], 2.0, 9).unwrap();
-        let stack = stack(&field, PATHS[path], ALL[kind]);
+        let stack = stack(&field, PATHS[path]);
         let periods = [width, height, stack.slice_count()];
         let [x, y, u] = [x, y, u].map(|n| n as f64 / 1_048_576.0);
         let [nx, ny, nu] = [0, 1, 2].map(|i| turns[i] as f64 * periods[i] as f64);
@@ -182,10 +115,10 @@ proptest! {
     fn look_ups_of_any_finite_coordinate_are_finite(
         x in prop::num::f64::NORMAL, y in -1e15_f64..1e15, u in prop::num::f64::NORMAL,
         near in -1e15_f64..1e15, width in prop::num::f64::NORMAL,
-        (columns, rows) in (16_usize..50, 16_usize..50), kind in 0_usize..3, path in 0_usize..3,
+        (columns, rows) in (16_usize..50, 16_usize..50), path in 0_usize..3,
     ) {
         let field = PupilField::from_speckle_size([columns, rows], 2.0, 9).unwrap();
-        let stack = stack(&field, PATHS[path], ALL[kind]);
+        let stack = stack(&field, PATHS[path]);
         for (x, y, u) in [(x, y, u), (y, x, near)] {
             let intensity = stack.intensity_at(x, y, u);
             prop_assert!(intensity.is_finite() && intensity >= 0.0, "{intensity}");
@@ -198,16 +131,11 @@ proptest! {
     fn averages_are_those_of_many_points(
         x in -100.0_f64..100.0, y in -100.0_f64..100.0, u in 0.0_f64..4.0,
         speckles in [0.0_f64..28.0, 0.0_f64..4.0],
-        (size, speckle_size, interpolation) in prop::sample::select(vec![
-            // Of the two that are continuous.
-            ([32, 48], 2.5, Interpolation::CubicSpline),
-            ([104, 152], 8.0, Interpolation::CubicSpline),
-            ([32, 48], 2.5, Interpolation::Bilinear),
-        ]),
+        (size, speckle_size) in prop::sample::select(vec![([32, 48], 2.5), ([104, 152], 8.0)]),
     ) {
         let [width, height] = speckles.map(|count| count * speckle_size);
         let field = PupilField::from_speckle_size(size, speckle_size, 11).unwrap();
-        let stack = stack(&field, circle(2), interpolation);
+        let stack = stack(&field, circle(2));
         // The oracle is the midpoint rule: over n points it errs by at most π q / (6 n²) of a wave of q
         // periods, 1e-4. Between two slices there are up to two waves in a speckle.
         let midpoints = |centre: f64, size: f64| {
@@ -221,12 +149,8 @@ proptest! {
         let sum: f64 = points.map(|[x, y]| stack.intensity_at(x, y, u)).sum();
         let mean = sum / (across.len() * along.len()) as f64;
         let got = stack.average_over([x, y], [width, height], u);
-        // The stated images of a cubic spline, of which all waves together have a quarter; the kinks of
-        // bilinear amplitudes are those of parabolas 0.3 high, which either rule cuts to a twentieth.
-        let tolerance = match interpolation {
-            Interpolation::CubicSpline => 1e-4 + 0.25 * (2.0 * speckle_size - 1.0).powi(-4),
-            _ => 1.5e-2,
-        };
+        // The stated images of a cubic spline, of which all waves together have a quarter.
+        let tolerance = 1e-4 + 0.25 * (2.0 * speckle_size - 1.0).powi(-4);
         prop_assert!((got - mean).abs() < tolerance, "{got} | {mean}");
     }
 }
@@ -239,7 +163,7 @@ fn averages_over_pixels_have_the_contrast_of_pixels() {
         for seed in 0..TILES {
             let field = PupilField::new(64, 32, u64::from(seed) + 100).unwrap();
             let field = field.with_phasors(Phasors::Gaussian);
-            let stack = stack(&field, SlicePath::Still, Interpolation::default());
+            let stack = stack(&field, SlicePath::Still);
             for i in 0..32 * 32_u32 {
                 let centre = [f64::from(i % 32) * 2.0, f64::from(i / 32) * 2.0];
                 let pixel = stack.average_over(centre, size.map(|s| 2.0 * s), 0.0);
@@ -267,17 +191,15 @@ fn averages_over_pixels_have_the_contrast_of_pixels() {
 fn a_place_that_is_none_has_the_mean_and_correlates_with_nothing() {
     let field = PupilField::from_speckle_size([20, 24], 2.0, 9).unwrap();
     let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
-    for (kind, path, bad, axis) in ALL.into_iter().flat_map(|kind| {
-        PATHS.iter().flat_map(move |path| {
-            bad.into_iter()
-                .flat_map(move |bad| (0..3).map(move |axis| (kind, path, bad, axis)))
-        })
+    for (path, bad, axis) in PATHS.iter().flat_map(|path| {
+        bad.into_iter()
+            .flat_map(move |bad| (0..3).map(move |axis| (path, bad, axis)))
     }) {
-        let stack = stack(&field, *path, kind);
+        let stack = stack(&field, *path);
         let mut none = [3.5, 4.25, 0.5];
         none[axis] = bad;
         let [x, y, u] = none;
-        let case = format!("{kind:?}, {path:?}: {none:?}");
+        let case = format!("{path:?}: {none:?}");
         assert_eq!(stack.intensity_at(x, y, u), 1.0, "{case}");
         assert_eq!(stack.amplitude_at(x, y, u).norm_sqr(), 1.0, "{case}");
         assert_eq!(stack.average_over([x, y], [2.0, 1.0], u), 1.0, "{case}");
@@ -315,22 +237,14 @@ fn a_place_that_is_none_has_the_mean_and_correlates_with_nothing() {
 #[test]
 #[should_panic(expected = "a box of the size")]
 fn boxes_of_negative_size_are_refused() {
-    let stack = stack(
-        &PupilField::new(16, 8, 0).unwrap(),
-        SlicePath::Still,
-        ALL[0],
-    );
+    let stack = stack(&PupilField::new(16, 8, 0).unwrap(), SlicePath::Still);
     stack.average_over([0.0; 2], [-1.0, 1.0], 0.0);
 }
 
 #[test]
 #[should_panic(expected = "coordinates of lengths")]
 fn batches_of_unlike_lengths_are_refused() {
-    let stack = stack(
-        &PupilField::new(16, 8, 0).unwrap(),
-        SlicePath::Still,
-        ALL[0],
-    );
+    let stack = stack(&PupilField::new(16, 8, 0).unwrap(), SlicePath::Still);
     stack.intensity_batch(&[0.0], &[0.0, 1.0], &[0.0], &mut [0.0]);
 }
 
@@ -338,35 +252,26 @@ fn batches_of_unlike_lengths_are_refused() {
 /// mean square over the whole tile.
 #[test]
 fn slices_of_unlike_light_are_blended_in_one_frame() {
-    let field = measured([40, 48], 2.5);
-    let stack = stack(&field, circle(2), Interpolation::Bilinear);
+    let stack = stack(&measured([128, 144], 16.0), circle(2));
     let size = stack.size();
-    let (index, f, fractions) = (1, 0.375_f64, [0.5, 0.25]);
+    let (index, f) = (1, 0.375_f64);
     let [a, b] = [index, index + 1].map(|i| stack.field().speckle(stack.offset(i), 0.0));
     let step = stack.slices[index].join.step;
-    let frame = |x: usize, y: usize| {
-        let turns = step[0] * (x as f64 + fractions[0]) / size[0] as f64
-            + step[1] * (y as f64 + fractions[1]) / size[1] as f64;
-        Complex::cis(-2.0 * PI * turns)
-    };
-    let between = |field: &crate::SpeckleField, x: usize, y: usize| {
-        let [fx, fy] = fractions;
-        let at = |dx, dy| {
-            let z = field.values()[((x + dx) % size[0], (y + dy) % size[1])];
-            Complex::new(f64::from(z.re), f64::from(z.im))
-        };
-        (at(0, 0) * (1.0 - fx) + at(1, 0) * fx) * (1.0 - fy)
-            + (at(0, 1) * (1.0 - fx) + at(1, 1) * fx) * fy
-    };
     let blend = |x: usize, y: usize| {
-        (between(&a, x, y) * (1.0 - f) + between(&b, x, y) * frame(x, y) * f).norm_sqr()
+        let turns = step[0] * x as f64 / size[0] as f64 + step[1] * y as f64 / size[1] as f64;
+        let [a, b] = [&a, &b].map(|field| {
+            let z = field.values()[(x, y)];
+            Complex::new(f64::from(z.re), f64::from(z.im))
+        });
+        (a * (1.0 - f) + b * Complex::cis(-2.0 * PI * turns) * f).norm_sqr()
     };
     let cells = || (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
     let mean_square = cells().map(|(x, y)| blend(x, y)).sum::<f64>() / (size[0] * size[1]) as f64;
     for (x, y) in cells().step_by(7) {
         let expected = blend(x, y) / mean_square;
-        let got = stack.intensity_at(x as f64 + 0.5, y as f64 + 0.25, index as f64 + f);
-        // Rounding of f32 in some ten operations.
+        let got = stack.intensity_at(x as f64, y as f64, index as f64 + f);
+        // The error of the spline falls with the fourth power of the speckle size: 2e-4 at 4, 8e-7 here. And the
+        // rounding of f32 in some ten operations.
         let error = (got - expected).abs() / (1.0 + expected);
         assert!(error < 1e-5, "({x}, {y}): {got} | {expected}");
     }
@@ -380,7 +285,7 @@ fn fringes_between_slices_are_those_of_both_pupils_together() {
         half_period: 2,
         length: 3,
     };
-    let stack = stack(&field, path, Interpolation::CubicSpline);
+    let stack = stack(&field, path);
     for (between, expected) in [(false, [4.0, 4.0]), (true, [64.0 / (16.0 + 12.0), 4.0])] {
         let layer = stack.layer(0, between);
         for (axis, expected) in expected.into_iter().enumerate() {
@@ -396,7 +301,7 @@ fn fringes_between_slices_are_those_of_both_pupils_together() {
 #[test]
 fn fields_of_two_stacks_add_to_speckle_of_the_same_law() {
     let field = |seed| PupilField::new(128, 64, seed).unwrap();
-    let stacks = [1, 2].map(|seed| stack(&field(seed), PATHS[2], Interpolation::CubicSpline));
+    let stacks = [1, 2].map(|seed| stack(&field(seed), PATHS[2]));
     let (mut mean, mut square) = (0.0, 0.0);
     let count = 40_000;
     for i in 0..count {

@@ -3,42 +3,29 @@ use core::f64::consts::TAU;
 use num_complex::Complex;
 use tem00_numerics::cast::to_signed;
 
-use crate::{Interpolation, PupilField, SlicePath, SpeckleStack, StackOptions};
+use crate::{PupilField, SlicePath, SpeckleStack};
 
-/// The place of a coordinate: cell, fraction, and taps with their weights.
+/// The place of a coordinate: fraction, and taps with their weights.
 struct Place {
     fraction: f64,
     place: f64,
     taps: Vec<(i64, f64)>,
 }
 
-fn place(x: f64, interpolation: Interpolation) -> Place {
+fn place(x: f64) -> Place {
     #[expect(
         clippy::cast_possible_truncation,
         reason = "a sample of a small pattern"
     )]
     let (cell, f) = (x.floor() as i64, x - x.floor());
-    let taps = match interpolation {
-        Interpolation::Nearest => {
-            let nearest = cell + i64::from(f >= 0.5);
-            return Place {
-                fraction: 0.0,
-                place: x.round(),
-                taps: vec![(nearest, 1.0)],
-            };
-        }
-        Interpolation::Bilinear => vec![(cell, 1.0 - f), (cell + 1, f)],
-        Interpolation::CubicSpline => {
-            // The four pieces of the B-spline as polynomials of f.
-            let g = 1.0 - f;
-            vec![
-                (cell - 1, g * g * g / 6.0),
-                (cell, (4.0 - 6.0 * f * f + 3.0 * f * f * f) / 6.0),
-                (cell + 1, (4.0 - 6.0 * g * g + 3.0 * g * g * g) / 6.0),
-                (cell + 2, f * f * f / 6.0),
-            ]
-        }
-    };
+    // The four pieces of the B-spline as polynomials of f.
+    let g = 1.0 - f;
+    let taps = vec![
+        (cell - 1, g * g * g / 6.0),
+        (cell, (4.0 - 6.0 * f * f + 3.0 * f * f * f) / 6.0),
+        (cell + 1, (4.0 - 6.0 * g * g + 3.0 * g * g * g) / 6.0),
+        (cell + 2, f * f * f / 6.0),
+    ];
     Place {
         fraction: f,
         place: x,
@@ -74,7 +61,7 @@ fn polynomial<const N: usize>(table: &[[f32; N]; N], places: &[Place; 2]) -> f64
 
 /// The look-up as the documentation has it.
 fn documented(stack: &SpeckleStack, [x, y]: [f64; 2], (index, f): (usize, f64)) -> f64 {
-    let places = [x, y].map(|x| place(x, stack.interpolation()));
+    let places = [x, y].map(place);
     let next = (index + 1) % stack.slice_count();
     let (here, there) = (stack.slice_law(index), stack.slice_law(next));
     let turns = here.turns[0] * places[0].place + here.turns[1] * places[1].place;
@@ -96,28 +83,18 @@ fn look_ups_follow_from_coefficients_and_closed_forms_alone() {
             length: 3,
         },
     ] {
-        for interpolation in [
-            Interpolation::CubicSpline,
-            Interpolation::Bilinear,
-            Interpolation::Nearest,
-        ] {
-            let options = StackOptions {
-                interpolation,
-                ..StackOptions::default()
-            };
-            let stack = SpeckleStack::generate_with(&field, path, options).unwrap();
-            for step in 0..40 {
-                let t = f64::from(step);
-                let (x, y) = (1.0 + (7.37 * t) % 44.0, 1.0 + (11.71 * t) % 44.0);
-                let f = (0.37 * t) % 1.0;
-                let index = usize::try_from(step).unwrap() % stack.slice_count();
-                let u = f + to_signed(index) as f64;
-                let expected = stack.intensity_at(x, y, u);
-                let got = documented(&stack, [x, y], (index, f));
-                // Sums of 16 taps in f32: 1e-6 of the brightest samples, whose intensity is ~10.
-                let error = (got - expected).abs();
-                assert!(error < 2e-5, "{interpolation:?}, {path:?}: {error:e}");
-            }
+        let stack = SpeckleStack::generate(&field, path).unwrap();
+        for step in 0..40 {
+            let t = f64::from(step);
+            let (x, y) = (1.0 + (7.37 * t) % 44.0, 1.0 + (11.71 * t) % 44.0);
+            let f = (0.37 * t) % 1.0;
+            let index = usize::try_from(step).unwrap() % stack.slice_count();
+            let u = f + to_signed(index) as f64;
+            let expected = stack.intensity_at(x, y, u);
+            let got = documented(&stack, [x, y], (index, f));
+            // Sums of 16 taps in f32: 1e-6 of the brightest samples, whose intensity is ~10.
+            let error = (got - expected).abs();
+            assert!(error < 2e-5, "{path:?}: {error:e}");
         }
     }
 }

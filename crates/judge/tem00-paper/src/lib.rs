@@ -8,8 +8,7 @@
 //! | §4, x′ of a laser fan | [`PrintedFan`] | [`LaserLine`](tem00_beam::LaserLine) | not normalised: power `P T z / w` |
 //! | §4 step 3, `w_A / w_R` | [`streamline_point`] | `Emitter::next_event` | right for energy, up to one divergence off as a ray |
 //! | §4 steps 1–4 | [`spot_next_event`], [`line_next_event`] | `Emitter::next_event` | all of the above |
-//! | §4, θ′ | [`modified_divergence`] | [`Emitter::sample_ray`](tem00_beam::Emitter::sample_ray) | nothing; the cone loses the fraction l of the power |
-//! | §4, disc × cone | [`DiscConeSampler`] | `Emitter::sample_ray` | the weight has the unit W·sr, and light is lost |
+//! | §4, θ′ and disc × cone | tests alone | [`Emitter::sample_ray`](tem00_beam::Emitter::sample_ray) | the weight has the unit W·sr, and light is lost |
 //! | §6.3, bilinear intensity | [`BilinearStack`] | [`SpeckleStack`](tem00_speckle::SpeckleStack) | contrast 0.757 half-way between samples at a speckle size of 2 |
 //! | §6.4, linear blend of slices | [`BilinearStack`] | `SpeckleStack` | contrast 0.885 half-way between 2M = 16 slices |
 //! | §6.3 and §6.4, wraps at Q − 1 and 2M − 1 | [`BilinearStack`] | `SpeckleStack` | a jump in the pattern and in time |
@@ -44,13 +43,13 @@
 //! [`ImagingGeometry::axial_decorrelation_length`]: tem00_decorrelation::ImagingGeometry::axial_decorrelation_length
 //! [`ImagingGeometry::pattern_coordinate`]: tem00_decorrelation::ImagingGeometry::pattern_coordinate
 
-mod cone;
 mod fan;
 mod look_up;
 mod motion;
 mod next_event;
+#[cfg(test)]
+mod sampler;
 
-pub use cone::{DiscConeRay, DiscConeSampler, modified_divergence};
 pub use fan::PrintedFan;
 pub use look_up::BilinearStack;
 pub use motion::{

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 from tem00.beam import FanGeometry, GaussianBeam, LaserLine, LineLight, LineProfile, Placement
 from tem00.decorrelation import ImagingGeometry, LensData
-from tem00.speckle import PixelArray, StackNeeds, StackPlan
+from tem00.speckle import StackNeeds, StackOptions, StackPlan
 from tem00.statistics import Contrast, pixel_contrast
 
 Floats = npt.NDArray[np.float64]
@@ -158,10 +158,11 @@ def speckle_of_pixels(parameters: Parameters, speckle_size: float) -> Floats:
         frames=1,
         memory_limit=1 << 30,
     )
-    pattern = StackPlan(needs).field(parameters.seed).pattern()
-    samples = pattern.speckle_size / speckle_size
-    pixels = PixelArray((parameters.columns, parameters.rows), (samples, samples))
-    return pixels.image(pattern).astype(np.float64)
+    stack = StackPlan(needs).stack(parameters.seed, StackOptions())
+    samples = stack.speckle_size / speckle_size
+    columns, rows = samples * np.arange(parameters.columns), samples * np.arange(parameters.rows)
+    x, y = np.meshgrid(columns, rows)
+    return np.asarray(stack.average_over(x, y, (samples, samples), 0.0))
 
 
 def measure(smooth: Floats, speckle: Floats, camera: ImagingGeometry) -> Row:

@@ -9,7 +9,6 @@ mod images;
 mod options;
 mod path;
 mod pattern;
-mod pixels;
 mod plan;
 mod pupil;
 mod seed;
@@ -29,7 +28,6 @@ pub(crate) mod speckle {
         options::StackOptions,
         path::SlicePath,
         pattern::{SpeckleField, SpecklePattern},
-        pixels::PixelArray,
         plan::{StackNeeds, StackPlan},
         pupil::{Pupil, Transmission},
         seed::derived_seed,

@@ -173,17 +173,6 @@ def test_decorrelated_samples_are_exponential() -> None:
     assert stats.kstest(samples, "expon").pvalue > 1e-3
 
 
-def test_few_scatterers_have_their_contrast() -> None:
-    count, seeds = 5, 200
-    squares = [
-        np.mean(PupilField.from_scatterers(count, (64, 64), 2.0, seed).pattern().values ** 2.0)
-        for seed in range(seeds)
-    ]
-    # <I²> = 2 - 1/N; patterns scatter about it by their own spread, 4 of it are 6e-5.
-    error = 4 * np.std(squares) / np.sqrt(seeds)
-    assert np.mean(squares) == pytest.approx(2 - 1 / count, abs=error)
-
-
 @pytest.mark.parametrize(
     ("pupil", "shape"),
     [

@@ -7,7 +7,6 @@ from scipy import fft, stats
 
 from tem00.speckle import (
     Exposure,
-    PixelArray,
     PupilField,
     SlicePath,
     SpecklePattern,
@@ -57,12 +56,6 @@ def test_equal_sums_have_the_gamma_law() -> None:
     assert stats.kstest(samples, stats.gamma(3, scale=1 / 3).cdf).pvalue > 1e-3
 
 
-def test_a_background_interferes(field: PupilField) -> None:
-    amplitude = field.field()
-    expected = np.abs(amplitude.values + np.sqrt(2.5) * np.exp(0.7j)) ** 2 / 3.5
-    np.testing.assert_allclose(amplitude.on_background(2.5, 0.7).values, expected, rtol=1e-5)
-
-
 def test_a_drift_over_the_sensor_is_a_sinc_in_the_spectrum(field: PupilField) -> None:
     drift = (1.5, -0.6)
     exposure = Exposure().with_image_drift(drift)
@@ -82,24 +75,3 @@ def test_a_drift_over_the_pupil_is_a_mean_of_moments(field: PupilField) -> None:
     patterns = [field.pattern_at((0.1 + 0.4 * t, 0.3 * t), 0.2).values for t in times]
     exposed = exposure.pattern_at(field, (0.1, 0.0), 0.2)
     np.testing.assert_allclose(exposed.values, np.mean(patterns, axis=0), atol=SINGLE)
-
-
-def test_pixels_are_integrals_of_the_interpolated_pattern(field: PupilField) -> None:
-    pixels = PixelArray((5, 4), (3.3, 2.9)).with_size((2.4, 1.7)).with_origin((-7.0, 120.3))
-    pattern = field.pattern()
-    spectrum = fft.fft2(pattern.values.astype(float)) / pattern.values.size
-    k = fft.fftfreq(128)
-    nodes, weights = np.polynomial.legendre.leggauss(12)
-
-    def wave_means(centres: NDArray[np.floating], size: float) -> NDArray[np.complex128]:
-        places = centres[:, np.newaxis] + 0.5 * size * nodes
-        waves = np.exp(2j * np.pi * places[..., np.newaxis] * k)
-        return np.asarray(np.einsum("pnk,n->pk", waves, 0.5 * weights))
-
-    columns = wave_means(-7.0 + 3.3 * np.arange(5), 2.4)
-    rows = wave_means(120.3 + 2.9 * np.arange(4), 1.7)
-    expected = (rows @ spectrum @ columns.T).real
-    image = pixels.image(pattern)
-    assert image.dtype == np.float32
-    assert image.shape == (4, 5)
-    np.testing.assert_allclose(image, expected, atol=SINGLE)

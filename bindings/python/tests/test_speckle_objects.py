@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from tem00 import speckle
 from tem00.speckle import (
     Exposure,
-    PixelArray,
     Pupil,
     PupilField,
     SlicePath,
@@ -116,7 +115,6 @@ PICKLED = [
     PupilField(100, 30, 2**64 - 1),
     PupilField.from_speckle_size((640, 480), 3.3, 7),
     MEASURED.with_pupil(Pupil.sampled(TRANSMISSION)),
-    PupilField.from_scatterers(3, (64, 64), 2.0, 5),
     Pupil.circle(),
     Pupil.rectangle(height=0.3),
     Pupil.gaussian(radius=0.5),
@@ -133,7 +131,6 @@ PICKLED = [
     SpeckleStack.generate(FIELD, SlicePath.straight(half_period=2, length=3)),
     SpeckleStack.generate(MEASURED, SlicePath.still()),
     Exposure().with_image_drift((1.0, 2.0)).with_pupil_drift((0.1, 0.2)),
-    PixelArray((4, 5), (1.5, 2.0)).with_size((1.0, 1.0)).with_origin((3.0, -4.0)),
 ]
 
 

@@ -100,31 +100,6 @@ impl PupilField {
         Ok(Self(field.or_raise()?))
     }
 
-    /// Return the field of a few point sources in the pupil: partially developed speckle.
-    ///
-    /// Parameters
-    /// ----------
-    /// count : int
-    ///     Number N of sources; the contrast is sqrt(1 - 1 / N).
-    /// size : (int, int)
-    ///     Width and height of the pattern in samples.
-    /// speckle_size : float
-    ///     Speckle size in samples, from 2 to an eighth of the shorter side.
-    /// seed : int
-    ///     Seed of places and phases, 0 to 2**64 - 1.
-    #[staticmethod]
-    fn from_scatterers(
-        count: Whole<'_>,
-        size: [Whole<'_>; 2],
-        speckle_size: f64,
-        seed: Whole<'_>,
-    ) -> PyResult<Self> {
-        let (count, size) = (count.unsigned("count")?, counts("size", &size)?);
-        let seed = seed.unsigned("seed")?;
-        let field = physics::PupilField::from_scatterers(count, size, speckle_size, seed);
-        Ok(Self(field.or_raise()?))
-    }
-
     /// Return the same field behind a pupil of another shape.
     fn with_pupil(&self, pupil: &Pupil) -> PyResult<Self> {
         let field = self.0.clone().with_pupil(pupil.0.clone());

@@ -91,27 +91,6 @@ impl SpeckleField {
         SpecklePattern(py.detach(|| self.0.to_pattern()))
     }
 
-    /// Return the intensity on a uniform wave that interferes: partially developed speckle.
-    ///
-    /// Its law is ``tem00.statistics.CoherentBackground``.
-    ///
-    /// Parameters
-    /// ----------
-    /// beam_ratio : float
-    ///     Intensity of the wave over the mean of the speckle, 0 to 1e12.
-    /// phase : float
-    ///     Phase in radians.
-    fn on_background(
-        &self,
-        py: Python<'_>,
-        beam_ratio: f64,
-        phase: f64,
-    ) -> PyResult<SpecklePattern> {
-        check_room(self.0.size(), 4)?;
-        let pattern = py.detach(|| self.0.on_background(beam_ratio, phase));
-        Ok(SpecklePattern(pattern.or_raise()?))
-    }
-
     /// Write the amplitude as an NPY file of complex64, to be read by ``numpy.load``.
     ///
     /// Parameters

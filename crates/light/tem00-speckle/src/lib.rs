@@ -43,7 +43,7 @@ mod pupil;
 mod stack;
 
 pub use error::SpeckleError;
-pub use light::{Exposure, PixelArray, incoherent_fractions};
+pub use light::{Exposure, incoherent_fractions};
 pub use npy::{NpyError, NpyReader, write_npy, write_real_npy};
 /// The complex number of [`SpeckleField`], from `num-complex`.
 pub use num_complex::Complex;

@@ -5,7 +5,6 @@ mod field;
 pub(crate) mod lattice;
 pub(crate) mod mask;
 mod pattern;
-mod scatterers;
 mod shape;
 mod transmission;
 mod view;

@@ -16,6 +16,7 @@ pub mod check;
 mod circle;
 #[cfg(feature = "fft")]
 mod fft;
+mod fractions;
 mod grid;
 mod least_squares;
 mod lower_factor;
@@ -31,6 +32,7 @@ mod vectorised;
 pub use circle::{circle_point_at_eighth, circle_point_at_turn};
 #[cfg(feature = "fft")]
 pub use fft::{Fft2, Fft2Error, Fft2Scratch};
+pub use fractions::fractions;
 pub use grid::{Grid, GridError, wrap_coordinate};
 pub use least_squares::{LeastSquaresError, Minimum, NormalEquations, minimise};
 pub use lower_factor::lower_factor;

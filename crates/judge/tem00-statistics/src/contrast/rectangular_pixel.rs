@@ -219,22 +219,6 @@ mod tests {
     }
 
     #[test]
-    fn squares_have_the_contrast_of_square_pixels() {
-        for q in [0.05, 0.7, 1.0, 5.0, 30.0, 63.0, 1e3, 1e6] {
-            let square = rectangular_pixel_contrast([q, q]);
-            let nearly = rectangular_pixel_contrast([q, q * (1.0 + 1e-7)]);
-            // Square pixels are exact to 1e−9, from 64 on relative.
-            assert_relative_eq!(
-                square,
-                pixel_contrast(q),
-                max_relative = 1e-8,
-                epsilon = 0.0
-            );
-            assert_relative_eq!(nearly, square, max_relative = 2e-7, epsilon = 0.0);
-        }
-    }
-
-    #[test]
     fn a_pixel_without_height_is_a_drift() {
         for length in [0.3, 2.0, 40.0, 1e3, 1e30] {
             let drift = translation_contrast(length);

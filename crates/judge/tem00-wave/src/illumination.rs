@@ -2,6 +2,7 @@ use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{DMat3, DVec3};
 use num_complex::Complex;
+use tem00_numerics::Shown;
 
 use crate::{
     RigidMotion, WaveError,
@@ -289,10 +290,8 @@ fn rayleigh_range(wavelength: f64, waist_radius: f64) -> Result<f64, WaveError> 
     let radius = checked_length(waist_radius, "waist_radius")?;
     let minimum = 2.0 * wavelength / PI;
     if radius < minimum {
-        return Err(WaveError::NotParaxial {
-            waist_radius,
-            minimum,
-        });
+        let allowed = format!("at least the paraxial limit of {} m", Shown(minimum));
+        return Err(WaveError::refused("waist_radius", waist_radius, allowed));
     }
     Ok(0.5 * TAU * radius * radius / wavelength)
 }

@@ -2,7 +2,7 @@ use core::f64::consts::TAU;
 
 use glam::{DMat2, DVec2, DVec3};
 use num_complex::Complex;
-use tem00_numerics::{Fft2, Grid, cast::to_c32};
+use tem00_numerics::{Fft2, Grid, Shown, cast::to_c32};
 
 use crate::{
     Camera, Field, LitSurface, SamplePlane, WaveError,
@@ -277,10 +277,9 @@ fn origin(middle: usize, size: usize) -> Vec<Complex<f64>> {
 
 fn step_error(step: f64, wavelength: f64, camera: &Camera) -> WaveError {
     let lens = camera.lens();
-    WaveError::ImageStep {
-        step,
-        speckle_size: wavelength * lens.pupil_to_image / lens.pupil_diameter,
-    }
+    let speckle_size = wavelength * lens.pupil_to_image / lens.pupil_diameter;
+    let allowed = format!("below the speckle size of {} m", Shown(speckle_size));
+    WaveError::refused("step", step, allowed)
 }
 
 #[cfg(test)]

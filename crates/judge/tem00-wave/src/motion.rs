@@ -127,41 +127,4 @@ mod tests {
         // Rounding of coordinates of up to 5 m.
         assert!((turn.point(centre) - centre).length() < 4e-15, "moved");
     }
-
-    #[test]
-    fn constructors_name_what_they_reject() {
-        let far = DVec3::new(0.0, 1e30, 0.0);
-        assert_eq!(
-            RigidMotion::translation(far),
-            Err(WaveError::vector(
-                "translation",
-                far,
-                "finite and at most 1e4 in each component, in metres"
-            ))
-        );
-        assert_eq!(
-            RigidMotion::rotation(DVec3::ZERO, 1.0, DVec3::ZERO),
-            Err(WaveError::vector(
-                "axis",
-                DVec3::ZERO,
-                "finite and not zero"
-            ))
-        );
-        assert_eq!(
-            RigidMotion::rotation(DVec3::X, f64::INFINITY, DVec3::ZERO),
-            Err(WaveError::refused(
-                "angle",
-                f64::INFINITY,
-                "finite, in radians"
-            ))
-        );
-        assert_eq!(
-            RigidMotion::rotation(DVec3::X, 1.0, far),
-            Err(WaveError::vector(
-                "centre",
-                far,
-                "finite and at most 1e4 in each component, in metres"
-            ))
-        );
-    }
 }

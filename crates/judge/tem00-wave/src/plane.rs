@@ -165,42 +165,4 @@ mod tests {
         assert_eq!(plane.open_samples(), open);
         assert_eq!(plane.point(15, 12), DVec3::ONE);
     }
-
-    #[test]
-    fn constructors_name_what_they_reject() {
-        let steps = [DVec3::X, DVec3::Y];
-        let long = [DVec3::X, DVec3::Y * 1e30];
-        let plane = SamplePlane::new(DVec3::ZERO, steps, [4, 4]).expect("a plane");
-        assert_eq!(
-            SamplePlane::new(DVec3::X * 1e30, steps, [4, 4]),
-            Err(WaveError::vector(
-                "centre",
-                DVec3::X * 1e30,
-                "finite and at most 1e4 in each component, in metres"
-            ))
-        );
-        let refused = SamplePlane::new(DVec3::ZERO, long, [4, 4]).map_err(|e| e.to_string());
-        assert!(
-            refused.is_err_and(|text| text.starts_with("steps must be from 1e-12 to 1e4 long")),
-            "{long:?}"
-        );
-        for samples in [[0, 4], [1 << 20, 1 << 20], [usize::MAX, 2]] {
-            assert_eq!(
-                SamplePlane::new(DVec3::ZERO, steps, samples),
-                Err(WaveError::refused(
-                    "samples",
-                    samples[0] as f64 * samples[1] as f64,
-                    "from 1 to 2²⁸ in all"
-                ))
-            );
-        }
-        assert_eq!(
-            plane.within(-1.0),
-            Err(WaveError::refused(
-                "radius",
-                -1.0,
-                "from 1e-12 to 1e4, in metres"
-            ))
-        );
-    }
 }

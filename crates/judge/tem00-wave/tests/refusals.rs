@@ -1,5 +1,6 @@
 //! A refusal names the parameter, its value and what is allowed.
 
+use tem00_testkit::refuses;
 use tem00_wave::{
     Amplitudes, Arrangement, BeamDescription, Camera, DMat3, DVec3, FanDescription, Illumination,
     Lens, PatchDescription, RigidMotion, RoughSurface, Roughness, SamplePlane, Scatterer,
@@ -39,82 +40,101 @@ const LENS: Lens = Lens {
     pupil_to_image: 0.03,
 };
 
-/// Holds each refusal to its text.
-macro_rules! refusals {
-    ($($result:expr => $text:literal,)*) => {$(
-        assert_eq!($result.expect_err($text).to_string(), $text);
-    )*};
+const UP: f64 = f64::INFINITY;
+const NAN: f64 = f64::NAN;
+const FAR: DVec3 = DVec3::new(0.0, 1e30, 0.0);
+
+#[test]
+fn light() {
+    refuses!(wavelength = 650e-9, direction = DVec3::Z => Illumination::plane(wavelength, direction);
+        wavelength: [0.0, -1.0, NAN, UP, 1e-30, 1e30], direction: [DVec3::ZERO, DVec3::NAN]);
+    refuses!(position = DVec3::ZERO => Illumination::point(650e-9, position);
+        position: [DVec3::NAN, FAR]);
+    refuses!(beam = BEAM => Illumination::gaussian_beam(&beam);
+        beam.waist_radius: [0.0, -1.0, NAN, UP, 1e-30, 1e30]);
+    refuses!(fan = FAN => Illumination::fan(&fan);
+        fan.opening: [DVec3::Z],
+        fan.half_angle: [1.75, core::f64::consts::FRAC_PI_2],
+        fan.waist_distance: [1e30],
+        fan.waist_radius: [1e-7],
+    );
 }
 
 #[test]
-fn refused_light_names_the_parameter_the_value_and_what_is_allowed() {
-    let beam = |beam| Illumination::gaussian_beam(&beam);
-    let fan = |fan| Illumination::fan(&fan);
-    refusals! {
-        Illumination::plane(-1.25, DVec3::Z) =>
-            "wavelength must be from 1e-10 to 1, in metres, got -1.25",
-        Illumination::plane(650e-9, DVec3::ZERO) =>
-            "direction must be finite and not zero, got [0, 0, 0]",
-        Illumination::point(650e-9, DVec3::NAN) =>
-            "position must be finite and at most 1e4 in each component, in metres, got [NaN, NaN, NaN]",
-        beam(BeamDescription { waist_radius: -1.0, ..BEAM }) =>
-            "waist_radius must be from 1e-12 to 1e4, in metres, got -1",
-        beam(BeamDescription { wavelength: 0.5, waist_radius: 0.125, ..BEAM }) =>
-            "waist_radius must be at least the paraxial limit of 0.3183098861837907 m, got 0.125 m",
-        fan(FanDescription { half_angle: 1.75, ..FAN }) =>
-            "half_angle must be between 0 and π/2, in radians, got 1.75",
-        fan(FanDescription { waist_distance: 1e30, ..FAN }) =>
-            "waist_distance must be finite and at most 1e4 in magnitude, in metres, got 1e30",
-        fan(FanDescription { opening: DVec3::Z, ..FAN }) =>
-            "opening must be finite, not zero and not along the direction of the fan, got [0, 0, 1]",
-    }
-}
-
-#[test]
-fn refused_surfaces_name_the_parameter_the_value_and_what_is_allowed() {
-    let patch = |patch| RoughSurface::patch(&patch);
+fn surfaces_planes_and_motions() {
     let heights = |rms, correlation_length| Roughness::Heights {
         rms,
         correlation_length,
     };
-    let bright = Scatterer {
-        position: DVec3::ZERO,
-        amplitude: tem00_wave::Complex::new(0.5, 1e30),
+    refuses!(patch = PATCH => RoughSurface::patch(&patch);
+        patch.centre: [FAR],
+        patch.normal: [DVec3::ZERO],
+        patch.along: [DVec3::Z],
+        patch.size: [[1e-3, -1.0]],
+        patch.scatterers: [[0, 3], [usize::MAX, 3]],
+        patch.roughness as "rms": [heights(-1e-6, 0.0), heights(NAN, 0.0)],
+        patch.roughness as "correlation_length": [heights(1e-6, -1.0), heights(1e-6, UP)],
+    );
+    let scatterer = |position, re| Scatterer {
+        position,
+        amplitude: tem00_wave::Complex::new(re, 0.0),
     };
-    refusals! {
-        patch(PatchDescription { size: [1.0, -1.25], ..PATCH }) =>
-            "size must be from 1e-12 to 1e4, in metres, got -1.25",
-        patch(PatchDescription { scatterers: [0, 7], ..PATCH }) =>
-            "scatterers must be from 1 to 2²⁸ in all, got 0",
-        patch(PatchDescription { along: DVec3::Z, ..PATCH }) =>
-            "along must be finite, not zero and not along the normal, got [0, 0, 1]",
-        patch(PatchDescription { roughness: heights(-1.0, 0.0), ..PATCH }) =>
-            "rms must be 0 or from 1e-12 to 1e4, in metres, got -1",
-        patch(PatchDescription { roughness: heights(0.0, 1e5), ..PATCH }) =>
-            "correlation_length must be 0 or from 1e-12 to 1e4, in metres, got 100000",
-        RoughSurface::from_scatterers(vec![bright]) =>
-            "amplitude must be finite and at most 1e4 in each component, in metres, got [0.5, \
-             1000000000000000000000000000000, 0]",
-        RigidMotion::translation(DVec3::X * 1e5) =>
-            "translation must be finite and at most 1e4 in each component, in metres, got [100000, 0, 0]",
-        SamplePlane::new(DVec3::ZERO, [DVec3::X, DVec3::Y], [0, 7]) =>
-            "samples must be from 1 to 2²⁸ in all, got 0",
-    }
+    refuses!(scatterers = vec![scatterer(DVec3::Y, 1.0)] => RoughSurface::from_scatterers(scatterers);
+        scatterers: [vec![]],
+        scatterers as "position": [vec![scatterer(FAR, 1.0)]],
+        scatterers as "amplitude": [vec![scatterer(DVec3::Y, NAN)]],
+    );
+    refuses!(centre = DVec3::ZERO, steps = [DVec3::X, DVec3::Y], samples = [4, 4]
+        => SamplePlane::new(centre, steps, samples);
+        centre: [FAR], steps: [[DVec3::X, FAR]],
+        samples: [[0, 4], [1 << 20, 1 << 20], [usize::MAX, 2]],
+    );
+    let plane = SamplePlane::new(DVec3::ZERO, [DVec3::X, DVec3::Y], [4, 4]).expect("a plane");
+    refuses!(radius = 1.0 => plane.within(radius); radius: [-1.0]);
+    refuses!(translation = DVec3::X => RigidMotion::translation(translation); translation: [FAR]);
+    refuses!(axis = DVec3::X, angle = 1.0, centre = DVec3::ZERO
+        => RigidMotion::rotation(axis, angle, centre);
+        axis: [DVec3::ZERO], angle: [UP], centre: [FAR]);
 }
 
 #[test]
-fn refused_cameras_name_the_parameter_the_value_and_what_is_allowed() {
-    let (x, y, zero) = (DVec3::X, DVec3::Y, DVec3::ZERO);
-    refusals! {
-        Camera::new(zero, DMat3::ZERO, LENS) =>
-            "axes must be right-handed and orthonormal within 1e-6, got columns \
-             [[0, 0, 0], [0, 0, 0], [0, 0, 0]]",
-        Camera::look_at([x, x], y, LENS) =>
-            "target must be at a finite vector from the camera that is not zero, in metres, got \
-             [0, 0, 0]",
-        Camera::look_at([x, zero], x, LENS) =>
-            "up must be finite, not zero and not along the view, got [1, 0, 0]",
-        Camera::look_at([x, zero], y, Lens { pupil_diameter: 0.0, ..LENS }) =>
-            "pupil_diameter must be from 1e-12 to 1e4, in metres, got 0",
+fn cameras() {
+    let left_handed = DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0));
+    refuses!(axes = DMat3::IDENTITY, lens = LENS => Camera::new(DVec3::ZERO, axes, lens);
+        axes: [left_handed, DMat3::ZERO],
+        lens.pupil_diameter: [0.0, -1.0, NAN, UP, 1e30, 1e-30],
+        lens.focus_distance: [0.0, NAN, 1e30],
+        lens.pupil_to_image: [0.0, NAN, 1e30],
+    );
+    refuses!(target = DVec3::Z, up = DVec3::Y => Camera::look_at([DVec3::ZERO, target], up, LENS);
+        target: [DVec3::ZERO], up: [DVec3::Z]);
+    let camera = Camera::new(DVec3::ZERO, DMat3::IDENTITY, LENS).expect("a camera");
+    refuses!(step = 1e-6, samples = 8 => camera.pupil_plane(step, samples);
+        step as "steps": [NAN], samples: [0]);
+}
+
+#[test]
+fn messages_say_what_is_allowed_and_what_was_given() {
+    let beam = BeamDescription {
+        wavelength: 0.5,
+        waist_radius: 0.125,
+        ..BEAM
+    };
+    let messages = [
+        (
+            Illumination::plane(-1.25, DVec3::Z).err(),
+            "wavelength must be from 1e-10 to 1, in metres, got -1.25",
+        ),
+        (
+            Illumination::plane(650e-9, DVec3::ZERO).err(),
+            "direction must be finite and not zero, got [0, 0, 0]",
+        ),
+        (
+            Illumination::gaussian_beam(&beam).err(),
+            "waist_radius must be at least the paraxial limit of 0.3183098861837907 m, got 0.125",
+        ),
+    ];
+    for (error, text) in messages {
+        assert_eq!(error.map(|error| error.to_string()).as_deref(), Some(text));
     }
 }

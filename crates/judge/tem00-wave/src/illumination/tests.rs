@@ -252,68 +252,6 @@ fn light_travels_in_its_direction() {
     }
 }
 
-#[test]
-fn constructors_name_what_they_reject() {
-    let bad_direction = DVec3::new(f64::NAN, 0.0, 0.0);
-    let message = |light: Result<Illumination, WaveError>| light.expect_err("an error").to_string();
-    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-30, 1e30] {
-        let plane = Illumination::plane(bad, DVec3::Z);
-        assert!(message(plane).contains("wavelength"), "{bad}");
-        let waist = Illumination::gaussian_beam(&BeamDescription {
-            wavelength: WAVELENGTH,
-            waist: DVec3::ZERO,
-            direction: DVec3::Z,
-            waist_radius: bad,
-        });
-        assert!(message(waist).contains("waist_radius"), "{bad}");
-    }
-    assert!(
-        message(Illumination::plane(WAVELENGTH, DVec3::ZERO)).contains("direction"),
-        "zero"
-    );
-    assert!(
-        message(Illumination::plane(WAVELENGTH, bad_direction)).contains("direction"),
-        "NaN"
-    );
-    assert!(
-        message(Illumination::point(WAVELENGTH, bad_direction)).contains("position"),
-        "NaN"
-    );
-    let good = FanDescription {
-        wavelength: WAVELENGTH,
-        apex: DVec3::ZERO,
-        direction: DVec3::Z,
-        opening: DVec3::X,
-        half_angle: 0.3,
-        waist_radius: 50e-6,
-        waist_distance: 0.2,
-    };
-    let opening = FanDescription {
-        opening: DVec3::Z,
-        ..good
-    };
-    let half_angle = FanDescription {
-        half_angle: FRAC_PI_2,
-        ..good
-    };
-    let waist_distance = FanDescription {
-        waist_distance: 1e30,
-        ..good
-    };
-    let waist_radius = FanDescription {
-        waist_radius: 1e-7,
-        ..good
-    };
-    for (fan, name) in [
-        (opening, "opening"),
-        (half_angle, "half_angle"),
-        (waist_distance, "waist_distance"),
-        (waist_radius, "paraxial"),
-    ] {
-        assert!(message(Illumination::fan(&fan)).contains(name), "{name}");
-    }
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2_000))]
 

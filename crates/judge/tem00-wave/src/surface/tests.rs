@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::{Arrangement, Complex, DVec2};
+use crate::{Arrangement, DVec2};
 
 fn patch(arrangement: Arrangement, roughness: Roughness) -> PatchDescription {
     PatchDescription {
@@ -218,87 +218,6 @@ fn heights_keep_scatterers_over_their_places() {
         let (a, b) = (local(&rough, a), local(&flat, b));
         assert!((a - b).truncate().length() < 1e-15, "{a} over {b}");
     }
-}
-
-#[test]
-fn constructors_name_what_they_reject() {
-    let good = patch(Arrangement::Stratified, GAUSSIAN);
-    let heights = |rms, correlation_length| PatchDescription {
-        roughness: Roughness::Heights {
-            rms,
-            correlation_length,
-        },
-        ..good
-    };
-    for (patch, name) in [
-        (
-            PatchDescription {
-                centre: DVec3::X * 1e30,
-                ..good
-            },
-            "centre",
-        ),
-        (
-            PatchDescription {
-                normal: DVec3::ZERO,
-                ..good
-            },
-            "normal",
-        ),
-        (
-            PatchDescription {
-                along: good.normal,
-                ..good
-            },
-            "along must",
-        ),
-        (
-            PatchDescription {
-                size: [1e-3, -1.0],
-                ..good
-            },
-            "size must",
-        ),
-        (
-            PatchDescription {
-                scatterers: [0, 3],
-                ..good
-            },
-            "scatterers",
-        ),
-        (
-            PatchDescription {
-                scatterers: [usize::MAX, 3],
-                ..good
-            },
-            "scatterers",
-        ),
-        (heights(-1e-6, 0.0), "rms must"),
-        (heights(f64::NAN, 0.0), "rms must"),
-        (heights(1e-6, -1.0), "correlation_length"),
-        (heights(1e-6, f64::INFINITY), "correlation_length"),
-    ] {
-        let message = RoughSurface::patch(&patch)
-            .expect_err("an error")
-            .to_string();
-        assert!(message.contains(name), "{name}: {message}");
-    }
-    assert_eq!(
-        RoughSurface::from_scatterers(Vec::new()),
-        Err(WaveError::refused(
-            "scatterers",
-            0.0,
-            "from 1 to 2²⁸ in all"
-        ))
-    );
-    let scatterer = |position, re| Scatterer {
-        position,
-        amplitude: Complex::new(re, 0.0),
-    };
-    let far = scatterer(DVec3::Y * 1e30, 1.0);
-    let bright = scatterer(DVec3::Y, f64::NAN);
-    assert!(RoughSurface::from_scatterers(vec![far]).is_err(), "far");
-    assert!(RoughSurface::from_scatterers(vec![bright]).is_err(), "NaN");
 }
 
 proptest! {

@@ -89,14 +89,11 @@ impl From<ShadingError> for Failure {
     fn from(error: ShadingError) -> Self {
         match error {
             ShadingError::Speckle(error) => error.into(),
-            ShadingError::OutOfRange {
-                parameter: "memory",
-                value,
-                allowed,
-            } => {
-                let message = format!("memory_limit must be {allowed}, got {value}");
-                Self::new(Status::Memory, "memory_limit", message)
-            }
+            ShadingError::Refused(refusal) if refusal.parameter == "memory" => Self::new(
+                Status::Memory,
+                "memory_limit",
+                refusal.named("memory_limit"),
+            ),
             ShadingError::BeyondPoses { .. } => {
                 Self::argument("motion", format!("motion: {error}"))
             }

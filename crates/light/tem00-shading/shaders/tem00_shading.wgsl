@@ -11,7 +11,7 @@
 // distance beside its place, in its samples, ε = 1.2e-7; the pupil is off as `tem00_speckle_motion` says,
 // and by 4 ε L² |a| / z_R² in light of a waist with the Rayleigh range z_R.
 
-/// Speckle of one body in one frame: `SpeckleFrame::to_rows` in the crate, 224 bytes.
+/// Speckle of one body in one frame: `KernelSpeckle::rows` in the crate, 224 bytes.
 ///
 /// Vectors after the axes have the components right, up and towards the camera, from its pupil.
 struct Tem00SpeckleFrame {

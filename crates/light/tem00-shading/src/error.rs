@@ -4,28 +4,15 @@ use tem00_beam::BeamError;
 use tem00_camera::CameraError;
 use tem00_coherence::CoherenceError;
 use tem00_decorrelation::DecorrelationError;
+use tem00_numerics::Refusal;
 use tem00_speckle::SpeckleError;
 
 /// A reason why a laser, a motion or speckle is not possible.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ShadingError {
-    /// A quantity is outside its range.
-    OutOfRange {
-        /// The name of the parameter.
-        parameter: &'static str,
-        /// The rejected value.
-        value: f64,
-        /// The allowed values, with the unit.
-        allowed: &'static str,
-    },
-    /// A vector that must point somewhere is zero, not finite or parallel to its partner.
-    Direction {
-        /// The name of the parameter.
-        parameter: &'static str,
-        /// The allowed values.
-        allowed: &'static str,
-    },
+    /// An argument is not allowed.
+    Refused(Refusal),
     /// Something is needed and there is none.
     Missing(&'static str),
     /// A frame has moved farther than the poses for which the speckle was prepared.
@@ -51,9 +38,7 @@ impl ShadingError {
     /// Returns the name of the parameter whose value was rejected, where there is one.
     pub fn parameter(&self) -> Option<&'static str> {
         match self {
-            Self::OutOfRange { parameter, .. } | Self::Direction { parameter, .. } => {
-                Some(parameter)
-            }
+            Self::Refused(refusal) => Some(refusal.parameter),
             Self::Camera(source) => source.parameter(),
             Self::Beam(source) => Some(name_of_beam(source)),
             _ => None,
@@ -74,12 +59,7 @@ fn name_of_beam(error: &BeamError) -> &'static str {
 impl fmt::Display for ShadingError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::OutOfRange {
-                parameter,
-                value,
-                allowed,
-            } => write!(f, "{parameter} must be {allowed}, got {value}"),
-            Self::Direction { parameter, allowed } => write!(f, "{parameter} must be {allowed}"),
+            Self::Refused(refusal) => refusal.fmt(f),
             Self::Missing(what) => write!(f, "there must be {what}"),
             Self::BeyondPoses { shift, held } => write!(
                 f,
@@ -97,32 +77,21 @@ impl fmt::Display for ShadingError {
 
 impl error::Error for ShadingError {}
 
-impl From<BeamError> for ShadingError {
-    fn from(source: BeamError) -> Self {
-        Self::Beam(source)
-    }
+macro_rules! wraps {
+    ($($error:ident => $variant:ident),+ $(,)?) => {$(
+        impl From<$error> for ShadingError {
+            fn from(source: $error) -> Self {
+                Self::$variant(source)
+            }
+        }
+    )+};
 }
 
-impl From<CameraError> for ShadingError {
-    fn from(source: CameraError) -> Self {
-        Self::Camera(source)
-    }
-}
-
-impl From<CoherenceError> for ShadingError {
-    fn from(source: CoherenceError) -> Self {
-        Self::Spectrum(source)
-    }
-}
-
-impl From<DecorrelationError> for ShadingError {
-    fn from(source: DecorrelationError) -> Self {
-        Self::Imaging(source)
-    }
-}
-
-impl From<SpeckleError> for ShadingError {
-    fn from(source: SpeckleError) -> Self {
-        Self::Speckle(source)
-    }
+wraps! {
+    Refusal => Refused,
+    BeamError => Beam,
+    CameraError => Camera,
+    CoherenceError => Spectrum,
+    DecorrelationError => Imaging,
+    SpeckleError => Speckle,
 }

@@ -2,6 +2,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use tem00_decorrelation::Illumination;
+use tem00_numerics::Refusal;
 use tem00_speckle::{Complex, StackPlan};
 
 use crate::{
@@ -379,12 +380,9 @@ impl SpeckleFrame {
         if error.abs() <= MAX_ERROR {
             return Ok(());
         }
-        Err(ShadingError::OutOfRange {
-            parameter: "motion",
-            value: error,
-            allowed: "along the displacement of the pupil by other wavelengths: an error of at most 0.05 of the \
-                      correlation of two frames",
-        })
+        let allowed = "along the displacement of the pupil by other wavelengths: an error of at most 0.05 of the \
+                       correlation of two frames";
+        Err(Refusal::new("motion", error, allowed).into())
     }
 }
 

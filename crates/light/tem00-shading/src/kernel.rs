@@ -4,17 +4,16 @@ use std::sync::Arc;
 
 use glam::{DQuat, DVec2};
 use tem00_camera::Camera;
+use tem00_numerics::Refusal;
 use tem00_speckle::{PupilField, SlicePath, StackPlan};
 
-use crate::{
-    Laser, Motion, PreparedSpeckle, ShadingError, Speckle, SpeckleFrame, patterns::Patterns,
-};
+use crate::{Laser, Motion, PreparedSpeckle, ShadingError, Speckle, patterns::Patterns};
 
 /// The function `tem00_factor` in WGSL, which is [`SpeckleFrame::factor`] in single precision: functions and structs
 /// without bindings.
 ///
 /// Its first comment says how to call it and how exact it is. The texts of [`tem00_decorrelation::closed_form`] and
-/// [`tem00_speckle::closed_form`] stand beside it. A frame is a uniform, [`SpeckleFrame::to_rows`].
+/// [`tem00_speckle::closed_form`] stand beside it. A frame is a uniform, [`KernelSpeckle::rows`].
 ///
 /// # Examples
 ///
@@ -77,13 +76,21 @@ impl KernelSpeckle {
     ///
     /// # Errors
     ///
-    /// As [`PreparedSpeckle::frame`] and [`SpeckleFrame::to_rows`].
+    /// As [`PreparedSpeckle::frame`] and [`KernelFrame::to_rows`].
     pub fn rows(&self, motion: &Motion) -> Result<[[f32; 4]; 14], ShadingError> {
-        self.speckle.frame(motion)?.to_rows()
+        let frame = self.speckle.frame(motion)?;
+        KernelFrame {
+            camera: &frame.speckle.camera,
+            laser: &frame.speckle.laser,
+            motion,
+            plan: &frame.speckle.plan,
+            reach: frame.side * frame.reach,
+        }
+        .to_rows()
     }
 }
 
-/// The speckle of one body in one frame, for a kernel: what a [`SpeckleFrame`] is made of.
+/// The speckle of one body in one frame, for a kernel and a stack of the host's own: what a [`SpeckleFrame`](crate::SpeckleFrame) is made of.
 #[derive(Clone, Copy, Debug)]
 pub struct KernelFrame<'a> {
     /// The camera in the reference state.
@@ -97,26 +104,6 @@ pub struct KernelFrame<'a> {
     /// The largest shift of the pupil that the slices hold on this side of the reference state, in its diameters: less
     /// than 0 on one of both sides.
     pub reach: f64,
-}
-
-impl SpeckleFrame {
-    /// Returns the frame as the struct `Tem00SpeckleFrame` of [`WGSL`], byte for byte.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if there is more than one pattern, and as [`KernelFrame::to_rows`].
-    pub fn to_rows(&self) -> Result<[[f32; 4]; 14], ShadingError> {
-        let patterns = &self.speckle;
-        one_pattern(patterns)?;
-        KernelFrame {
-            camera: &patterns.camera,
-            laser: &patterns.laser,
-            motion: &self.state.motion,
-            plan: &patterns.plan,
-            reach: self.side * self.reach,
-        }
-        .to_rows()
-    }
 }
 
 impl KernelFrame<'_> {
@@ -228,11 +215,7 @@ fn one_pattern(patterns: &Patterns) -> Result<(), ShadingError> {
 }
 
 fn refused(parameter: &'static str, value: f64, allowed: &'static str) -> ShadingError {
-    ShadingError::OutOfRange {
-        parameter,
-        value,
-        allowed,
-    }
+    Refusal::new(parameter, value, allowed).into()
 }
 
 #[cfg(test)]
@@ -264,12 +247,11 @@ mod tests {
             let speckle = Speckle::new(&camera, &laser, 1)
                 .looks(looks)
                 .within(16 << 20);
-            let rows = |speckle: Speckle| speckle.for_kernel()?.rows(&Motion::default());
-            let by_kernel = rows(speckle.clone()).err();
-            let frame = speckle.prepare().unwrap().frame(&Motion::default());
-            // A frame of the library has the same rows, and is refused alike.
-            assert_eq!(frame.unwrap().to_rows().err(), by_kernel);
-            by_kernel.map(|error| error.parameter().unwrap().to_owned())
+            let rows = speckle
+                .for_kernel()
+                .and_then(|kernel| kernel.rows(&Motion::default()));
+            rows.err()
+                .map(|error| error.parameter().unwrap().to_owned())
         };
         assert_eq!(refused(camera, 1), None);
         assert_eq!(refused(camera, 2).as_deref(), Some("patterns"));

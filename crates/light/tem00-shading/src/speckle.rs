@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 use tem00_camera::Camera;
 use tem00_coherence::Relief;
 use tem00_decorrelation::ImagingGeometry;
+use tem00_numerics::Refusal;
 use tem00_speckle::{PupilField, SpeckleStack, StackNeeds, StackPlan, incoherent_fractions};
 
 use crate::{
@@ -274,13 +275,10 @@ impl Layout {
             };
             let plan = StackPlan::new(&needs)?;
             let holds = plan.holds_motion(&needs) && plan.holds_region(&needs);
-            holds
-                .then_some(Self { plan, stacks })
-                .ok_or(ShadingError::OutOfRange {
-                    parameter: "memory",
-                    value: needs.memory_limit as f64,
-                    allowed: "enough for slices over the whole motion of the poses (in bytes)",
-                })
+            holds.then_some(Self { plan, stacks }).ok_or_else(|| {
+                let allowed = "enough for slices over the whole motion of the poses (in bytes)";
+                Refusal::new("memory", needs.memory_limit as f64, allowed).into()
+            })
         };
         let is_good = |layout: &Self| needs.motion.is_none() || layout.plan.blends_closely();
         match of(fields) {

@@ -1,5 +1,6 @@
 use glam::{DMat3, DQuat, DVec3};
 use tem00_decorrelation::RigidMotion;
+use tem00_numerics::{Refusal, check};
 
 use crate::ShadingError;
 
@@ -309,19 +310,11 @@ fn quaternion(axis: DVec3, angle: f64) -> DQuat {
 /// The rotation with a unit axis, whose angle is finite even `count` times over.
 fn checked(rotation: Rotation, count: f64) -> Result<Rotation, ShadingError> {
     if !(rotation.angle * count).is_finite() {
-        return Err(ShadingError::OutOfRange {
-            parameter: "angle",
-            value: rotation.angle,
-            allowed: "finite (in radians), and so must what it adds up to",
-        });
+        let allowed = "finite (in radians), and so must what it adds up to";
+        return Err(Refusal::new("angle", rotation.angle, allowed).into());
     }
-    let axis = rotation
-        .axis
-        .try_normalize()
-        .ok_or(ShadingError::Direction {
-            parameter: "axis",
-            allowed: "a direction",
-        })?;
+    let wrong = || Refusal::new("axis", rotation.axis.to_array(), "a direction");
+    let axis = rotation.axis.try_normalize().ok_or_else(wrong)?;
     Ok(Rotation { axis, ..rotation })
 }
 
@@ -339,23 +332,22 @@ fn check_finite(
     vector: DVec3,
     allowed: &'static str,
 ) -> Result<(), ShadingError> {
-    if !vector.is_finite() {
-        return Err(ShadingError::Direction { parameter, allowed });
-    }
-    Ok(())
+    Ok(check::that(
+        vector.is_finite(),
+        parameter,
+        vector.to_array(),
+        "",
+        allowed,
+    )?)
 }
 
 /// Checks that keyframes have finite times that increase.
 fn check_order(keyframes: &[Keyframe]) -> Result<(), ShadingError> {
     let mut last = f64::NEG_INFINITY;
     for keyframe in keyframes {
-        if !(keyframe.frame.is_finite() && keyframe.frame > last) {
-            return Err(ShadingError::OutOfRange {
-                parameter: "frame",
-                value: keyframe.frame,
-                allowed: "finite and later than that of the keyframe before",
-            });
-        }
+        let holds = keyframe.frame.is_finite() && keyframe.frame > last;
+        let allowed = "finite and later than that of the keyframe before";
+        check::that(holds, "frame", keyframe.frame, "", allowed)?;
         last = keyframe.frame;
     }
     Ok(())

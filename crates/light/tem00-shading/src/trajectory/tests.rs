@@ -2,6 +2,8 @@ use core::f64::consts::{FRAC_PI_2, TAU};
 
 use proptest::prelude::*;
 
+use tem00_testkit::refuses;
+
 use super::*;
 
 fn turn(axis: DVec3, angle: f64) -> Rotation {
@@ -208,50 +210,22 @@ proptest! {
 
 #[test]
 fn impossible_motions_are_refused() {
-    type Result = core::result::Result<Trajectory, ShadingError>;
-    let parameter = |result: &Result| match result {
-        Err(
-            ShadingError::Direction { parameter, .. } | ShadingError::OutOfRange { parameter, .. },
-        ) => *parameter,
-        _ => "",
-    };
     let good = turn(DVec3::X, 0.1);
-    let turning = |pivot, rotation| Trajectory::turning(pivot, rotation, DVec3::ZERO);
-    let through = |keyframe| Trajectory::keyframed(DVec3::ZERO, [Keyframe::unmoved(1.0), keyframe]);
-    let later = Keyframe::unmoved(2.0);
-    let cases = [
-        ("displacement_per_frame", Trajectory::steady(DVec3::NAN)),
-        (
-            "displacement_per_frame",
-            Trajectory::steady(DVec3::X * 1e300),
-        ),
-        ("pivot", turning(DVec3::INFINITY, good)),
-        ("axis", turning(DVec3::ZERO, turn(DVec3::ZERO, 0.1))),
-        ("axis", turning(DVec3::ZERO, turn(DVec3::NAN, 0.1))),
-        ("angle", turning(DVec3::ZERO, turn(DVec3::X, f64::NAN))),
-        ("angle", turning(DVec3::ZERO, turn(DVec3::X, 1e300))),
-        ("pivot", Trajectory::keyframed(DVec3::NAN, [later])),
-        ("frame", through(Keyframe::unmoved(1.0))),
-        ("frame", through(Keyframe::unmoved(f64::NAN))),
-        ("frame", through(Keyframe::unmoved(f64::INFINITY))),
-        (
-            "displacement",
-            through(Keyframe {
-                displacement: DVec3::NEG_INFINITY,
-                ..later
-            }),
-        ),
-        (
-            "axis",
-            through(Keyframe {
-                rotation: turn(DVec3::ZERO, 0.1),
-                ..later
-            }),
-        ),
-    ];
-    for (expected, result) in cases {
-        assert_eq!(parameter(&result), expected, "{result:?}");
-    }
+    refuses!(displacement_per_frame = DVec3::ZERO => Trajectory::steady(displacement_per_frame);
+        displacement_per_frame: [DVec3::NAN, DVec3::X * 1e300]);
+    refuses!(pivot = DVec3::ZERO, rotation = good
+        => Trajectory::turning(pivot, rotation, DVec3::ZERO);
+        pivot: [DVec3::INFINITY],
+        rotation as "axis": [turn(DVec3::ZERO, 0.1), turn(DVec3::NAN, 0.1)],
+        rotation as "angle": [turn(DVec3::X, f64::NAN), turn(DVec3::X, 1e300)],
+    );
+    refuses!(pivot = DVec3::ZERO, keyframe = Keyframe::unmoved(2.0)
+        => Trajectory::keyframed(pivot, [Keyframe::unmoved(1.0), keyframe]);
+        pivot: [DVec3::NAN],
+        keyframe.frame: [1.0, f64::NAN, f64::INFINITY],
+        keyframe.displacement: [DVec3::NEG_INFINITY],
+        keyframe.rotation as "axis": [turn(DVec3::ZERO, 0.1)],
+    );
     let none = Trajectory::keyframed(DVec3::ZERO, []);
     assert!(matches!(none, Err(ShadingError::Missing(_))), "{none:?}");
 }

@@ -48,7 +48,7 @@ mod look_up;
 mod motion;
 mod next_event;
 #[cfg(test)]
-mod sampler;
+mod tests;
 
 pub use fan::PrintedFan;
 pub use look_up::BilinearStack;

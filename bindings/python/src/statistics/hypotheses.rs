@@ -1,5 +1,6 @@
 use numpy::PyArray1;
 use pyo3::{prelude::*, types::PyAny};
+use tem00_numerics::Refusal;
 use tem00_statistics as physics;
 use tem00_statistics::StatisticsError;
 
@@ -104,14 +105,8 @@ pub(super) fn checked(samples: &[f64]) -> PyResult<&[f64]> {
     match samples.iter().position(|sample| !sample.is_finite()) {
         Some(index) => {
             let value = samples[index];
-            let (parameter, allowed) = ("samples", "finite");
-            Err(StatisticsError::ValueOutOfRange {
-                parameter,
-                index,
-                value,
-                allowed,
-            })
-            .or_raise()
+            let refusal = Refusal::new("samples", value, "finite").at(index);
+            Err(StatisticsError::from(refusal)).or_raise()
         }
         None => Ok(samples),
     }
@@ -132,7 +127,11 @@ pub(super) fn probabilities(cumulative: &Bound<'_, PyAny>, samples: &[f64]) -> P
     let values = values.values()?.to_vec();
     let bad = |(_, value): &(&f64, &f64)| !(0.0..=1.0).contains(*value);
     match samples.iter().zip(&values).find(bad) {
-        Some((&sample, &value)) => Err(StatisticsError::Probability { sample, value }).or_raise(),
+        Some((sample, &value)) => {
+            let allowed = format!("from 0 to 1 at {sample}");
+            let refusal = Refusal::new("cumulative", value, allowed);
+            Err(StatisticsError::from(refusal)).or_raise()
+        }
         None => Ok(values),
     }
 }

@@ -1,33 +1,16 @@
 use core::{error, fmt};
+use std::borrow::Cow;
 
-use tem00_numerics::{Fft2Error, Shown};
+use tem00_numerics::{Fft2Error, Refusal, RefusedValue, Shown};
 
 use crate::axis::Axis;
 
 /// Reasons for which a law, an estimate or a test is refused.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum StatisticsError {
-    /// An argument is outside its range.
-    OutOfRange {
-        /// The name of the parameter.
-        parameter: &'static str,
-        /// The rejected value.
-        value: f64,
-        /// The allowed values, with the unit.
-        allowed: &'static str,
-    },
-    /// One of many values is outside its range.
-    ValueOutOfRange {
-        /// The name of the parameter.
-        parameter: &'static str,
-        /// The position of the value.
-        index: usize,
-        /// The rejected value.
-        value: f64,
-        /// The allowed values.
-        allowed: &'static str,
-    },
+    /// An argument, or one value of many, is not allowed.
+    Refused(Refusal),
     /// A sample is zero or negative where its logarithm is taken.
     NotPositive {
         /// The position of the sample.
@@ -41,20 +24,6 @@ pub enum StatisticsError {
         given: usize,
         /// The smallest number that determines the result.
         needed: usize,
-    },
-    /// A window is smaller than two pixels or larger than the image.
-    Window {
-        /// The width and height of the window, in pixels.
-        window: usize,
-        /// Width and height of the image.
-        image: (usize, usize),
-    },
-    /// Two grids differ in their size.
-    Size {
-        /// Width and height of the first grid.
-        first: (usize, usize),
-        /// Width and height of the second grid.
-        second: (usize, usize),
     },
     /// The Fourier transform of the grid could not be planned.
     Transform(Fft2Error),
@@ -72,20 +41,6 @@ pub enum StatisticsError {
         /// The largest lag, in pixels.
         largest_lag: usize,
     },
-    /// The distribution function returned a value outside [0, 1].
-    Probability {
-        /// The sample at which it was evaluated.
-        sample: f64,
-        /// The value it returned.
-        value: f64,
-    },
-    /// Observed and expected counts differ in their number.
-    Bins {
-        /// The number of observed counts.
-        observed: usize,
-        /// The number of expected counts.
-        expected: usize,
-    },
     /// No degree of freedom is left.
     DegreesOfFreedom {
         /// The number of bins that are left after merging the sparse ones.
@@ -102,16 +57,35 @@ impl StatisticsError {
     pub(crate) const MEAN: &'static str =
         "of a mean that is positive and above their rounding errors";
 
-    pub(crate) const fn refused(
+    pub(crate) fn refused(
         parameter: &'static str,
-        value: f64,
+        value: impl Into<RefusedValue>,
+        allowed: impl Into<Cow<'static, str>>,
+    ) -> Self {
+        Self::Refused(Refusal::new(parameter, value, allowed))
+    }
+
+    /// Refuses one value of many.
+    pub(crate) fn refused_at(
+        index: usize,
+        parameter: &'static str,
+        value: impl Into<f64>,
         allowed: &'static str,
     ) -> Self {
-        Self::OutOfRange {
-            parameter,
-            value,
-            allowed,
-        }
+        Self::Refused(Refusal::new(parameter, value.into(), allowed).at(index))
+    }
+
+    /// Refuses a window over an image.
+    pub(crate) fn window(window: usize, (width, height): (usize, usize)) -> Self {
+        let allowed =
+            format!("at least 2 pixels wide and fit into the image of {width} × {height}");
+        Self::refused("window", window, allowed)
+    }
+
+    /// Refuses what a distribution function returned at a sample.
+    pub(crate) fn probability(sample: f64, value: f64) -> Self {
+        let allowed = format!("from 0 to 1 at {}", Shown(sample));
+        Self::refused("cumulative", value, allowed)
     }
 
     /// Returns the name of the argument that was refused, as constructors and functions call it.
@@ -130,16 +104,10 @@ impl StatisticsError {
     /// ```
     pub const fn parameter(&self) -> &'static str {
         match self {
-            Self::OutOfRange { parameter, .. } | Self::ValueOutOfRange { parameter, .. } => {
-                parameter
-            }
+            Self::Refused(refusal) => refusal.parameter(),
             Self::NotPositive { .. } | Self::Samples { .. } => "samples",
-            Self::Window { .. } => "window",
-            Self::Size { .. } => "second",
             Self::Transform(..) => "image",
             Self::Unresolved { .. } | Self::TooCoarse { .. } => "lags",
-            Self::Probability { .. } => "cumulative",
-            Self::Bins { .. } => "expected",
             Self::DegreesOfFreedom { .. } => "constraints",
         }
     }
@@ -147,41 +115,16 @@ impl StatisticsError {
 
 impl fmt::Display for StatisticsError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::OutOfRange {
-                parameter,
-                value,
-                allowed,
-            } => write!(f, "{parameter} must be {allowed}, got {}", Shown(value)),
-            Self::ValueOutOfRange {
-                parameter,
-                index,
-                value,
-                allowed,
-            } => write!(
-                f,
-                "{parameter} must be {allowed}, got {} at position {index}",
-                Shown(value)
-            ),
+        match self {
+            Self::Refused(refusal) => refusal.fmt(f),
             Self::NotPositive { index, value } => write!(
                 f,
-                "samples must be positive, got {} at position {index}",
-                Shown(value)
+                "samples must be positive, got {} at index {index}",
+                Shown(*value)
             ),
             Self::Samples { given, needed } => {
-                write!(f, "samples must number at least {needed}, got {given}")
+                write!(f, "samples must be at least {needed}, got {given}")
             }
-            Self::Window { window, image } => write!(
-                f,
-                "window must be at least 2 pixels wide and fit into the image of {} × {}, got \
-                 {window}",
-                image.0, image.1
-            ),
-            Self::Size { first, second } => write!(
-                f,
-                "size of both grids must be the same, got {} × {} and {} × {}",
-                first.0, first.1, second.0, second.1
-            ),
             Self::Transform(reason) => write!(f, "grid must have a Fourier transform: {reason}"),
             Self::Unresolved { axis, neighbours } => write!(
                 f,
@@ -192,15 +135,6 @@ impl fmt::Display for StatisticsError {
                 f,
                 "autocovariance along {axis} must fall to one half within the image, got more \
                  than that up to a lag of {largest_lag} pixels"
-            ),
-            Self::Probability { sample, value } => write!(
-                f,
-                "distribution function must return values in [0, 1], got {value} at {}",
-                Shown(sample)
-            ),
-            Self::Bins { observed, expected } => write!(
-                f,
-                "bins must be as many observed as expected, got {observed} and {expected}"
             ),
             Self::DegreesOfFreedom { bins, constraints } => write!(
                 f,
@@ -217,6 +151,12 @@ impl error::Error for StatisticsError {
             Self::Transform(reason) => Some(reason),
             _ => None,
         }
+    }
+}
+
+impl From<Refusal> for StatisticsError {
+    fn from(refusal: Refusal) -> Self {
+        Self::Refused(refusal)
     }
 }
 

@@ -313,49 +313,4 @@ mod tests {
             max_relative = 1e-12
         );
     }
-
-    #[test]
-    fn samples_without_a_fit_are_refused() {
-        assert_eq!(
-            GammaFit::by_likelihood(&[1.0, 2.0, 0.0]),
-            Err(StatisticsError::NotPositive {
-                index: 2,
-                value: 0.0
-            })
-        );
-        for fit in [GammaFit::by_moments::<f64>, GammaFit::by_likelihood::<f64>] {
-            assert_eq!(
-                fit(&[2.0; 3]),
-                Err(StatisticsError::refused(
-                    "samples",
-                    2.0,
-                    StatisticsError::VARIED
-                ))
-            );
-            assert!(
-                matches!(fit(&[1.0]), Err(StatisticsError::Samples { .. })),
-                "one"
-            );
-            assert!(
-                matches!(
-                    fit(&[-1.0, 0.5]),
-                    Err(StatisticsError::OutOfRange {
-                        parameter: "samples",
-                        ..
-                    })
-                ),
-                "negative"
-            );
-            assert!(
-                matches!(
-                    fit(&[f64::NAN, 0.5]),
-                    Err(StatisticsError::ValueOutOfRange {
-                        parameter: "samples",
-                        ..
-                    })
-                ),
-                "NaN"
-            );
-        }
-    }
 }

@@ -258,10 +258,10 @@ impl Contrast {
 pub fn pearson_correlation(first: &Grid<f32>, second: &Grid<f32>) -> Result<f64, StatisticsError> {
     let size = |grid: &Grid<f32>| (grid.width(), grid.height());
     if size(first) != size(second) {
-        return Err(StatisticsError::Size {
-            first: size(first),
-            second: size(second),
-        });
+        let (width, height) = size(first);
+        let got = <[usize; 2]>::from(size(second)).map(|side| side as f64);
+        let allowed = format!("of the size of the first grid, {width} × {height}");
+        return Err(StatisticsError::refused("second", got, allowed));
     }
     let a = Scaled::new(first.values())?;
     let b = Scaled::new(second.values())?;
@@ -364,12 +364,12 @@ where
 {
     let bad = samples.iter().position(|&x| !x.into().is_finite());
     match bad {
-        Some(index) => Err(StatisticsError::ValueOutOfRange {
-            parameter: "samples",
+        Some(index) => Err(StatisticsError::refused_at(
             index,
-            value: samples[index].into(),
-            allowed: "finite",
-        }),
+            "samples",
+            samples[index],
+            "finite",
+        )),
         None => Ok(()),
     }
 }

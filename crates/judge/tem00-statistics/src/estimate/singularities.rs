@@ -83,12 +83,9 @@ fn check_field(field: &Grid<Complex<f32>>) -> Result<(), StatisticsError> {
         Some(index) => {
             let Complex { re, im } = field.values()[index];
             let value = if re.is_finite() { im } else { re };
-            Err(StatisticsError::ValueOutOfRange {
-                parameter: "samples",
-                index,
-                value: f64::from(value),
-                allowed: "finite",
-            })
+            Err(StatisticsError::refused_at(
+                index, "samples", value, "finite",
+            ))
         }
         None => Ok(()),
     }

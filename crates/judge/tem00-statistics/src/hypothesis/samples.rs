@@ -1,6 +1,7 @@
 use core::f64::consts::PI;
 
 use statrs::function::{beta::beta_reg, gamma::gamma_ur};
+use tem00_numerics::check;
 
 use crate::{
     StatisticsError,
@@ -97,7 +98,7 @@ fn largest_distance(
     for (index, &sample) in sorted.iter().enumerate() {
         let value = cumulative(sample);
         if !(0.0..=1.0).contains(&value) {
-            return Err(StatisticsError::Probability { sample, value });
+            return Err(StatisticsError::probability(sample, value));
         }
         // The empirical distribution jumps from one to the other at the sample.
         let (below, above) = (index as f64 / count, (index + 1) as f64 / count);
@@ -191,20 +192,14 @@ fn merge_sparse_bins(
     expected: &[f64],
 ) -> Result<Vec<(f64, f64)>, StatisticsError> {
     if observed.len() != expected.len() {
-        return Err(StatisticsError::Bins {
-            observed: observed.len(),
-            expected: expected.len(),
-        });
+        let allowed = format!("as many as the {} observed counts", observed.len());
+        return Err(StatisticsError::refused(
+            "expected",
+            expected.len(),
+            allowed,
+        ));
     }
-    let bad = |&(_, value): &(usize, &f64)| !(value.is_finite() && *value >= 0.0);
-    if let Some((index, &value)) = expected.iter().enumerate().find(bad) {
-        return Err(StatisticsError::ValueOutOfRange {
-            parameter: "expected",
-            index,
-            value,
-            allowed: "finite and not negative",
-        });
-    }
+    check::each(expected, |count| check::not_negative("expected", count, ""))?;
     let mut bins = Vec::new();
     let mut open = (0.0, 0.0);
     for (&o, &e) in observed.iter().zip(expected) {

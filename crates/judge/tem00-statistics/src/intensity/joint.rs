@@ -264,22 +264,6 @@ mod tests {
         }
     }
 
-    #[test]
-    fn correlations_without_a_density_are_refused() {
-        for bad in [-0.1, 1.0, 1.5, f64::NAN] {
-            assert!(
-                matches!(
-                    JointIntensity::new(bad),
-                    Err(StatisticsError::OutOfRange {
-                        parameter: "amplitude_correlation",
-                        ..
-                    })
-                ),
-                "{bad}"
-            );
-        }
-    }
-
     proptest! {
         #[test]
         fn law_is_finite_and_symmetric(

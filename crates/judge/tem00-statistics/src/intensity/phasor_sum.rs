@@ -322,19 +322,4 @@ mod tests {
         let exact = 137_846_528_820.0 / 1_048_576.0;
         assert_relative_eq!(moment_of_phasor_sum(2, 20), exact, max_relative = 1e-13);
     }
-
-    #[test]
-    fn sums_without_a_law_are_refused() {
-        for count in [0, 1, 7, 1_000_001, usize::MAX] {
-            let refused = PhasorSum::new(count);
-            assert_eq!(
-                refused,
-                Err(StatisticsError::refused(
-                    "count",
-                    count as f64,
-                    "from 8 to 1000000 phasors"
-                ))
-            );
-        }
-    }
 }

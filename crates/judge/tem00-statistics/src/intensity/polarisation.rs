@@ -167,22 +167,6 @@ mod tests {
         assert_relative_eq!(nearly.density(0.7), all.density(0.7), epsilon = 1e-11);
     }
 
-    #[test]
-    fn degrees_outside_zero_to_one_are_refused() {
-        for degree in [-1e-9, 1.000_001, f64::NAN, f64::INFINITY] {
-            assert!(
-                matches!(
-                    PartiallyPolarised::new(degree),
-                    Err(StatisticsError::OutOfRange {
-                        parameter: "degree",
-                        ..
-                    })
-                ),
-                "{degree}"
-            );
-        }
-    }
-
     proptest! {
         #[test]
         fn law_is_finite_and_a_probability(

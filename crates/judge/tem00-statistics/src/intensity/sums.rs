@@ -1,3 +1,5 @@
+use tem00_numerics::fractions;
+
 use crate::{
     StatisticsError,
     intensity::descent::{Factor, inverse_laplace_transform},
@@ -69,29 +71,8 @@ impl IncoherentSum {
     /// Returns an error if a weight is negative or not finite, if none is positive, or if more than
     /// [`MAX_DIFFERENT`](Self::MAX_DIFFERENT) differ.
     pub fn new(weights: &[f64]) -> Result<Self, StatisticsError> {
-        let bad = |&weight: &f64| !(weight >= 0.0 && weight.is_finite());
-        if let Some(index) = weights.iter().position(bad) {
-            return Err(StatisticsError::ValueOutOfRange {
-                parameter: "weights",
-                index,
-                value: weights[index],
-                allowed: "finite and not negative",
-            });
-        }
-        let largest = weights.iter().fold(0.0_f64, |a, &b| a.max(b));
-        if largest <= 0.0 {
-            return Err(StatisticsError::refused(
-                "weights",
-                0.0,
-                "of a positive sum",
-            ));
-        }
-        let total: f64 = weights.iter().map(|weight| weight / largest).sum();
-        let mut shares: Vec<f64> = weights
-            .iter()
-            .map(|weight| weight / largest / total)
-            .filter(|&share| share > NEGLIGIBLE_SHARE)
-            .collect();
+        let mut shares = fractions("weights", weights)?;
+        shares.retain(|&share| share > NEGLIGIBLE_SHARE);
         shares.sort_unstable_by(|a, b| b.total_cmp(a));
         let alike = |a: &f64, b: &f64| a.to_bits() == b.to_bits();
         let shares: Vec<Share> = shares
@@ -273,25 +254,6 @@ mod tests {
     }
 
     #[test]
-    fn more_different_weights_than_the_limit_are_refused() {
-        let many = IncoherentSum::MAX_DIFFERENT + 1;
-        let weights: Vec<f64> = (1..=many).map(|i| i as f64).collect();
-        let refused = IncoherentSum::new(&weights);
-        assert_eq!(
-            refused,
-            Err(StatisticsError::refused(
-                "weights",
-                many as f64,
-                "of at most 65536 different values"
-            ))
-        );
-        assert!(
-            IncoherentSum::new(&weights[1..]).is_ok(),
-            "the limit itself"
-        );
-    }
-
-    #[test]
     fn two_weights_are_the_partially_polarised_law_however_close() {
         for degree in [0.0, 1e-15, 1e-8, 1e-3, 0.4, 1.0 - 1e-6] {
             let law = IncoherentSum::new(&[1.0 + degree, 1.0 - degree]).unwrap();
@@ -334,40 +296,6 @@ mod tests {
         let outcome = kolmogorov_smirnov(&samples, |x| law.cumulative(x)).unwrap();
         // α = 0.001.
         assert!(outcome.p_value > 1e-3, "p = {}", outcome.p_value);
-    }
-
-    #[test]
-    fn weights_that_are_no_intensities_are_refused() {
-        for bad in [-1.0, f64::NAN, f64::INFINITY] {
-            let refused = IncoherentSum::new(&[1.0, bad]);
-            assert!(
-                matches!(
-                    refused,
-                    Err(StatisticsError::ValueOutOfRange {
-                        parameter: "weights",
-                        index: 1,
-                        ..
-                    })
-                ),
-                "{bad}"
-            );
-        }
-        assert_eq!(
-            IncoherentSum::new(&[]),
-            Err(StatisticsError::refused(
-                "weights",
-                0.0,
-                "of a positive sum"
-            ))
-        );
-        assert_eq!(
-            IncoherentSum::new(&[0.0; 2]),
-            Err(StatisticsError::refused(
-                "weights",
-                0.0,
-                "of a positive sum"
-            ))
-        );
     }
 
     proptest! {

@@ -147,32 +147,6 @@ fn drawn_speckle_has_the_density_and_its_spread_as_stated() {
     assert_relative_eq!(h, (PI / 8.0 / values[0]).sqrt(), max_relative = 1e-15);
 }
 
-#[test]
-fn fields_without_an_answer_are_refused() {
-    let mut field = Grid::filled(3, 2, Complex::new(1.0, 0.0));
-    field[(2, 1)] = Complex::new(0.0, f32::INFINITY);
-    for boundary in [Boundary::Periodic, Boundary::Finite] {
-        let refused = phase_singularities(&field, boundary);
-        assert_eq!(
-            refused,
-            Err(StatisticsError::ValueOutOfRange {
-                parameter: "samples",
-                index: 5,
-                value: f64::INFINITY,
-                allowed: "finite",
-            })
-        );
-    }
-    let line = Grid::filled(1, 9, Complex::new(1.0, 0.0));
-    let refused = VortexDensity::from_field(&line, Boundary::Finite);
-    assert!(
-        matches!(refused, Err(StatisticsError::Samples { .. })),
-        "{refused:?}"
-    );
-    let none = VortexDensity::from_field(&line, Boundary::Periodic).unwrap();
-    assert_eq!((none.count(), none.speckle_size()), (0, None));
-}
-
 proptest! {
     #[test]
     fn charges_cancel_in_any_periodic_field(

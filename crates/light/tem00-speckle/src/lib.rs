@@ -2,7 +2,7 @@
 //!
 //! # Files
 //!
-//! [`NpyReader`], [`write_npy`] and the methods of that name exchange fields and patterns with NumPy.
+//! [`npy`] exchanges fields and patterns with NumPy.
 //!
 //! # On a graphics card
 //!
@@ -38,13 +38,12 @@ pub mod closed_form;
 mod error;
 mod interpolation;
 mod light;
-mod npy;
+pub mod npy;
 mod pupil;
 mod stack;
 
 pub use error::SpeckleError;
 pub use light::{Exposure, incoherent_fractions};
-pub use npy::{NpyError, NpyReader, write_npy, write_real_npy};
 /// The complex number of [`SpeckleField`], from `num-complex`.
 pub use num_complex::Complex;
 pub use pupil::{

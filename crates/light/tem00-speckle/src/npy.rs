@@ -34,7 +34,7 @@ const CHUNK: usize = 1 << 16;
 ///
 /// ```
 /// use tem00_numerics::Grid;
-/// use tem00_speckle::{Complex, NpyReader, PupilField, write_npy};
+/// use tem00_speckle::{Complex, PupilField, npy::{NpyReader, write_npy}};
 ///
 /// // What `np.save` writes for an array of 40 × 40 complex numbers.
 /// let lens = Grid::from_fn(40, 40, |x, y| {
@@ -217,7 +217,7 @@ impl SpecklePattern {
     /// # Examples
     ///
     /// ```
-    /// use tem00_speckle::{NpyReader, PupilField};
+    /// use tem00_speckle::{PupilField, npy::NpyReader};
     ///
     /// let pattern = PupilField::new(64, 16, 7)?.pattern();
     /// let mut file = Vec::new();

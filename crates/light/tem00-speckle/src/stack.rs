@@ -148,7 +148,7 @@ impl SpeckleStack {
             field.amplitude_into(&source.slice(index), &mut slice, scratch);
             Ok(slice)
         });
-        let slices = slices.into_iter().collect::<Result<_, _>>()?;
+        let slices = slices.into_iter().collect::<Result<_, SpeckleError>>()?;
         Ok(Self::assemble(source.into_field(), path, slices))
     }
 

@@ -17,7 +17,10 @@ use tem00_report::{
     interrupt, output,
     report::Report,
 };
-use tem00_speckle::{NpyError, NpyReader, PupilField, SpeckleError, SpeckleField, SpecklePattern};
+use tem00_speckle::{
+    PupilField, SpeckleError, SpeckleField, SpecklePattern,
+    npy::{NpyError, NpyReader},
+};
 
 use crate::{args::PatternArgs, comparison};
 

@@ -17,7 +17,7 @@ use tem00_report::{
 use tem00_scan::{
     HeightMap, MeasuredFrame, MeasuredPoint, QuantisedGrid, Raster, RawFormat, write_pcd, write_ply,
 };
-use tem00_speckle::write_real_npy;
+use tem00_speckle::npy::write_real_npy;
 use tem00_triangulation::{DVec3, RawFrame};
 
 use super::x3p::{Lattice, x3p};

@@ -232,7 +232,7 @@ fn check(drift: [f64; 2], maximum: f64, allowed: &'static str) -> Result<(), Spe
         .into_iter()
         .find(|x| !(-maximum..=maximum).contains(x))
     {
-        Some(bad) => Err(SpeckleError::out_of_range("drift", bad, allowed)),
+        Some(bad) => Err(SpeckleError::refused("drift", bad, allowed)),
         None => Ok(()),
     }
 }

@@ -1,5 +1,6 @@
 use tem00_numerics::{
     cast::to_f32,
+    fractions,
     seed::{Purpose, derived},
 };
 
@@ -60,11 +61,7 @@ pub fn incoherent_fractions(
 ) -> Result<Vec<f64>, SpeckleError> {
     if !(0.0..=1.0).contains(&polarisation) {
         let allowed = "between 0 and 1";
-        return Err(SpeckleError::out_of_range(
-            "polarisation",
-            polarisation,
-            allowed,
-        ));
+        return Err(SpeckleError::refused("polarisation", polarisation, allowed));
     }
     check_count(patterns)?;
     let fractions = vec![(patterns as f64).recip(); patterns];
@@ -73,36 +70,16 @@ pub fn incoherent_fractions(
 }
 
 /// The fractions when every pattern is divided by `weights`.
-fn split(fractions: &[f64], weights: &[f64]) -> Result<Vec<f64>, SpeckleError> {
+fn split(whole: &[f64], weights: &[f64]) -> Result<Vec<f64>, SpeckleError> {
     let lit = |weights: &[f64]| -> Result<Vec<f64>, SpeckleError> {
-        let mut fractions = normalised(weights)?;
-        fractions.retain(|&fraction| fraction > 0.0);
-        Ok(fractions)
+        let mut lit = fractions("weights", weights)?;
+        lit.retain(|&fraction| fraction > 0.0);
+        Ok(lit)
     };
     let parts = lit(weights)?;
-    check_count(fractions.len() * parts.len())?;
+    check_count(whole.len() * parts.len())?;
     let products = |fraction| parts.iter().map(move |part| fraction * part);
-    lit(&fractions.iter().flat_map(products).collect::<Vec<_>>())
-}
-
-/// The weights over their sum.
-fn normalised(weights: &[f64]) -> Result<Vec<f64>, SpeckleError> {
-    let bad = |&weight: &f64| !(weight >= 0.0 && weight.is_finite());
-    if let Some(index) = weights.iter().position(bad) {
-        return Err(SpeckleError::Weight {
-            index,
-            weight: weights[index],
-        });
-    }
-    let largest = weights.iter().fold(0.0_f64, |a, &b| a.max(b));
-    if largest <= 0.0 {
-        let allowed = "of a positive sum";
-        return Err(SpeckleError::out_of_range("weights", 0.0, allowed));
-    }
-    // Scaled by the largest first: the sum of the weights may overflow.
-    let scaled = || weights.iter().map(|weight| weight / largest);
-    let total: f64 = scaled().sum();
-    Ok(scaled().map(|weight| weight / total).collect())
+    lit(&whole.iter().flat_map(products).collect::<Vec<_>>())
 }
 
 fn check_count(patterns: usize) -> Result<(), SpeckleError> {
@@ -110,11 +87,7 @@ fn check_count(patterns: usize) -> Result<(), SpeckleError> {
         return Ok(());
     }
     let allowed = "1 to 1024 in all";
-    Err(SpeckleError::out_of_range(
-        "patterns",
-        patterns as f64,
-        allowed,
-    ))
+    Err(SpeckleError::refused("patterns", patterns as f64, allowed))
 }
 
 impl PupilField {
@@ -129,7 +102,11 @@ impl PupilField {
     pub fn independent(&self, patterns: usize) -> Result<Vec<Self>, SpeckleError> {
         check_count(patterns)?;
         match self.seed() {
-            None if patterns > 1 => Err(SpeckleError::NoSeed),
+            None if patterns > 1 => Err(SpeckleError::refused(
+                "field",
+                "one of samples",
+                "a seeded field for independent patterns",
+            )),
             None => Ok(vec![self.clone()]),
             Some(seed) => Ok((0..patterns)
                 .map(|index| {
@@ -154,11 +131,11 @@ impl SpecklePattern {
         weights: &[f64],
         patterns: impl IntoIterator<Item = Self>,
     ) -> Result<Self, SpeckleError> {
-        let fractions = normalised(weights)?;
+        let fractions = fractions("weights", weights)?;
         let mut patterns = patterns.into_iter();
         let count = |count: usize| {
             let allowed = "as many as there are weights";
-            SpeckleError::out_of_range("patterns", count as f64, allowed)
+            SpeckleError::refused("patterns", count as f64, allowed)
         };
         let first = patterns.next().ok_or_else(|| count(0))?;
         let (size, speckle_size) = (first.size(), first.speckle_size());
@@ -170,11 +147,7 @@ impl SpecklePattern {
             if pattern.size() != size {
                 let [width, _] = pattern.size();
                 let allowed = "all of one size";
-                return Err(SpeckleError::out_of_range(
-                    "patterns",
-                    width as f64,
-                    allowed,
-                ));
+                return Err(SpeckleError::refused("patterns", width as f64, allowed));
             }
             let pairs = sum.values_mut().iter_mut().zip(pattern.values().values());
             pairs.for_each(|(sum, value)| *sum += to_f32(*fraction) * value);

@@ -2,7 +2,7 @@ use core::f64::consts::PI;
 use std::sync::Arc;
 
 use num_complex::Complex;
-use tem00_numerics::{Fft2, Grid};
+use tem00_numerics::{Fft2, Grid, Shown};
 
 use crate::{
     Phasors, Pupil, SpeckleError,
@@ -110,10 +110,10 @@ impl PupilField {
     /// # Examples
     ///
     /// ```
-    /// use tem00_speckle::{PupilField, SpeckleError};
+    /// use tem00_speckle::PupilField;
     ///
     /// let aliased = PupilField::new(256, 129, 0);
-    /// assert!(matches!(aliased, Err(SpeckleError::OutOfLimits { parameter: "diameter", .. })));
+    /// assert_eq!(aliased.unwrap_err().parameter(), "diameter");
     /// ```
     pub fn new(size: usize, diameter: usize, seed: u64) -> Result<Self, SpeckleError> {
         if size > Self::MAX_SIZE {
@@ -121,8 +121,8 @@ impl PupilField {
         }
         if diameter < Self::MIN_DIAMETER || diameter > size / 2 {
             let limits = [Self::MIN_DIAMETER as f64, (size / 2) as f64];
-            let (got, unit) = (diameter as f64, "lattice points, half the size at most");
-            return Err(SpeckleError::out_of_limits("diameter", got, limits, unit));
+            let allowed = within(limits, "lattice points, half the size at most");
+            return Err(SpeckleError::refused("diameter", diameter, allowed));
         }
         let layout = Layout {
             size: [size; 2],
@@ -177,7 +177,7 @@ impl PupilField {
     }
 
     /// Creates a field of external samples behind a circular pupil: a measured or computed complex
-    /// amplitude in the pupil plane. [`NpyReader`](crate::NpyReader) reads one from a NumPy file.
+    /// amplitude in the pupil plane. [`NpyReader`](crate::npy::NpyReader) reads one from a NumPy file.
     ///
     /// One sample is one lattice point, and the sample (⌊width/2⌋, ⌊height/2⌋) the origin, about
     /// which the undisplaced pupil stands. The field is zero beyond the samples. `size` and
@@ -291,11 +291,7 @@ impl PupilField {
         if effective < Self::MIN_PHASORS as f64 {
             let allowed =
                 "open for at least 49 equal phasors (enlarge the diameter or open the pupil)";
-            return Err(SpeckleError::out_of_range(
-                "pupil",
-                effective.floor(),
-                allowed,
-            ));
+            return Err(SpeckleError::refused("pupil", effective.floor(), allowed));
         }
         let [columns, rows] = mask.extent();
         let transform = Fft2::with_aperture(size[0], size[1], columns, rows)
@@ -480,23 +476,33 @@ const fn seeded(seed: u64) -> Lattice {
 }
 
 /// The refusal of a side above [`PupilField::MAX_SIZE`].
-pub(crate) const fn too_large(side: usize) -> SpeckleError {
-    SpeckleError::out_of_range("size", side as f64, "at most 32768 samples")
+pub(crate) fn too_large(side: usize) -> SpeckleError {
+    SpeckleError::refused("size", side as f64, "at most 32768 samples")
 }
 
-const fn not_a_speckle_size(speckle_size: f64, largest: f64) -> SpeckleError {
-    let unit = "samples in a pattern of that size";
-    SpeckleError::out_of_limits("speckle_size", speckle_size, [2.0, largest], unit)
+fn within([least, most]: [f64; 2], unit: &str) -> String {
+    format!("{} to {} {unit}", Shown(least), Shown(most))
+}
+
+fn not_a_speckle_size(speckle_size: f64, largest: f64) -> SpeckleError {
+    let allowed = within([2.0, largest], "samples in a pattern of that size");
+    SpeckleError::refused("speckle_size", speckle_size, allowed)
 }
 
 fn check_samples(samples: &Grid<Complex<f32>>) -> Result<(), SpeckleError> {
     let finite = |z: &Complex<f32>| z.re.is_finite() && z.im.is_finite();
     match samples.values().iter().position(|z| !finite(z)) {
         None => Ok(()),
-        Some(bad) => Err(SpeckleError::Sample {
-            x: bad % samples.width(),
-            y: bad / samples.width(),
-        }),
+        Some(bad) => {
+            let z = samples.values()[bad];
+            let (x, y) = (bad % samples.width(), bad / samples.width());
+            let allowed = format!("finite at column {x} of row {y}");
+            Err(SpeckleError::refused(
+                "samples",
+                [z.re.into(), z.im.into()],
+                allowed,
+            ))
+        }
     }
 }
 

@@ -96,13 +96,13 @@ impl SlicePath {
     ///
     /// Returns an error if the half period is zero or above [`MAX_HALF_PERIOD`](Self::MAX_HALF_PERIOD),
     /// or the length below 2 or above [`MAX_LENGTH`](Self::MAX_LENGTH).
-    pub const fn check(self) -> Result<(), SpeckleError> {
+    pub fn check(self) -> Result<(), SpeckleError> {
         match self {
             Self::Circle { half_period } | Self::Straight { half_period, .. }
                 if half_period == 0 || half_period > Self::MAX_HALF_PERIOD =>
             {
                 let half_period = half_period as f64;
-                Err(SpeckleError::out_of_range(
+                Err(SpeckleError::refused(
                     "half_period",
                     half_period,
                     "1 to 32768 slices",
@@ -110,7 +110,7 @@ impl SlicePath {
             }
             Self::Straight { length, .. } if length < 2 || length > Self::MAX_LENGTH => {
                 let allowed = "2 to 32768 pupil diameters";
-                Err(SpeckleError::out_of_range("length", length as f64, allowed))
+                Err(SpeckleError::refused("length", length as f64, allowed))
             }
             _ => Ok(()),
         }

@@ -306,13 +306,13 @@ impl StackNeeds {
         ] {
             if let Some(length) = lengths.iter().find(|length| !positive(length)) {
                 let allowed = "a positive finite number of pixels";
-                return Err(SpeckleError::out_of_range(parameter, *length, allowed));
+                return Err(SpeckleError::refused(parameter, *length, allowed));
             }
         }
         match self.motion {
             Some(motion) if !(motion >= 0.0 && motion.is_finite()) => {
                 let allowed = "finite and not negative, in pupil diameters";
-                Err(SpeckleError::out_of_range("motion", motion, allowed))
+                Err(SpeckleError::refused("motion", motion, allowed))
             }
             _ => Ok(()),
         }

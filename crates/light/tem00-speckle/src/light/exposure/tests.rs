@@ -3,7 +3,7 @@ use tem00_numerics::{cast::to_signed, disc_overlap};
 use tem00_statistics::{boiling_contrast, t_test_mean, translation_contrast};
 
 use super::*;
-use crate::{Phasors, error::assert_refused};
+use crate::Phasors;
 
 fn exposure(image_drift: [f64; 2], pupil_drift: [f64; 2]) -> Exposure {
     let exposure = Exposure::default().with_image_drift(image_drift).unwrap();
@@ -90,22 +90,6 @@ fn exposures_are_the_integral_of_the_moving_intensity() {
 }
 
 #[test]
-fn the_mean_of_an_exposure_is_one() {
-    let field = PupilField::new(48, 24, 9).unwrap();
-    for (image_drift, pupil_drift) in [
-        ([0.3, 0.0], [0.0, 0.0]),
-        ([1e6, -3e5], [0.0, 0.0]),
-        ([0.0, 0.0], [0.5, -0.3]),
-        ([7.0, 2.0], [0.0, 1.5]),
-    ] {
-        let exposure = exposure(image_drift, pupil_drift);
-        let mean = mean(&exposure.pattern(&field), |i| i);
-        // Parseval for every moment; two transforms in f32.
-        assert!((mean - 1.0).abs() < 3e-6, "mean {mean} of {exposure:?}");
-    }
-}
-
-#[test]
 fn contrasts_follow_the_laws_of_drift() {
     // Behind a circle only the length of a drift counts.
     let diagonal = |drift: f64| [0.6 * drift, -0.8 * drift];
@@ -146,20 +130,6 @@ fn the_quadrature_exceeds_the_law_of_boiling_as_stated() {
             "{excess:e} for {stated:e} at {drift}"
         );
         assert!(excess < 1e-3, "{excess:e} at {drift}");
-    }
-}
-
-#[test]
-fn drifts_outside_their_range_are_refused() {
-    for bad in [1.1e6, -1e30, f64::NAN, f64::INFINITY] {
-        for drift in [[bad, 0.0], [0.0, bad]] {
-            let image = Exposure::default().with_image_drift(drift);
-            let allowed = "drift must be within ±1e6 speckle sizes in the image";
-            assert_refused(image, allowed, bad);
-            let pupil = Exposure::default().with_pupil_drift(drift);
-            let allowed = "drift must be within ±128 diameters over the pupil";
-            assert_refused(pupil, allowed, bad);
-        }
     }
 }
 

@@ -1,4 +1,3 @@
-use num_complex::Complex;
 use proptest::prelude::*;
 use tem00_numerics::Grid;
 use tem00_statistics::{
@@ -7,7 +6,7 @@ use tem00_statistics::{
 };
 
 use super::*;
-use crate::{Exposure, error::assert_refused};
+use crate::Exposure;
 
 /// Fractions that fall by one ratio: the modes of a Gaussian line on a relief.
 fn modes() -> Vec<f64> {
@@ -156,54 +155,6 @@ fn means_take_whatever_makes_a_pattern_of_a_field() {
         let difference = 0.6 * a + 0.4 * b - f64::from(mean.values()[at]);
         assert!(difference.abs() < 2e-6, "{difference} at {at:?}");
     }
-}
-
-#[test]
-fn external_samples_make_one_pattern_only() {
-    let samples = Grid::from_fn(20, 20, |x, y| Complex::cis((x * x + 3 * y) as f32));
-    let field = PupilField::from_samples(samples, [40, 40], 2.5).unwrap();
-    assert_eq!(field.independent(1), Ok(vec![field.clone()]));
-    assert_eq!(field.independent(2), Err(SpeckleError::NoSeed));
-}
-
-#[test]
-fn numbers_outside_their_range_are_refused() {
-    const COUNT: &str = "patterns must be 1 to 1024 in all";
-    let field = PupilField::new(32, 16, 5).unwrap();
-    for count in [0, 1025, usize::MAX] {
-        assert_refused(
-            incoherent_fractions(count, 1.0, &[1.0]),
-            COUNT,
-            count as f64,
-        );
-        assert_refused(field.independent(count), COUNT, count as f64);
-    }
-    assert_refused(incoherent_fractions(100, 0.0, &[1.0; 100]), COUNT, 20_000);
-    for dark in [&[][..], &[0.0]] {
-        let fractions = incoherent_fractions(1, 1.0, dark);
-        assert_refused(fractions, "weights must be of a positive sum", 0);
-    }
-    for bad in [-1.0, f64::NAN, f64::INFINITY] {
-        let weights = SpecklePattern::weighted_mean(&[1.0, bad], []);
-        assert!(
-            matches!(weights, Err(SpeckleError::Weight { index: 1, .. })),
-            "{bad}"
-        );
-        let polarised = incoherent_fractions(1, bad, &[1.0]);
-        assert_refused(polarised, "polarisation must be between 0 and 1", bad);
-    }
-}
-
-#[test]
-fn means_need_a_pattern_of_one_size_for_each_weight() {
-    let pattern = |size| PupilField::new(size, 16, 5).unwrap().pattern();
-    for count in [0, 1, 3] {
-        let mean = SpecklePattern::weighted_mean(&[1.0; 2], vec![pattern(32); count]);
-        let rule = "patterns must be as many as there are weights";
-        assert_refused(mean, rule, count as f64);
-    }
-    let mean = SpecklePattern::weighted_mean(&[1.0; 2], [pattern(32), pattern(64)]);
-    assert_refused(mean, "patterns must be all of one size", 64);
 }
 
 proptest! {

@@ -2,7 +2,7 @@ use tem00_numerics::cast::to_signed;
 use tem00_statistics::{LitArea, ObjectiveSpeckle};
 
 use super::*;
-use crate::{SpecklePattern, error::assert_refused};
+use crate::SpecklePattern;
 
 fn fields(size: usize, diameter: usize, seeds: u64) -> Vec<PupilField> {
     (0..seeds)
@@ -150,41 +150,10 @@ fn gaussian_phasors_let_the_mean_of_a_tile_fluctuate() {
 }
 
 #[test]
-fn sizes_without_a_pattern_are_refused() {
-    for (size, diameter, largest) in [(256, 129, 128), (255, 128, 127), (256, 7, 128), (0, 0, 0)] {
-        let rule = format!("diameter must be 8 to {largest} lattice points, half the size at most");
-        assert_refused(PupilField::new(size, diameter, 0), &rule, diameter as f64);
-    }
-    let size = "size must be at most 32768 samples";
-    assert_refused(PupilField::new(1_000_000, 500_000, 0), size, 1e6);
-    let long = PupilField::from_speckle_size([64, 1 << 16], 2.0, 0);
-    assert_refused(long, size, 65_536);
-    for (size, speckle_size, largest) in [
-        ([256, 128], 1.99, 16.0),
-        ([256, 128], 16.1, 16.0),
-        ([64, 64], f64::NAN, 8.0),
-        ([64, 64], f64::INFINITY, 8.0),
-        ([0, 64], 2.0, 0.0),
-    ] {
-        let refused = PupilField::from_speckle_size(size, speckle_size, 0);
-        let rule = format!("speckle_size must be 2 to {largest} samples in a pattern of that size");
-        assert_refused(refused, &rule, speckle_size);
-    }
-}
-
-#[test]
 fn fields_cross_threads() {
     fn check<T: Send + Sync>() {}
     check::<PupilField>();
     check::<crate::SpeckleStack>();
-}
-
-#[test]
-fn samples_that_are_no_field_are_refused() {
-    let mut samples = Grid::filled(5, 4, Complex::new(1.0_f32, 0.0));
-    samples[(3, 2)].im = f32::NAN;
-    let refused = PupilField::from_samples(samples, [64; 2], 4.0);
-    assert_eq!(refused, Err(SpeckleError::Sample { x: 3, y: 2 }));
 }
 
 #[test]

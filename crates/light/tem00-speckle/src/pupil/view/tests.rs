@@ -376,29 +376,3 @@ fn a_grid_of_another_size_panics() {
     let field = PupilField::new(32, 16, 1).unwrap();
     field.pattern_into([0.0; 2], 0.0, &mut grid, &mut SpeckleScratch::default());
 }
-
-#[cfg(feature = "parallel")]
-#[test]
-fn patterns_are_the_same_bits_for_any_number_of_threads() {
-    let fields = [
-        PupilField::new(96, 40, 8).unwrap(),
-        PupilField::from_speckle_size([90, 128], 2.3, 8)
-            .unwrap()
-            .with_pupil(drawn(0.5))
-            .unwrap(),
-    ];
-    for field in fields {
-        let with_threads = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            pool.unwrap().install(|| {
-                (
-                    field.pattern_at([5.3, 6.0], 0.7),
-                    field.speckle([0.2, 0.0], 0.0),
-                )
-            })
-        };
-        let one = with_threads(1);
-        assert_eq!(one, with_threads(2));
-        assert_eq!(one, with_threads(7));
-    }
-}

@@ -4,7 +4,7 @@ use numpy::{Complex32, PyArray2};
 use pyo3::prelude::*;
 use tem00_speckle as physics;
 
-use super::images::{check_room, view};
+use super::images::view;
 use crate::{arrays::Components, error::OrRaise};
 
 /// A speckle pattern: intensity with mean 1, periodic in both axes.

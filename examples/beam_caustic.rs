@@ -20,12 +20,12 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use table::Failure;
 use tem00::beam::measurement::{CausticFit, Estimate};
-use tem00::beam::{BeamError, GaussianBeam};
+use tem00::beam::{GaussianBeam, Refusal};
 
 const WAVELENGTH: f64 = 650e-9;
 
 /// Radii, in mm, of a beam with a waist of 40 µm at 50 mm.
-fn made_up() -> Result<[Vec<f64>; 2], BeamError> {
+fn made_up() -> Result<[Vec<f64>; 2], Refusal> {
     let beam = GaussianBeam::from_waist(WAVELENGTH, 40e-6)?.with_m_squared(1.3)?;
     let mut random = ChaCha8Rng::seed_from_u64(3);
     let positions = [

@@ -12,12 +12,12 @@ use std::error::Error;
 
 use kuva::prelude::{LinePlot, Plot};
 use tem00::beam::optics::{AbcdMatrix, ThickLens};
-use tem00::beam::{BeamError, GaussianBeam, LocatedBeam};
+use tem00::beam::{GaussianBeam, LocatedBeam, Refusal};
 
 const FOCAL_LENGTH: f64 = 0.1;
 
 /// A beam whose Rayleigh range is `rayleigh_range`, its waist `distance` before the lens.
-fn before_lens(rayleigh_range: f64, distance: f64) -> Result<LocatedBeam, BeamError> {
+fn before_lens(rayleigh_range: f64, distance: f64) -> Result<LocatedBeam, Refusal> {
     let waist_radius = (650e-9 * rayleigh_range / core::f64::consts::PI).sqrt();
     LocatedBeam::new(GaussianBeam::from_waist(650e-9, waist_radius)?, -distance)
 }
@@ -62,7 +62,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let behind = beam.through_lens(FOCAL_LENGTH)?.waist_distance();
             Ok((s, behind / FOCAL_LENGTH))
         });
-        let focus = focus.collect::<Result<Vec<_>, BeamError>>()?;
+        let focus = focus.collect::<Result<Vec<_>, Refusal>>()?;
         let curve = LinePlot::new().with_data(focus).with_color(colour);
         plots.push(curve.with_legend(format!("z_R = {relative} f")).into());
     }

@@ -18,11 +18,11 @@ use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use table::Failure;
-use tem00::beam::BeamError;
+use tem00::beam::Refusal;
 use tem00::beam::measurement::{CrossSection, KnifeEdgeFit};
 
 /// A trace of a 1 mW beam with w = 0.5 mm around 3 mm, with an error of ±5 µW.
-fn made_up() -> Result<[Vec<f64>; 2], BeamError> {
+fn made_up() -> Result<[Vec<f64>; 2], Refusal> {
     let spot = CrossSection::new([0.5e-3; 2])?;
     let mut random = ChaCha8Rng::seed_from_u64(7);
     let positions: Vec<_> = (0..=60).map(|i| 1.5 + 0.05 * f64::from(i)).collect();

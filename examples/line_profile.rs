@@ -10,14 +10,12 @@ mod plot;
 use std::error::Error;
 
 use kuva::prelude::{LinePlot, Plot};
-use tem00::beam::{
-    BeamError, DVec3, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineProfile,
-};
+use tem00::beam::{DVec3, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineProfile, Refusal};
 
 const DISTANCE: f64 = 0.2;
 const HALF_FIELD: f64 = 50e-3;
 
-fn line(profile: LineProfile) -> Result<LaserLine, BeamError> {
+fn line(profile: LineProfile) -> Result<LaserLine, Refusal> {
     let fan = FanGeometry {
         fan_angle: 30_f64.to_radians(),
         apex_offset: 2e-3,

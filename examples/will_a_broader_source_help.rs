@@ -15,8 +15,8 @@ use std::error::Error;
 
 use kuva::prelude::{LinePlot, Plot};
 use tem00::coherence::{
-    CellGeometry, CoherenceError, DVec3, LineShape, PolychromaticSpeckle, Relief, ResolutionCell,
-    Rows, SourceExtent, SpectralLine,
+    CellGeometry, DVec3, LineShape, PolychromaticSpeckle, Refusal, Relief, ResolutionCell, Rows,
+    SourceExtent, SpectralLine,
 };
 
 const LINEWIDTHS: [f64; 7] = [0.1e-9, 1e-9, 2e-9, 5e-9, 10e-9, 20e-9, 40e-9];
@@ -43,7 +43,7 @@ struct Left {
 }
 
 impl Case {
-    fn left(&self) -> Result<Left, CoherenceError> {
+    fn left(&self) -> Result<Left, Refusal> {
         let (sin, cos) = 30_f64.to_radians().sin_cos();
         let cell = ResolutionCell::new(CellGeometry {
             to_source: DVec3::Z,
@@ -75,7 +75,7 @@ fn row(name: &str, values: impl Iterator<Item = f64>) {
 }
 
 /// Prints contrast and noise over the linewidths, and returns curves of both.
-fn table(wavelength: f64) -> Result<[Vec<Plot>; 2], CoherenceError> {
+fn table(wavelength: f64) -> Result<[Vec<Plot>; 2], Refusal> {
     row(
         "linewidth in nm",
         LINEWIDTHS.iter().map(|width| width * 1e9),
@@ -102,7 +102,7 @@ fn table(wavelength: f64) -> Result<[Vec<Plot>; 2], CoherenceError> {
         let curve: Vec<(f64, Left)> = (0..=80)
             .map(|i| 0.5 * f64::from(i))
             .map(|width| Ok((width, left(width * 1e-9)?)))
-            .collect::<Result<_, CoherenceError>>()?;
+            .collect::<Result<_, Refusal>>()?;
         let line = |value: fn(&Left) -> f64| {
             let points = curve.iter().map(|(width, left)| (*width, value(left)));
             let line = LinePlot::new().with_data(points).with_color(colour);
@@ -119,7 +119,7 @@ fn table(wavelength: f64) -> Result<[Vec<Plot>; 2], CoherenceError> {
 }
 
 /// Returns the noise over the aperture of the camera, for some linewidths at 660 nm, on 1.6 µm.
-fn apertures() -> Result<Vec<Plot>, CoherenceError> {
+fn apertures() -> Result<Vec<Plot>, Refusal> {
     let sines = [0.005, 0.01, 0.02, 0.04];
     row("sin u", sines.into_iter());
     let mut plots = Vec::new();
@@ -140,7 +140,7 @@ fn apertures() -> Result<Vec<Plot>, CoherenceError> {
         let points: Vec<(f64, f64)> = (4..=80)
             .map(|i| 0.0005 * f64::from(i))
             .map(|sine| Ok((sine, noise(sine)?)))
-            .collect::<Result<_, CoherenceError>>()?;
+            .collect::<Result<_, Refusal>>()?;
         let line = LinePlot::new().with_data(points).with_color(colour);
         plots.push(line.with_legend(&name).into());
     }
@@ -148,7 +148,7 @@ fn apertures() -> Result<Vec<Plot>, CoherenceError> {
 }
 
 /// Prints contrast and noise under sources of a half-angle, over the aperture of the camera.
-fn extents() -> Result<(), CoherenceError> {
+fn extents() -> Result<(), Refusal> {
     let ratios = [0.25, 0.5, 1.0, 2.0, 4.0];
     row("half-angle over sin u", ratios.into_iter());
     for linewidth in [0.0, 20e-9] {

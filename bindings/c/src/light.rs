@@ -21,7 +21,7 @@ pub use queries::*;
 pub use targets::*;
 
 use tem00_beam::{
-    AngularKnot, AngularProfile, BeamError, Emitter, LineLight, Real, SpotLight, TabulatedLineLight,
+    AngularKnot, AngularProfile, Emitter, LineLight, Real, Refusal, SpotLight, TabulatedLineLight,
 };
 use tem00_coherence::SpectralLine;
 use tem00_shading::{BeamShape, DVec3, LaserDescription, ShadingError};
@@ -32,7 +32,7 @@ use crate::{pointers, status::Failure};
 #[derive(Debug)]
 pub struct Light {
     double: Laser<f64>,
-    single: Result<Laser<f32>, BeamError>,
+    single: Result<Laser<f32>, Refusal>,
     /// As speckle needs it.
     laser: Result<tem00_shading::Laser, Failure>,
 }
@@ -60,7 +60,7 @@ impl Light {
     /// A light that is a struct of numbers in either precision.
     fn plain<D, S>(
         light: D,
-        to_single: impl Fn(&D) -> Result<S, BeamError>,
+        to_single: impl Fn(&D) -> Result<S, Refusal>,
         double: impl Fn(D) -> Laser<f64>,
         single: impl Fn(S) -> Laser<f32>,
         laser: Result<tem00_shading::Laser, Failure>,
@@ -100,7 +100,7 @@ impl Light {
 
     /// The light in single precision, if that can carry it.
     fn single(&self) -> Result<&Laser<f32>, Failure> {
-        self.single.as_ref().map_err(|error| (*error).into())
+        self.single.as_ref().map_err(|error| error.clone().into())
     }
 
     /// The light as speckle needs it, if it can.

@@ -6,9 +6,7 @@ use std::{
     panic::{AssertUnwindSafe, catch_unwind},
 };
 
-use tem00_beam::BeamError;
-use tem00_coherence::CoherenceError;
-use tem00_decorrelation::DecorrelationError;
+use tem00_beam::Refusal;
 use tem00_shading::ShadingError;
 use tem00_speckle::SpeckleError;
 
@@ -57,21 +55,9 @@ impl Failure {
     }
 }
 
-impl From<BeamError> for Failure {
-    fn from(error: BeamError) -> Self {
-        Self::argument(error.parameter(), error)
-    }
-}
-
-impl From<CoherenceError> for Failure {
-    fn from(error: CoherenceError) -> Self {
-        Self::argument(error.parameter(), error)
-    }
-}
-
-impl From<DecorrelationError> for Failure {
-    fn from(error: DecorrelationError) -> Self {
-        Self::argument(error.parameter(), error)
+impl From<Refusal> for Failure {
+    fn from(refusal: Refusal) -> Self {
+        Self::argument(refusal.parameter, refusal)
     }
 }
 

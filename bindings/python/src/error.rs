@@ -3,9 +3,7 @@ use pyo3::{
     exceptions::{PyMemoryError, PyTypeError, PyValueError},
     prelude::*,
 };
-use tem00_beam::BeamError;
-use tem00_coherence::CoherenceError;
-use tem00_decorrelation::DecorrelationError;
+use tem00_numerics::Refusal;
 use tem00_speckle::SpeckleError;
 use tem00_statistics::StatisticsError;
 
@@ -42,19 +40,7 @@ pub(crate) trait IntoPython {
     fn into_python(self) -> PyErr;
 }
 
-impl IntoPython for BeamError {
-    fn into_python(self) -> PyErr {
-        refused(self.parameter(), self.to_string())
-    }
-}
-
-impl IntoPython for CoherenceError {
-    fn into_python(self) -> PyErr {
-        refused(self.parameter(), self.to_string())
-    }
-}
-
-impl IntoPython for DecorrelationError {
+impl IntoPython for Refusal {
     fn into_python(self) -> PyErr {
         refused(self.parameter(), self.to_string())
     }

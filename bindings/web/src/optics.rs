@@ -4,9 +4,9 @@ use core::f64::consts::PI;
 
 use glam::{DQuat, DVec3, Vec3};
 use tem00_beam::{FanGeometry, FocusCurve, LineProfile};
-use tem00_camera::{Camera, CameraDescription, CameraError};
+use tem00_camera::{Camera, CameraDescription};
 use tem00_coherence::SpectralLine;
-use tem00_decorrelation::{DecorrelationError, ImagingGeometry};
+use tem00_decorrelation::{ImagingGeometry, Refusal};
 use tem00_numerics::cast::{to_f32, to_usize};
 use tem00_shading::{BeamShape, Laser, LaserDescription, Pose, ShadingError};
 
@@ -34,7 +34,7 @@ pub const BOXES: usize = 4;
 /// # Errors
 ///
 /// Returns an error if the settings make no camera.
-pub fn camera(values: &Values) -> Result<Camera, CameraError> {
+pub fn camera(values: &Values) -> Result<Camera, Refusal> {
     let distance = 1e-3 * values.distance;
     let (sin, cos) = values.elevation.to_radians().sin_cos();
     let (y, x) = values.azimuth.to_radians().sin_cos();
@@ -57,7 +57,7 @@ pub fn camera(values: &Values) -> Result<Camera, CameraError> {
 /// # Errors
 ///
 /// Returns an error if the settings make no camera.
-pub fn geometry(values: &Values) -> Result<ImagingGeometry, CameraError> {
+pub fn geometry(values: &Values) -> Result<ImagingGeometry, Refusal> {
     camera(values)?.imaging_geometry(1e-9 * values.wavelength)
 }
 
@@ -123,7 +123,7 @@ pub fn part(values: &Values) -> (Vec<[Vec3; 2]>, [f32; 4]) {
 /// # Errors
 ///
 /// Returns an error if a setting is not finite.
-pub fn pose(values: &Values) -> Result<Pose, DecorrelationError> {
+pub fn pose(values: &Values) -> Result<Pose, Refusal> {
     let along = 1e-6 * DVec3::new(values.slide, 0.0, values.lift);
     let tilt = Pose::about(DVec3::ZERO, DVec3::Y, 1e-3 * values.tilt)?;
     Ok(tilt.then(&Pose::along(along)?))

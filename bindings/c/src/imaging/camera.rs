@@ -1,4 +1,4 @@
-use tem00_decorrelation::{DVec2, DecorrelationError, ImagingGeometry, LensData, ThickLensData};
+use tem00_decorrelation::{DVec2, ImagingGeometry, LensData, Refusal, ThickLensData};
 
 use super::Imaging;
 use crate::{
@@ -111,7 +111,7 @@ impl LensDescription {
     }
 
     /// A thin lens by the formulas of a thin lens, which round in their own way.
-    fn geometry_of(&self, kind: Focus) -> Result<ImagingGeometry, DecorrelationError> {
+    fn geometry_of(&self, kind: Focus) -> Result<ImagingGeometry, Refusal> {
         use tem00_decorrelation::Focus as F;
         let focus = match kind {
             Focus::SurfaceToPupil if self.is_thin() => return self.thin(),
@@ -133,7 +133,7 @@ impl LensDescription {
         (1.0..=1.0).contains(&self.pupil_magnification)
     }
 
-    fn thin(&self) -> Result<ImagingGeometry, DecorrelationError> {
+    fn thin(&self) -> Result<ImagingGeometry, Refusal> {
         ImagingGeometry::from_lens(LensData {
             wavelength: self.wavelength,
             focal_length: self.focal_length,

@@ -125,9 +125,9 @@ fn errors_of_the_library_keep_their_message_and_name_their_parameter() {
     })
     .unwrap_err();
     let failures: [(Failure, String, &str); 3] = [
-        (beam.into(), beam.to_string(), "wavelength"),
+        (beam.clone().into(), beam.to_string(), "wavelength"),
         (field.clone().into(), field.to_string(), "diameter"),
-        (lens.into(), lens.to_string(), "f_number"),
+        (lens.clone().into(), lens.to_string(), "f_number"),
     ];
     for (failure, message, parameter) in failures {
         assert_eq!(failure.status, Status::InvalidArgument, "{message}");

@@ -1,7 +1,7 @@
 //! Arguments of the queries of beams and lights, and what becomes of them.
 
 use pyo3::prelude::*;
-use tem00_beam::BeamError;
+use tem00_beam::Refusal;
 
 use crate::{
     arrays::{self, Column, Named, Numbers, Values, columns, evaluate},
@@ -89,14 +89,14 @@ pub(super) fn map_inner<'py, const N: usize, const K: usize>(
 pub(super) fn try_map<'py>(
     py: Python<'py>,
     argument: Named<'_, 'py>,
-    f: impl Fn(f64) -> Result<f64, BeamError> + Send + Sync,
+    f: impl Fn(f64) -> Result<f64, Refusal> + Send + Sync,
 ) -> PyResult<Values<'py>> {
     let name = argument.0;
     arrays::try_map(py, argument, f, |error| named(name, error))
 }
 
 /// The exception for an error of the argument `name`.
-pub(super) fn named(name: &str, error: BeamError) -> PyErr {
+pub(super) fn named(name: &str, error: Refusal) -> PyErr {
     if error.parameter() == name {
         error.into_python()
     } else {
@@ -110,7 +110,7 @@ pub(super) trait OrRaiseAs<T> {
     fn or_raise_as(self, names: &[(&str, &str)]) -> PyResult<T>;
 }
 
-impl<T> OrRaiseAs<T> for Result<T, BeamError> {
+impl<T> OrRaiseAs<T> for Result<T, Refusal> {
     fn or_raise_as(self, names: &[(&str, &str)]) -> PyResult<T> {
         self.map_err(|error| {
             let name = error.parameter();

@@ -1,7 +1,7 @@
 //! The three lights as one, and their queries over many points.
 
 use tem00_beam::{
-    self as physics, AngularProfile, BeamError, LineLight, NextEventSlices, RayPdf, SpotLight,
+    self as physics, AngularProfile, LineLight, NextEventSlices, RayPdf, Refusal, SpotLight,
     TabulatedLineLight,
 };
 
@@ -28,7 +28,7 @@ impl Light {
         std::array::from_fn(|i| rows[i])
     }
 
-    pub(super) fn single_rows(&self) -> Result<Vec<[f32; 4]>, BeamError> {
+    pub(super) fn single_rows(&self) -> Result<Vec<[f32; 4]>, Refusal> {
         Ok(match self {
             Self::Spot(light) => light.to_f32()?.to_rows().to_vec(),
             Self::Line(light) => light.to_f32()?.to_rows().to_vec(),

@@ -157,7 +157,7 @@ impl TabulatedLineLight {
     ) -> PyResult<Py<Self>> {
         let light = physics::TabulatedLineLight::place(&line.0, &placement.0, power).or_raise()?;
         let physics::LineProfile::Tabulated(profile) = line.0.profile() else {
-            return Err(physics::BeamError::NotTabulated).or_raise();
+            unreachable!("it was placed as a table")
         };
         Self::of(py, light.line, profile.clone())
     }

@@ -224,13 +224,6 @@ pub(super) fn coordinate_arguments<'a, 'py>(
 
 /// Refuses a speckle size that is not positive and finite.
 pub(super) fn check_pattern(pattern_speckle_size: f64) -> PyResult<()> {
-    if pattern_speckle_size > 0.0 && pattern_speckle_size.is_finite() {
-        return Ok(());
-    }
-    Err(physics::DecorrelationError::OutOfRange {
-        parameter: "pattern_speckle_size",
-        value: pattern_speckle_size,
-        allowed: "positive and finite, in samples",
-    })
-    .or_raise()
+    let checked = tem00_numerics::check::positive("pattern_speckle_size", pattern_speckle_size, "");
+    checked.or_raise().map(drop)
 }

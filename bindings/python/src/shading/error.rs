@@ -6,8 +6,6 @@ use crate::error::{IntoPython, refused};
 impl IntoPython for ShadingError {
     fn into_python(self) -> PyErr {
         match self {
-            Self::Imaging(source) => source.into_python(),
-            Self::Spectrum(source) => source.into_python(),
             Self::Speckle(source) => source.into_python(),
             Self::BeyondPoses { .. } => refused("surface", self.to_string()),
             _ => refused(self.parameter().unwrap_or("camera"), self.to_string()),

@@ -210,7 +210,7 @@ impl Stage {
         &self,
         board: &Checkerboard,
         number: usize,
-    ) -> Result<RigidMotion, tem00_decorrelation::DecorrelationError> {
+    ) -> Result<RigidMotion, tem00_decorrelation::Refusal> {
         let step = number as f64;
         let angle = TURN * step;
         // The first board is not tilted and stands in the middle. The depths of the others, from −1 to 1, go

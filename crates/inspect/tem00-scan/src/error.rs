@@ -1,6 +1,6 @@
 use core::{error, fmt};
 
-use tem00_camera::CameraError;
+use tem00_numerics::Refusal;
 use tem00_speckle::SpeckleError;
 use tem00_tracer::{RenderError, TracerError};
 use tem00_triangulation::TriangulationError;
@@ -47,8 +47,8 @@ impl From<TracerError> for ScanError {
     }
 }
 
-impl From<CameraError> for ScanError {
-    fn from(source: CameraError) -> Self {
+impl From<Refusal> for ScanError {
+    fn from(source: Refusal) -> Self {
         Self::Tracer(source.into())
     }
 }

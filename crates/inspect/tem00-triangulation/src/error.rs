@@ -1,8 +1,6 @@
 use core::{error, fmt};
 
-use tem00_camera::CameraError;
-use tem00_coherence::CoherenceError;
-use tem00_numerics::Shown;
+use tem00_numerics::{Refusal, Shown};
 use tem00_speckle::SpeckleError;
 use tem00_uncertainty::{Distribution, UncertaintyError};
 
@@ -56,10 +54,8 @@ pub enum TriangulationError {
         /// A change that helps.
         advice: &'static str,
     },
-    /// The camera is not possible.
-    Camera(CameraError),
-    /// The spectrum of the laser is not possible.
-    Coherence(CoherenceError),
+    /// An argument of the camera or of the laser's spectrum is refused.
+    Refused(Refusal),
     /// A speckle pattern is not possible.
     Speckle(SpeckleError),
     /// An uncertainty is not possible.
@@ -84,8 +80,7 @@ impl TriangulationError {
             Self::OutOfRange { parameter, .. } | Self::Direction { parameter, .. } => {
                 Some(parameter)
             }
-            Self::Camera(source) => source.parameter(),
-            Self::Coherence(source) => Some(source.parameter()),
+            Self::Refused(source) => Some(source.parameter),
             Self::Uncertainty(source) => Some(source.parameter()),
             _ => None,
         }
@@ -118,8 +113,7 @@ impl fmt::Display for TriangulationError {
             Self::NothingMeasured { why, advice } => {
                 write!(f, "nothing can be measured: {why}; {advice}")
             }
-            Self::Camera(source) => source.fmt(f),
-            Self::Coherence(source) => source.fmt(f),
+            Self::Refused(source) => source.fmt(f),
             Self::Speckle(source) => source.fmt(f),
             Self::Uncertainty(source) => source.fmt(f),
             Self::ImpossibleDraw {
@@ -139,15 +133,9 @@ impl fmt::Display for TriangulationError {
 
 impl error::Error for TriangulationError {}
 
-impl From<CameraError> for TriangulationError {
-    fn from(source: CameraError) -> Self {
-        Self::Camera(source)
-    }
-}
-
-impl From<CoherenceError> for TriangulationError {
-    fn from(source: CoherenceError) -> Self {
-        Self::Coherence(source)
+impl From<Refusal> for TriangulationError {
+    fn from(source: Refusal) -> Self {
+        Self::Refused(source)
     }
 }
 

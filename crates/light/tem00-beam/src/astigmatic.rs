@@ -1,11 +1,11 @@
 use core::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
+use tem00_numerics::check;
 
 use crate::measurement::CrossSection;
 use crate::optics::AbcdMatrix;
-use crate::range::is_coordinate;
-use crate::{BeamError, GaussianBeam, LocatedBeam};
+use crate::{GaussianBeam, LocatedBeam, Refusal};
 
 /// Largest relative difference of the determinants of the two axes of a system.
 const DETERMINANT_TOLERANCE: f64 = 1e-9;
@@ -45,7 +45,7 @@ const DETERMINANT_TOLERANCE: f64 = 1e-9;
 /// let [wx, wy] = diode.radii_at(0.0);
 /// assert!((wx - 2.05e-6).abs() < 0.01e-6 && (wy - 0.634e-6).abs() < 0.001e-6);
 /// assert!((diode.ellipticity_at(1.0) - 9.0 / 22.0).abs() < 1e-4);
-/// # Ok::<(), tem00_beam::BeamError>(())
+/// # Ok::<(), tem00_beam::Refusal>(())
 /// ```
 ///
 /// # References
@@ -64,13 +64,10 @@ impl AstigmaticBeam {
     /// # Errors
     ///
     /// Returns an error if the two beams differ in wavelength.
-    pub fn new(x: LocatedBeam, y: LocatedBeam) -> Result<Self, BeamError> {
+    pub fn new(x: LocatedBeam, y: LocatedBeam) -> Result<Self, Refusal> {
         let [first, second] = [x, y].map(|axis| axis.beam().wavelength());
         if (first - second).abs() > 0.0 {
-            return Err(BeamError::AxesDiffer {
-                parameter: "wavelength",
-                values: [first, second],
-            });
+            return Err(Refusal::new("wavelength", [first, second], EQUAL).in_unit("m"));
         }
         Ok(Self {
             axes: [x, y],
@@ -100,7 +97,7 @@ impl AstigmaticBeam {
     ///
     /// Returns an error if `wavelength` is not a length from 1e−30 m to 1e30 m, if a divergence is
     /// not in the interval (0, 0.5], or if the waist that follows is beyond 1e30 m.
-    pub fn from_divergences(wavelength: f64, divergences: [f64; 2]) -> Result<Self, BeamError> {
+    pub fn from_divergences(wavelength: f64, divergences: [f64; 2]) -> Result<Self, Refusal> {
         let axis = |divergence| {
             let beam = GaussianBeam::from_divergence(wavelength, divergence)?;
             LocatedBeam::new(beam, 0.0)
@@ -117,7 +114,7 @@ impl AstigmaticBeam {
     /// # Errors
     ///
     /// Returns an error if a distance is not finite or beyond 1e30 m.
-    pub fn with_waist_distances(self, waist_distances: [f64; 2]) -> Result<Self, BeamError> {
+    pub fn with_waist_distances(self, waist_distances: [f64; 2]) -> Result<Self, Refusal> {
         let [x, y] = self.axes;
         let axes = [
             LocatedBeam::new(*x.beam(), waist_distances[0])?,
@@ -132,14 +129,9 @@ impl AstigmaticBeam {
     /// # Errors
     ///
     /// Returns an error if `rotation` is not finite.
-    pub fn with_rotation(self, rotation: f64) -> Result<Self, BeamError> {
-        if rotation.is_finite() {
-            Ok(Self { rotation, ..self })
-        } else {
-            Err(BeamError::out_of_range(
-                "rotation", rotation, "rad", "finite",
-            ))
-        }
+    pub fn with_rotation(self, rotation: f64) -> Result<Self, Refusal> {
+        let rotation = check::finite("rotation", rotation, "rad")?;
+        Ok(Self { rotation, ..self })
     }
 
     /// Returns the beam behind a system, seen from its output plane, for this beam in front of it,
@@ -164,9 +156,9 @@ impl AstigmaticBeam {
     /// let lens = AbcdMatrix::free_space(4.6036e-3)?.then(AbcdMatrix::thin_lens(4.5e-3)?);
     /// let [wx, wy] = diode.through_axes([lens; 2])?.radii_at(0.2);
     /// assert!((wx - 68.4e-6).abs() < 0.1e-6 && (wy - 27.9e-6).abs() < 0.1e-6);
-    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// # Ok::<(), tem00_beam::Refusal>(())
     /// ```
-    pub fn through_axes(&self, systems: [AbcdMatrix; 2]) -> Result<Self, BeamError> {
+    pub fn through_axes(&self, systems: [AbcdMatrix; 2]) -> Result<Self, Refusal> {
         check_determinants(&systems)?;
         let x = systems[0].transform(&self.axes[0])?;
         let y = systems[1].transform(&self.axes[1])?;
@@ -252,12 +244,12 @@ impl AstigmaticBeam {
     /// let [plane, other] = focus.circular_planes();
     /// assert!((plane.expect("the radii cross") - 0.12).abs() < 1e-12);
     /// assert_eq!(other, None);
-    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// # Ok::<(), tem00_beam::Refusal>(())
     /// ```
     pub fn circular_planes(&self) -> [Option<f64>; 2] {
         let [x, y] = &self.axes;
         let origin = x.waist_distance();
-        let named = |t: f64| Some(origin + t).filter(|&z| is_coordinate(z));
+        let named = |t: f64| Some(origin + t).filter(|z| z.abs() <= 1e30);
         match crossings(x, y).map(named) {
             [Some(a), Some(b)] => [Some(a.min(b)), Some(a.max(b))],
             [a, b] => [a.or(b), None],
@@ -314,16 +306,14 @@ impl AstigmaticBeam {
     }
 }
 
+/// What both axes of a beam or a system must share is …
+const EQUAL: &str = "equal in both axes";
+
 /// Checks that light leaves both axes of a system into one medium.
-fn check_determinants(axes: &[AbcdMatrix; 2]) -> Result<(), BeamError> {
+fn check_determinants(axes: &[AbcdMatrix; 2]) -> Result<(), Refusal> {
     let [x, y] = axes.map(|axis| axis.determinant());
-    if (x - y).abs() > DETERMINANT_TOLERANCE * x {
-        return Err(BeamError::AxesDiffer {
-            parameter: "determinant",
-            values: [x, y],
-        });
-    }
-    Ok(())
+    let holds = (x - y).abs() <= DETERMINANT_TOLERANCE * x;
+    check::that(holds, "determinant", [x, y], "", EQUAL)
 }
 
 /// Returns the two solutions, measured from the waist of `x`, of

@@ -1,10 +1,11 @@
 use core::f64::consts::PI;
 
 use glam::DVec3;
+use tem00_numerics::{Shown, check};
 
-use crate::BeamError;
+use crate::Refusal;
 use crate::measurement::CrossSection;
-use crate::range::{check, check_length};
+use crate::range::length;
 
 /// The largest divergence, in radians, for which the paraxial model is trusted.
 const PARAXIAL_LIMIT: f64 = 0.5;
@@ -45,7 +46,7 @@ const PARAXIAL_LIMIT: f64 = 0.5;
 /// let power = 1e-3;
 /// let peak_irradiance = power * beam.irradiance_per_watt(0.0, 0.0);
 /// assert!((peak_irradiance - 63.66e3).abs() < 0.01e3); // W/m²
-/// # Ok::<(), tem00_beam::BeamError>(())
+/// # Ok::<(), tem00_beam::Refusal>(())
 /// ```
 ///
 /// # References
@@ -76,17 +77,15 @@ impl GaussianBeam {
     /// # Examples
     ///
     /// ```
-    /// use tem00_beam::{BeamError, GaussianBeam};
+    /// use tem00_beam::GaussianBeam;
     ///
     /// let swapped = GaussianBeam::from_waist(100e-6, 632.8e-9);
-    /// assert!(matches!(swapped, Err(BeamError::NotParaxial { .. })));
+    /// assert_eq!(swapped.unwrap_err().parameter, "waist_radius");
     /// ```
-    pub fn from_waist(wavelength: f64, waist_radius: f64) -> Result<Self, BeamError> {
-        check_length("wavelength", wavelength)?;
-        check_length("waist_radius", waist_radius)?;
+    pub fn from_waist(wavelength: f64, waist_radius: f64) -> Result<Self, Refusal> {
         Self {
-            wavelength,
-            waist_radius,
+            wavelength: length("wavelength", wavelength)?,
+            waist_radius: length("waist_radius", waist_radius)?,
             m_squared: 1.0,
         }
         .paraxial()
@@ -119,11 +118,11 @@ impl GaussianBeam {
     /// let worse = GaussianBeam::from_divergence(650e-9, 0.5e-3 / 1.5)?.with_m_squared(1.5)?;
     /// assert!((worse.divergence() - 0.5e-3).abs() < 1e-15);
     /// assert!((worse.waist_radius() - 0.621e-3).abs() < 0.001e-3);
-    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// # Ok::<(), tem00_beam::Refusal>(())
     /// ```
-    pub fn from_divergence(wavelength: f64, divergence: f64) -> Result<Self, BeamError> {
-        check_length("wavelength", wavelength)?;
-        check(
+    pub fn from_divergence(wavelength: f64, divergence: f64) -> Result<Self, Refusal> {
+        length("wavelength", wavelength)?;
+        check::that(
             divergence > 0.0 && divergence <= PARAXIAL_LIMIT,
             "divergence",
             divergence,
@@ -131,7 +130,7 @@ impl GaussianBeam {
             "in (0, 0.5] rad",
         )?;
         let waist_radius = wavelength / (PI * divergence);
-        check_length("waist_radius", waist_radius)?;
+        length("waist_radius", waist_radius)?;
         Ok(Self {
             wavelength,
             waist_radius,
@@ -156,10 +155,10 @@ impl GaussianBeam {
     /// let ideal = GaussianBeam::from_waist(650e-9, 50e-6)?;
     /// let diode = ideal.with_m_squared(1.3)?;
     /// assert!((diode.divergence() / ideal.divergence() - 1.3).abs() < 1e-12);
-    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// # Ok::<(), tem00_beam::Refusal>(())
     /// ```
-    pub fn with_m_squared(self, m_squared: f64) -> Result<Self, BeamError> {
-        check(
+    pub fn with_m_squared(self, m_squared: f64) -> Result<Self, Refusal> {
+        check::that(
             m_squared >= 1.0 && m_squared.is_finite(),
             "m_squared",
             m_squared,
@@ -170,15 +169,14 @@ impl GaussianBeam {
     }
 
     /// Returns the beam itself if its divergence is within the paraxial limit.
-    fn paraxial(self) -> Result<Self, BeamError> {
+    fn paraxial(self) -> Result<Self, Refusal> {
         let minimum = self.m_squared * self.wavelength / (PI * PARAXIAL_LIMIT);
-        if self.waist_radius < minimum {
-            return Err(BeamError::NotParaxial {
-                waist_radius: self.waist_radius,
-                minimum,
-            });
+        let allowed = || format!("at least 2 M² λ / π = {} m to be paraxial", Shown(minimum));
+        if self.waist_radius >= minimum {
+            Ok(self)
+        } else {
+            Err(Refusal::new("waist_radius", self.waist_radius, allowed()).in_unit("m"))
         }
-        Ok(self)
     }
 
     /// Returns the wavelength `λ` in the medium the beam travels in, in metres.
@@ -241,10 +239,10 @@ impl GaussianBeam {
     /// let beam = GaussianBeam::from_waist(1064e-9, 10e-6)?;
     /// assert!((beam.rayleigh_range() - 295e-6).abs() < 1e-6);
     /// assert!((beam.depth_of_focus(1.05)? - 189e-6).abs() < 1e-6);
-    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// # Ok::<(), tem00_beam::Refusal>(())
     /// ```
-    pub fn depth_of_focus(&self, growth: f64) -> Result<f64, BeamError> {
-        check(
+    pub fn depth_of_focus(&self, growth: f64) -> Result<f64, Refusal> {
+        check::that(
             growth > 1.0 && growth.is_finite(),
             "growth",
             growth,
@@ -269,7 +267,7 @@ impl GaussianBeam {
     ///
     /// let beam = GaussianBeam::from_waist(1064e-9, 10e-6)?;
     /// assert!((beam.beam_parameter_product() / 1e-6 - 0.339).abs() < 0.001);
-    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// # Ok::<(), tem00_beam::Refusal>(())
     /// ```
     pub const fn beam_parameter_product(&self) -> f64 {
         self.m_squared * self.wavelength / PI
@@ -306,7 +304,7 @@ impl GaussianBeam {
     /// let spot = beam.cross_section_at(0.3);
     /// let through_pinhole = spot.power_in_circle(beam.radius_at(0.3));
     /// assert!((through_pinhole - 0.8647).abs() < 0.0001);
-    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// # Ok::<(), tem00_beam::Refusal>(())
     /// ```
     pub fn cross_section_at(&self, z: f64) -> CrossSection {
         let radius = self.radius_at(z);
@@ -384,7 +382,7 @@ impl GaussianBeam {
     /// let irradiance = -beam.flux_per_watt(on_axis).dot(normal);
     /// let upright = beam.irradiance_per_watt(0.0, 0.3);
     /// assert!((irradiance / upright - 0.5).abs() < 1e-12);
-    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// # Ok::<(), tem00_beam::Refusal>(())
     /// ```
     pub fn flux_per_watt(&self, point: DVec3) -> DVec3 {
         let irradiance = self.irradiance_per_watt(point.x.hypot(point.y), point.z);

@@ -30,7 +30,6 @@
 
 mod astigmatic;
 pub mod closed_form;
-mod error;
 mod gaussian;
 mod line;
 mod located;
@@ -43,7 +42,6 @@ mod range;
 mod real;
 
 pub use astigmatic::AstigmaticBeam;
-pub use error::BeamError;
 pub use gaussian::GaussianBeam;
 pub use glam::DVec3;
 pub use line::{FanGeometry, FocusCurve, LaserLine};
@@ -55,3 +53,4 @@ pub use placed::{
 };
 pub use profile::{AngularKnot, AngularProfile, LineProfile};
 pub use real::Real;
+pub use tem00_numerics::Refusal;

@@ -1,11 +1,12 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use glam::DVec3;
+use tem00_numerics::check;
 
 use crate::normal::normal_density;
 use crate::profile::{SlopeDensity, SlopeProfile};
-use crate::range::{check, check_coordinate};
-use crate::{BeamError, GaussianBeam, LineProfile};
+use crate::range::coordinate;
+use crate::{GaussianBeam, LineProfile, Refusal};
 
 /// The apex offset must exceed this many source radii, so that the fan has a sharp apex.
 const MIN_SOURCE_RADII: f64 = 100.0;
@@ -96,7 +97,7 @@ pub struct FanGeometry {
 ///
 /// assert!((line.half_length_at(0.2) - 54.1e-3).abs() < 0.1e-3);
 /// assert!((line.half_thickness_at(0.2) - 0.1e-3).abs() < 1e-9);
-/// # Ok::<(), tem00_beam::BeamError>(())
+/// # Ok::<(), tem00_beam::Refusal>(())
 /// ```
 ///
 /// # References
@@ -125,15 +126,15 @@ impl LaserLine {
         focus: GaussianBeam,
         fan: FanGeometry,
         profile: LineProfile,
-    ) -> Result<Self, BeamError> {
-        check(
+    ) -> Result<Self, Refusal> {
+        check::that(
             fan.fan_angle > 0.0 && fan.fan_angle < PI,
             "fan_angle",
             fan.fan_angle,
             "rad",
             "in (0, π) rad",
         )?;
-        check_coordinate("focus_distance", fan.focus_distance)?;
+        coordinate("focus_distance", fan.focus_distance)?;
         let density = profile.slope_density(fan.fan_angle)?;
         let line = Self {
             focus,
@@ -143,12 +144,7 @@ impl LaserLine {
             density,
         };
         let minimum = MIN_SOURCE_RADII * line.source_radius();
-        if !(minimum..=1e30).contains(&fan.apex_offset) {
-            return Err(BeamError::ApexOffset {
-                apex_offset: fan.apex_offset,
-                minimum,
-            });
-        }
+        check::range("apex_offset", fan.apex_offset, [minimum, 1e30], "m")?;
         Ok(line)
     }
 
@@ -245,7 +241,7 @@ impl LaserLine {
     /// # let focus = GaussianBeam::from_waist(650e-9, 0.1e-3)?;
     /// let line = LaserLine::new(focus, fan, LineProfile::GaussianTan)?;
     /// assert!((line.power_between_angles(-0.25, 0.25) - 0.9545).abs() < 1e-4);
-    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// # Ok::<(), tem00_beam::Refusal>(())
     /// ```
     pub fn power_between_angles(&self, a: f64, b: f64) -> f64 {
         let [a, b] = [a, b].map(|angle| angle.clamp(-FRAC_PI_2, FRAC_PI_2).tan());
@@ -272,7 +268,7 @@ impl LaserLine {
     /// let line = LaserLine::new(focus, fan, LineProfile::UniformTan)?;
     /// let fraction = line.power_on_length(-20e-3, 20e-3, 0.198);
     /// assert!((fraction - 20e-3 / line.half_length_at(0.198)).abs() < 1e-15);
-    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// # Ok::<(), tem00_beam::Refusal>(())
     /// ```
     pub fn power_on_length(&self, x_min: f64, x_max: f64, z: f64) -> f64 {
         if z < 0.0 {
@@ -327,7 +323,7 @@ impl LaserLine {
     /// // In the fan plane the energy flows straight away from the virtual apex.
     /// let flux = line.flux_per_watt(DVec3::new(0.03, 0.0, 0.198));
     /// assert!((flux.x / flux.z - 0.03 / 0.2).abs() < 1e-12);
-    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// # Ok::<(), tem00_beam::Refusal>(())
     /// ```
     pub fn flux_per_watt(&self, point: DVec3) -> DVec3 {
         if point.z < 0.0 {

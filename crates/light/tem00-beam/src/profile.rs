@@ -1,6 +1,6 @@
 use core::f64::consts::{FRAC_PI_2, SQRT_2};
 
-use crate::BeamError;
+use tem00_numerics::{Refusal, check};
 
 mod angular;
 mod density;
@@ -81,7 +81,7 @@ pub enum LineProfile {
 impl LineProfile {
     /// Returns the density of the slope for a fan of the full angle `fan_angle`; that of a table is
     /// dark, the table stands in for it.
-    pub(crate) fn slope_density(&self, fan_angle: f64) -> Result<SlopeDensity<f64>, BeamError> {
+    pub(crate) fn slope_density(&self, fan_angle: f64) -> Result<SlopeDensity<f64>, Refusal> {
         let half_angle = 0.5 * fan_angle;
         let half_slope = half_angle.tan();
         Ok(match self {
@@ -90,11 +90,9 @@ impl LineProfile {
             Self::GaussianSin => gaussian_within(Variable::Sin, half_angle.sin(), 1.0),
             Self::UniformTan => SlopeDensity::uniform(Variable::Tan, half_slope, 0.0),
             Self::UniformAngle => SlopeDensity::uniform(Variable::Angle, half_angle, 0.0),
-            Self::Powell { edge } if (1e-6..=1.0).contains(edge) => {
-                SlopeDensity::uniform(Variable::Tan, half_slope, edge * half_slope)
-            }
             Self::Powell { edge } => {
-                return Err(BeamError::out_of_range("edge", *edge, "", "in [1e-6, 1]"));
+                let edge = check::range("edge", *edge, [1e-6, 1.0], "")?;
+                SlopeDensity::uniform(Variable::Tan, half_slope, edge * half_slope)
             }
             Self::Tabulated(_) => SlopeDensity::uniform(Variable::Tabulated, 0.0, 0.0),
         })

@@ -1,77 +1,21 @@
-//! Ranges that arguments are held to.
+//! Ranges that arguments are held to: their squares, products and quotients stay within `f64`.
 
-use crate::BeamError;
+use tem00_numerics::{Refusal, check};
 
-/// The range of [`is_length`].
-const LENGTH: &str = "between 1e-30 m and 1e30 m";
-/// The range of [`is_coordinate`].
-const COORDINATE: &str = "finite and within ±1e30 m";
+/// The largest length and coordinate, in metres.
+const LARGEST: f64 = 1e30;
 
-/// The lengths whose squares, products and quotients stay within the range of `f64`.
-pub(crate) fn is_length(x: f64) -> bool {
-    (1e-30..=1e30).contains(&x)
+/// Returns a length from 1e−30 m to 1e30 m.
+pub(crate) fn length(parameter: &'static str, x: f64) -> Result<f64, Refusal> {
+    check::range(parameter, x, [LARGEST.recip(), LARGEST], "m")
 }
 
-/// The coordinates whose squares and products with lengths stay within the range of `f64`.
-pub(crate) fn is_coordinate(x: f64) -> bool {
-    x.abs() <= 1e30
+/// Returns a coordinate within ±1e30 m.
+pub(crate) fn coordinate(parameter: &'static str, x: f64) -> Result<f64, Refusal> {
+    check::range(parameter, x, [-LARGEST, LARGEST], "m")
 }
 
-pub(crate) fn check_length(parameter: &'static str, x: f64) -> Result<(), BeamError> {
-    check(is_length(x), parameter, x, "m", LENGTH)
-}
-
-pub(crate) fn check_coordinate(parameter: &'static str, x: f64) -> Result<(), BeamError> {
-    check(is_coordinate(x), parameter, x, "m", COORDINATE)
-}
-
-/// Checks the curvature `1/R` of a wavefront or a surface, in m⁻¹.
-pub(crate) fn check_curvature(x: f64) -> Result<(), BeamError> {
-    let allowed = "finite and within ±1e30 m⁻¹";
-    check(is_coordinate(x), "curvature", x, "m⁻¹", allowed)
-}
-
-/// As [`check_length`], for the entries of a list.
-pub(crate) fn check_lengths(parameter: &'static str, list: &[f64]) -> Result<(), BeamError> {
-    check_list(is_length, parameter, list, "m", LENGTH)
-}
-
-/// As [`check_coordinate`], for the entries of a list.
-pub(crate) fn check_coordinates(parameter: &'static str, list: &[f64]) -> Result<(), BeamError> {
-    check_list(is_coordinate, parameter, list, "m", COORDINATE)
-}
-
-/// Refuses a number unless it is `valid`.
-pub(crate) fn check(
-    valid: bool,
-    parameter: &'static str,
-    value: f64,
-    unit: &'static str,
-    allowed: &'static str,
-) -> Result<(), BeamError> {
-    if valid {
-        Ok(())
-    } else {
-        Err(BeamError::out_of_range(parameter, value, unit, allowed))
-    }
-}
-
-/// Refuses a list unless all its entries are valid.
-pub(crate) fn check_list(
-    is_valid: impl Fn(f64) -> bool,
-    parameter: &'static str,
-    list: &[f64],
-    unit: &'static str,
-    allowed: &'static str,
-) -> Result<(), BeamError> {
-    match list.iter().position(|&value| !is_valid(value)) {
-        Some(index) => Err(BeamError::Entry {
-            parameter,
-            index,
-            value: list[index],
-            unit,
-            allowed,
-        }),
-        None => Ok(()),
-    }
+/// Returns the curvature `1/R` of a wavefront or a surface, within ±1e30 m⁻¹.
+pub(crate) fn curvature(x: f64) -> Result<f64, Refusal> {
+    check::range("curvature", x, [-LARGEST, LARGEST], "m⁻¹")
 }

@@ -4,9 +4,10 @@ mod sensor;
 
 use glam::{DMat3, DVec2, DVec3};
 use tem00_decorrelation::{ImagingGeometry, LensData, RigidMotion};
+use tem00_numerics::check;
 
 use self::{distortion::Distortion, sensor::Sensor};
-use crate::{CameraDescription, CameraError, Ray, description::check};
+use crate::{CameraDescription, Ray, Refusal};
 
 pub use self::lens::{CameraConnection, CameraRay};
 
@@ -65,21 +66,21 @@ impl Camera {
     /// if the image is empty or has more than [`MAXIMUM_PIXELS`](crate::MAXIMUM_PIXELS) pixels, if the tilt is so large
     /// that a part of the pupil sees the back of the sensor or a part of the image lies before the
     /// lens, or if the distortion folds a part of the image back.
-    pub fn new(description: CameraDescription) -> Result<Self, CameraError> {
+    pub fn new(description: CameraDescription) -> Result<Self, Refusal> {
         description.check()?;
         let view = (description.look_at - description.position)
             .try_normalize()
-            .ok_or(CameraError::Direction {
-                parameter: "look_at",
-                allowed: "a point other than the camera's position",
+            .ok_or_else(|| {
+                let allowed = "a point other than the camera's position";
+                Refusal::new("look_at", description.look_at.to_array(), allowed).in_unit("m")
             })?;
         let across = view.cross(description.up.normalize_or_zero());
         // Rounding alone makes the product of parallel directions about 1e−16 long.
         let right = (across.length() > MIN_SINE)
             .then(|| across.normalize())
-            .ok_or(CameraError::Direction {
-                parameter: "up",
-                allowed: "a direction across the viewing direction",
+            .ok_or_else(|| {
+                let allowed = "a direction across the viewing direction";
+                Refusal::new("up", description.up.to_array(), allowed)
             })?;
         let camera = Self {
             description,
@@ -148,7 +149,7 @@ impl Camera {
     /// # Errors
     ///
     /// Returns an error if the wavelength is not positive and finite or exceeds the pupil.
-    pub fn imaging_geometry(&self, wavelength: f64) -> Result<ImagingGeometry, CameraError> {
+    pub fn imaging_geometry(&self, wavelength: f64) -> Result<ImagingGeometry, Refusal> {
         self.geometry_for(wavelength, self.description.focus_distance)
     }
 
@@ -172,7 +173,7 @@ impl Camera {
         &self,
         pixel: DVec2,
         wavelength: f64,
-    ) -> Result<ImagingGeometry, CameraError> {
+    ) -> Result<ImagingGeometry, Refusal> {
         let depth = self.sensor.point(pixel).z;
         let CameraDescription {
             focal_length,
@@ -293,7 +294,7 @@ impl Camera {
     ///
     /// let on_axis = camera.irradiance_per_radiance(DVec2::new(320.0, 240.0));
     /// assert!((on_axis - 0.010_312).abs() < 0.000_001); // sr
-    /// # Ok::<(), tem00_camera::CameraError>(())
+    /// # Ok::<(), tem00_camera::Refusal>(())
     /// ```
     pub fn irradiance_per_radiance(&self, pixel: DVec2) -> f64 {
         let radius = 0.5 * self.pupil_diameter();
@@ -342,26 +343,22 @@ impl Camera {
         &self,
         wavelength: f64,
         surface_to_pupil: f64,
-    ) -> Result<ImagingGeometry, CameraError> {
-        Ok(ImagingGeometry::from_lens(LensData {
+    ) -> Result<ImagingGeometry, Refusal> {
+        ImagingGeometry::from_lens(LensData {
             wavelength,
             focal_length: self.description.focal_length,
             f_number: self.description.f_number,
             surface_to_pupil,
             pixel_pitch: self.description.pixel_pitch,
-        })?)
+        })
     }
 
     /// Checks that each image point stands behind the lens, in front of the sensor, and has one ray.
-    fn check_sensor(&self) -> Result<(), CameraError> {
+    fn check_sensor(&self) -> Result<(), Refusal> {
         let tilt = self.description.tilt.angle;
         let steepest = self.sensor.slope().length() * 0.5 * self.pupil_diameter();
-        check(
-            "tilt",
-            tilt,
-            steepest < 1.0,
-            "so small that all of the pupil sees the front of the sensor (in radians)",
-        )?;
+        let allowed = "so small that the whole pupil sees the front of the sensor";
+        check::that(steepest < 1.0, "tilt", tilt, "rad", allowed)?;
         let size = self.description.size() + IMAGE_MARGIN;
         let corners = [
             DVec2::splat(-IMAGE_MARGIN),
@@ -370,19 +367,13 @@ impl Camera {
             size,
         ];
         for position in corners.map(|corner| self.sensor.point(corner)) {
-            check(
-                "tilt",
-                tilt,
-                position.z > 0.0,
-                "so small that all of the image stands behind the lens (in radians)",
-            )?;
+            let allowed = "so small that the whole image stands behind the lens";
+            check::that(position.z > 0.0, "tilt", tilt, "rad", allowed)?;
             let radius = position.truncate().length() / position.z;
-            check(
-                "distortion",
-                self.distortion.reach(),
-                self.distortion.is_none() || radius < self.distortion.reach(),
-                "reaching the corners of the image before it turns back",
-            )?;
+            let reach = self.distortion.reach();
+            let holds = self.distortion.is_none() || radius < reach;
+            let allowed = "reaching the corners of the image before it turns back";
+            check::that(holds, "distortion", reach, "", allowed)?;
         }
         Ok(())
     }

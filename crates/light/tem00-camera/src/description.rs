@@ -1,6 +1,7 @@
 use glam::{DVec2, DVec3};
+use tem00_numerics::check;
 
-use crate::CameraError;
+use crate::Refusal;
 
 /// The maximum number of pixels of an image: 2²⁸, which is 16 384 × 16 384.
 pub const MAXIMUM_PIXELS: usize = 1 << 28;
@@ -105,67 +106,50 @@ impl Default for CameraDescription {
 
 impl CameraDescription {
     /// Checks everything that can be checked without the geometry.
-    pub(crate) fn check(&self) -> Result<(), CameraError> {
-        self.check_lengths()?;
-        self.check_resolution()?;
-        if !self.position.is_finite() || !self.look_at.is_finite() {
-            return Err(CameraError::Direction {
-                parameter: "look_at",
-                allowed: "a finite point seen from a finite position",
-            });
+    pub(crate) fn check(&self) -> Result<(), Refusal> {
+        for (parameter, value, unit) in [
+            ("focal_length", self.focal_length, "m"),
+            ("f_number", self.f_number, ""),
+            ("focus_distance", self.focus_distance, "m"),
+            ("pixel_pitch", self.pixel_pitch, "m"),
+        ] {
+            check::positive(parameter, value, unit)?;
         }
-        if self.principal_point.is_some_and(|point| !point.is_finite()) {
-            return Err(CameraError::Direction {
-                parameter: "principal_point",
-                allowed: "a finite image point, in pixels",
-            });
-        }
-        let RadialDistortion { k1, k2, k3 } = self.distortion;
-        [k1, k2, k3]
-            .into_iter()
-            .try_for_each(|k| check("distortion", k, k.is_finite(), "finite"))?;
-        let SensorTilt { angle, azimuth } = self.tilt;
-        check(
-            "tilt",
-            angle,
-            angle.abs() < core::f64::consts::FRAC_PI_2,
-            "below a right angle (in radians)",
-        )?;
-        check("tilt", azimuth, azimuth.is_finite(), "at a finite azimuth")
-    }
-
-    fn check_lengths(&self) -> Result<(), CameraError> {
-        let lengths = [
-            ("focal_length", self.focal_length),
-            ("f_number", self.f_number),
-            ("focus_distance", self.focus_distance),
-            ("pixel_pitch", self.pixel_pitch),
-        ];
-        for (parameter, value) in lengths {
-            let positive = value > 0.0 && value.is_finite();
-            check(parameter, value, positive, "positive and finite")?;
-        }
-        check(
-            "f_number",
-            self.f_number,
-            self.f_number >= 0.5,
-            "at least 0.5, the limit of an aplanatic lens",
-        )?;
-        check(
-            "focus_distance",
-            self.focus_distance,
-            self.focus_distance > self.focal_length,
-            "greater than the focal length (in metres)",
-        )
-    }
-
-    fn check_resolution(&self) -> Result<(), CameraError> {
+        let allowed = "at least 0.5, the limit of an aplanatic lens";
+        check::that(self.f_number >= 0.5, "f_number", self.f_number, "", allowed)?;
+        let (distance, allowed) = (self.focus_distance, "greater than the focal length");
+        let holds = distance > self.focal_length;
+        check::that(holds, "focus_distance", distance, "m", allowed)?;
         let [width, height] = self.resolution;
-        width
-            .checked_mul(height)
-            .filter(|pixels| (1..=MAXIMUM_PIXELS).contains(pixels))
-            .map(|_| ())
-            .ok_or(CameraError::Resolution { width, height })
+        let pixels = width.checked_mul(height);
+        let holds = pixels.is_some_and(|pixels| (1..=MAXIMUM_PIXELS).contains(&pixels));
+        let resolution = self.resolution.map(|count| count as f64);
+        let allowed = "at least 1 × 1 and at most 2²⁸ pixels in all";
+        check::that(holds, "resolution", resolution, "", allowed)?;
+        let holds = self.position.is_finite() && self.look_at.is_finite();
+        let allowed = "a finite point seen from a finite position";
+        check::that(holds, "look_at", self.look_at.to_array(), "m", allowed)?;
+        let point = self.axis_point();
+        let allowed = "a finite image point, in pixels";
+        check::that(
+            point.is_finite(),
+            "principal_point",
+            point.to_array(),
+            "",
+            allowed,
+        )?;
+        let RadialDistortion { k1, k2, k3 } = self.distortion;
+        check::each(&[k1, k2, k3], |k| check::finite("distortion", k, ""))?;
+        let SensorTilt { angle, azimuth } = self.tilt;
+        let holds = angle.abs() < core::f64::consts::FRAC_PI_2;
+        check::that(holds, "tilt", angle, "rad", "below a right angle")?;
+        check::that(
+            azimuth.is_finite(),
+            "tilt",
+            azimuth,
+            "rad",
+            "at a finite azimuth",
+        )
     }
 
     /// Returns the distance from the lens to the sensor along the axis, in metres.
@@ -182,21 +166,4 @@ impl CameraDescription {
     pub(crate) fn size(&self) -> DVec2 {
         DVec2::new(self.resolution[0] as f64, self.resolution[1] as f64)
     }
-}
-
-/// Returns an error about `parameter` unless `holds`.
-pub(crate) fn check(
-    parameter: &'static str,
-    value: f64,
-    holds: bool,
-    allowed: &'static str,
-) -> Result<(), CameraError> {
-    if holds {
-        return Ok(());
-    }
-    Err(CameraError::OutOfRange {
-        parameter,
-        value,
-        allowed,
-    })
 }

@@ -20,10 +20,9 @@
 
 mod camera;
 mod description;
-mod error;
 mod ray;
 
 pub use camera::{Camera, CameraConnection, CameraRay, IMAGE_MARGIN};
 pub use description::{CameraDescription, MAXIMUM_PIXELS, RadialDistortion, SensorTilt};
-pub use error::CameraError;
 pub use ray::Ray;
+pub use tem00_numerics::Refusal;

@@ -2,8 +2,9 @@ use core::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 use num_complex::Complex;
+use tem00_numerics::check;
 
-use crate::{CoherenceError, SourceExtent, blur::Blur, excess::HeightExcess, kernel::LagKernel};
+use crate::{Refusal, SourceExtent, blur::Blur, excess::HeightExcess, kernel::LagKernel};
 
 /// How a camera sees a rough surface that a source lights, for [`ResolutionCell::new`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,42 +85,25 @@ impl ResolutionCell {
     ///
     /// Returns an error unless source and pupil stand on the side of the normal, `0 < sin_aperture ≤ 1` and the wavelength is
     /// positive and finite.
-    pub fn new(geometry: CellGeometry) -> Result<Self, CoherenceError> {
-        let unit = |parameter, value: DVec3| {
-            let allowed = "finite and not zero";
-            value.try_normalize().ok_or(CoherenceError::Direction {
-                parameter,
-                value,
-                allowed,
-            })
-        };
+    pub fn new(geometry: CellGeometry) -> Result<Self, Refusal> {
         let normal = unit("normal", geometry.normal)?;
-        let above = |parameter, value| {
+        let above = |parameter, value: DVec3| {
             let direction = unit(parameter, value)?;
-            let allowed = "on the side of the normal";
-            let refused = CoherenceError::Direction {
-                parameter,
-                value,
-                allowed,
-            };
-            (direction.dot(normal) > 1e-6)
-                .then_some(direction)
-                .ok_or(refused)
+            let (holds, allowed) = (direction.dot(normal) > 1e-6, "on the side of the normal");
+            check::that(holds, parameter, value.to_array(), "", allowed).map(|()| direction)
         };
-        let (source, pupil) = (
-            above("to_source", geometry.to_source)?,
-            above("to_pupil", geometry.to_pupil)?,
-        );
+        let source = above("to_source", geometry.to_source)?;
+        let pupil = above("to_pupil", geometry.to_pupil)?;
         let sin_aperture = geometry.sin_aperture;
-        if !(sin_aperture > 0.0 && sin_aperture <= 1.0) {
-            let allowed = "positive and at most 1";
-            return Err(CoherenceError::refused(
-                "sin_aperture",
-                sin_aperture,
-                allowed,
-            ));
-        }
-        check_length("wavelength", geometry.wavelength, geometry.wavelength > 0.0)?;
+        let holds = sin_aperture > 0.0 && sin_aperture <= 1.0;
+        check::that(
+            holds,
+            "sin_aperture",
+            sin_aperture,
+            "",
+            "positive and at most 1",
+        )?;
+        check::positive("wavelength", geometry.wavelength, "m")?;
         let height_factor = (1.0 + source.dot(pupil)) / normal.dot(pupil);
         Ok(Self {
             wavelength: geometry.wavelength,
@@ -140,13 +124,9 @@ impl ResolutionCell {
     /// # Errors
     ///
     /// Returns an error unless both lengths are finite and not negative.
-    pub fn with_relief(self, relief: Relief) -> Result<Self, CoherenceError> {
-        for (parameter, length) in [
-            ("rms_height", relief.rms_height),
-            ("correlation_length", relief.correlation_length),
-        ] {
-            check_length(parameter, length, length >= 0.0)?;
-        }
+    pub fn with_relief(self, relief: Relief) -> Result<Self, Refusal> {
+        check::not_negative("rms_height", relief.rms_height, "m")?;
+        check::not_negative("correlation_length", relief.correlation_length, "m")?;
         Ok(Self { relief, ..self })
     }
 
@@ -155,14 +135,8 @@ impl ResolutionCell {
     /// # Errors
     ///
     /// Returns an error if the distance is not finite.
-    pub fn with_defocus(self, defocus: f64) -> Result<Self, CoherenceError> {
-        if !defocus.is_finite() {
-            return Err(CoherenceError::refused(
-                "defocus",
-                defocus,
-                "finite, in metres",
-            ));
-        }
+    pub fn with_defocus(self, defocus: f64) -> Result<Self, Refusal> {
+        let defocus = check::finite("defocus", defocus, "m")?;
         Ok(Self { defocus, ..self })
     }
 
@@ -200,13 +174,13 @@ impl ResolutionCell {
     /// let line = SpectralLine::monochromatic(650e-9)?;
     /// let contrast = |half_angle| {
     ///     let cell = cell.clone().with_source_extent(SourceExtent::disc(half_angle)?);
-    ///     Ok::<_, tem00_coherence::CoherenceError>(
+    ///     Ok::<_, tem00_coherence::Refusal>(
     ///         PolychromaticSpeckle { line: &line, cell: &cell }.contrast()
     ///     )
     /// };
     /// assert!(contrast(0.002)? > 0.85);
     /// assert!(contrast(0.02)? < 0.4);
-    /// # Ok::<(), tem00_coherence::CoherenceError>(())
+    /// # Ok::<(), tem00_coherence::Refusal>(())
     /// ```
     ///
     /// # References
@@ -411,16 +385,10 @@ pub(crate) struct Difference {
     pub of_heights: f64,
 }
 
-fn check_length(parameter: &'static str, value: f64, possible: bool) -> Result<(), CoherenceError> {
-    if possible && value.is_finite() {
-        Ok(())
-    } else {
-        Err(CoherenceError::refused(
-            parameter,
-            value,
-            "finite and not negative, in metres",
-        ))
-    }
+/// Returns a direction of length 1, if the vector has one.
+pub(crate) fn unit(parameter: &'static str, vector: DVec3) -> Result<DVec3, Refusal> {
+    let refused = || Refusal::new(parameter, vector.to_array(), "finite and not zero");
+    vector.try_normalize().ok_or_else(refused)
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 use core::f64::consts::{PI, TAU};
 
 use glam::DVec3;
-use tem00_numerics::{disc_overlap, quadrature::for_each_node};
+use tem00_numerics::{check, disc_overlap, quadrature::for_each_node};
 
-use crate::CoherenceError;
+use crate::{Refusal, cell::unit};
 
 /// The directions from which the light of a source reaches the surface: those of its transverse modes, of the points of
 /// a lamp or a fibre, or of a diffuser that moves many times while the detector integrates.
@@ -35,7 +35,7 @@ impl Default for SourceExtent {
 }
 
 /// The largest angles of discs and Gaussians, in radians.
-const MAX_ANGLE: f64 = 0.3;
+const ANGLES: [f64; 2] = [0.0, 0.3];
 
 /// Beyond so many standard deviations of a difference a Gaussian ends, at 2e-11 of its light.
 const GAUSSIAN_REACH: f64 = 7.0;
@@ -55,11 +55,10 @@ impl SourceExtent {
     /// # Errors
     ///
     /// Returns an error unless the angle is from 0 to 0.3.
-    pub fn disc(source_half_angle: f64) -> Result<Self, CoherenceError> {
-        check_angle("source_half_angle", source_half_angle)?;
+    pub fn disc(source_half_angle: f64) -> Result<Self, Refusal> {
         Ok(Self {
             directions: Directions::Disc {
-                half_angle: source_half_angle,
+                half_angle: check::range("source_half_angle", source_half_angle, ANGLES, "rad")?,
             },
         })
     }
@@ -70,11 +69,10 @@ impl SourceExtent {
     /// # Errors
     ///
     /// Returns an error unless the angle is from 0 to 0.3.
-    pub fn gaussian(standard_deviation: f64) -> Result<Self, CoherenceError> {
-        check_angle("standard_deviation", standard_deviation)?;
+    pub fn gaussian(standard_deviation: f64) -> Result<Self, Refusal> {
         Ok(Self {
             directions: Directions::Gaussian {
-                spread: standard_deviation,
+                spread: check::range("standard_deviation", standard_deviation, ANGLES, "rad")?,
             },
         })
     }
@@ -85,35 +83,20 @@ impl SourceExtent {
     /// # Errors
     ///
     /// Returns an error if there are more than 100, a direction has no length, a share is negative or not finite, or all are 0.
-    pub fn directions(list: &[(DVec3, f64)]) -> Result<Self, CoherenceError> {
-        if list.len() > MAX_DIRECTIONS {
-            let allowed = "from 1 to 100 in number";
-            return Err(CoherenceError::refused(
-                "directions",
-                list.len() as f64,
-                allowed,
-            ));
-        }
+    pub fn directions(list: &[(DVec3, f64)]) -> Result<Self, Refusal> {
+        let count = list.len();
+        let allowed = "from 1 to 100 in number";
+        check::that(count <= MAX_DIRECTIONS, "directions", count, "", allowed)?;
         let total: f64 = list.iter().map(|(_, share)| share).sum();
         let allowed = "not negative, finite, and not all 0";
-        let refused = |share| CoherenceError::refused("share", share, allowed);
-        if !(total > 0.0 && total.is_finite()) {
-            return Err(refused(total));
-        }
-        let unit = |&(direction, share): &(DVec3, f64)| {
-            let unit = direction.try_normalize();
-            let unit = unit.ok_or(CoherenceError::Direction {
-                parameter: "direction",
-                value: direction,
-                allowed: "finite and not zero",
-            })?;
-            if share < 0.0 {
-                return Err(refused(share));
-            }
-            Ok((unit, share / total))
+        let holds = total > 0.0 && total.is_finite();
+        check::that(holds, "share", total, "", allowed)?;
+        let scaled = |&(direction, share): &(DVec3, f64)| {
+            check::that(share >= 0.0, "share", share, "", allowed)?;
+            Ok((unit("direction", direction)?, share / total))
         };
         Ok(Self {
-            directions: Directions::List(list.iter().map(unit).collect::<Result<_, _>>()?),
+            directions: Directions::List(list.iter().map(scaled).collect::<Result<_, _>>()?),
         })
     }
 
@@ -180,14 +163,6 @@ impl SourceExtent {
             }
         }
     }
-}
-
-fn check_angle(parameter: &'static str, angle: f64) -> Result<(), CoherenceError> {
-    if (0.0..=MAX_ANGLE).contains(&angle) {
-        return Ok(());
-    }
-    let allowed = "from 0 to 0.3, in radians";
-    Err(CoherenceError::refused(parameter, angle, allowed))
 }
 
 #[cfg(test)]

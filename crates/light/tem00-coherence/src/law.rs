@@ -51,7 +51,7 @@ use crate::{
 /// let speckle = PolychromaticSpeckle { line: &line, cell: &cell };
 /// assert!((speckle.contrast() - 0.731).abs() < 1e-3);
 /// assert!((speckle.line_noise_ratio(Rows::Thin) - 0.809).abs() < 1e-3);
-/// # Ok::<(), tem00_coherence::CoherenceError>(())
+/// # Ok::<(), tem00_coherence::Refusal>(())
 /// ```
 ///
 /// # References

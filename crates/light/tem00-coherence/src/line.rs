@@ -2,12 +2,12 @@ use core::f64::consts::{FRAC_PI_2, LN_2, PI, TAU};
 
 use num_complex::Complex;
 use tem00_numerics::{
-    normal_quantile,
+    check, normal_quantile,
     quadrature::{for_each_node, integrate},
     sinc,
 };
 
-use crate::{CoherenceError, chebyshev::Tabulated};
+use crate::{Refusal, chebyshev::Tabulated};
 
 /// The spectrum of a laser or of another narrow source.
 ///
@@ -36,7 +36,7 @@ use crate::{CoherenceError, chebyshev::Tabulated};
 /// assert_eq!(laser.squared_coherence(1.0), 1.0);
 /// let diode = SpectralLine::new(650e-9, 20e-9, LineShape::Gaussian)?;
 /// assert!((diode.coherence_length() - 14.03e-6).abs() < 0.01e-6);
-/// # Ok::<(), tem00_coherence::CoherenceError>(())
+/// # Ok::<(), tem00_coherence::Refusal>(())
 /// ```
 ///
 /// # References
@@ -74,13 +74,10 @@ struct Peak {
 
 /// The largest linewidth in wavelengths.
 const MAX_RELATIVE_WIDTH: f64 = 0.1;
-const LINEWIDTH: &str = "from 0 to a tenth of the wavelength, in metres; the two may be swapped";
 /// The largest number of peaks whose widths count for modes.
 const MAX_WIDE_PEAKS: usize = 24;
 /// The largest number of peaks whose pairs are taken one by one.
 const MAX_PEAKS_IN_PAIRS: usize = 8;
-const WAVELENGTH: &str = "positive and finite, in metres";
-
 /// Standard deviations of a Gaussian and half widths of a Lorentzian after which nothing is left: 1e−16 of the first,
 /// 1e−12 of the second.
 const GAUSSIAN_REACH: f64 = 8.5;
@@ -95,7 +92,7 @@ impl SpectralLine {
     /// # Errors
     ///
     /// Returns an error unless it is positive and finite.
-    pub fn monochromatic(wavelength: f64) -> Result<Self, CoherenceError> {
+    pub fn monochromatic(wavelength: f64) -> Result<Self, Refusal> {
         Self::new(wavelength, 0.0, LineShape::Gaussian)
     }
 
@@ -104,7 +101,7 @@ impl SpectralLine {
     /// # Errors
     ///
     /// Returns an error unless the wavelength is positive and finite and the linewidth lies between 0 and a tenth of it.
-    pub fn new(wavelength: f64, linewidth: f64, shape: LineShape) -> Result<Self, CoherenceError> {
+    pub fn new(wavelength: f64, linewidth: f64, shape: LineShape) -> Result<Self, Refusal> {
         let single = Peak {
             offset: 0.0,
             weight: 1.0,
@@ -118,7 +115,7 @@ impl SpectralLine {
     /// # Errors
     ///
     /// As [`new`](Self::new) for the span, and unless there are between 1 and `MAX_PEAKS`.
-    pub fn comb(wavelength: f64, span: f64, count: usize) -> Result<Self, CoherenceError> {
+    pub fn comb(wavelength: f64, span: f64, count: usize) -> Result<Self, Refusal> {
         let width = full_width(wavelength, span, "span")?;
         let place = |j: usize| match count {
             1 => 0.0,
@@ -138,17 +135,11 @@ impl SpectralLine {
     ///
     /// Returns an error unless there are between 1 and `MAX_PEAKS`, within a tenth of the wavelength, and powers are finite
     /// and positive.
-    pub fn from_peaks(peaks: &[[f64; 2]]) -> Result<Self, CoherenceError> {
+    pub fn from_peaks(peaks: &[[f64; 2]]) -> Result<Self, Refusal> {
         check_count(peaks.len())?;
         for &[wavelength, power] in peaks {
-            check_wavelength(wavelength)?;
-            if !(power > 0.0 && power.is_finite()) {
-                return Err(CoherenceError::refused(
-                    "power",
-                    power,
-                    "positive and finite",
-                ));
-            }
+            check::positive("wavelength", wavelength, "m")?;
+            check::positive("power", power, "")?;
         }
         let largest = peaks.iter().fold(0.0, |most: f64, peak| most.max(peak[1]));
         let total: f64 = peaks.iter().map(|peak| peak[1] / largest).sum();
@@ -162,8 +153,8 @@ impl SpectralLine {
             peak.offset -= mean;
             if peak.offset.abs() > MAX_RELATIVE_WIDTH * mean {
                 let wavelength = TAU / (peak.offset + mean);
-                let allowed = "within a tenth of the mean, in metres";
-                return Err(CoherenceError::refused("wavelength", wavelength, allowed));
+                let refusal = Refusal::new("wavelength", wavelength, "within a tenth of the mean");
+                return Err(refusal.in_unit("m"));
             }
         }
         Self::checked(TAU / mean, peaks)
@@ -174,7 +165,7 @@ impl SpectralLine {
     /// # Errors
     ///
     /// As [`new`](Self::new).
-    pub fn with_linewidth(self, linewidth: f64, shape: LineShape) -> Result<Self, CoherenceError> {
+    pub fn with_linewidth(self, linewidth: f64, shape: LineShape) -> Result<Self, Refusal> {
         let full = full_width(self.wavelength(), linewidth, "linewidth")?;
         let width = match shape {
             LineShape::Gaussian => full / (8.0 * LN_2).sqrt(),
@@ -188,11 +179,10 @@ impl SpectralLine {
         })
     }
 
-    fn checked(wavelength: f64, peaks: Vec<Peak>) -> Result<Self, CoherenceError> {
-        check_wavelength(wavelength)?;
+    fn checked(wavelength: f64, peaks: Vec<Peak>) -> Result<Self, Refusal> {
         check_count(peaks.len())?;
         Ok(Self {
-            wavelength,
+            wavelength: check::positive("wavelength", wavelength, "m")?,
             shape: LineShape::Gaussian,
             width: 0.0,
             peaks,
@@ -436,38 +426,23 @@ fn ladder() -> impl Iterator<Item = f64> {
     near.chain((4..60).map(|power| 2.0_f64.powi(power)))
 }
 
-fn check_count(peaks: usize) -> Result<(), CoherenceError> {
-    if (1..=SpectralLine::MAX_PEAKS).contains(&peaks) {
-        Ok(())
-    } else {
-        Err(CoherenceError::refused(
-            "peaks",
-            peaks as f64,
-            "from 1 to 256",
-        ))
-    }
-}
-
-fn check_wavelength(wavelength: f64) -> Result<(), CoherenceError> {
-    if wavelength > 0.0 && wavelength.is_finite() {
-        Ok(())
-    } else {
-        Err(CoherenceError::refused(
-            "wavelength",
-            wavelength,
-            WAVELENGTH,
-        ))
-    }
+fn check_count(peaks: usize) -> Result<(), Refusal> {
+    let holds = (1..=SpectralLine::MAX_PEAKS).contains(&peaks);
+    check::that(holds, "peaks", peaks, "", "from 1 to 256")
 }
 
 /// Returns a width in wavelength as one in wave number.
-fn full_width(wavelength: f64, width: f64, parameter: &'static str) -> Result<f64, CoherenceError> {
-    check_wavelength(wavelength)?;
-    if width >= 0.0 && width <= MAX_RELATIVE_WIDTH * wavelength {
-        Ok(TAU / wavelength * (width / wavelength))
-    } else {
-        Err(CoherenceError::refused(parameter, width, LINEWIDTH))
-    }
+fn full_width(wavelength: f64, width: f64, parameter: &'static str) -> Result<f64, Refusal> {
+    check::positive("wavelength", wavelength, "m")?;
+    let holds = width >= 0.0 && width <= MAX_RELATIVE_WIDTH * wavelength;
+    check::that(
+        holds,
+        parameter,
+        width,
+        "m",
+        "from 0 to a tenth of the wavelength",
+    )?;
+    Ok(TAU / wavelength * (width / wavelength))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
-use tem00_numerics::{disc_overlap, quadrature::integrate};
+use tem00_numerics::{check, disc_overlap, quadrature::integrate};
 
-use crate::CoherenceError;
+use crate::Refusal;
 
 /// The light of a pixel that met one rough surface, *single*, mixed with light that met several, *multiple*.
 ///
@@ -31,7 +31,7 @@ use crate::CoherenceError;
 /// assert!((coherent.contrast()? - 1.0).abs() < 1e-12);
 /// let broad = MixedLight { with_single: 0.0, within_multiple: 0.0, ..coherent };
 /// assert!((broad.contrast()? - 1.0 / 1.3).abs() < 1e-12);
-/// # Ok::<(), tem00_coherence::CoherenceError>(())
+/// # Ok::<(), tem00_coherence::Refusal>(())
 /// ```
 ///
 /// # References
@@ -70,7 +70,7 @@ impl MixedLight {
     /// # Errors
     ///
     /// Returns an error unless all fields lie between 0 and 1.
-    pub fn contrast(&self) -> Result<f64, CoherenceError> {
+    pub fn contrast(&self) -> Result<f64, Refusal> {
         let [first, second] = self.polarisation;
         let fields = [
             ("multiple", self.multiple),
@@ -81,9 +81,7 @@ impl MixedLight {
             ("polarisation", second),
         ];
         for (name, value) in fields {
-            if !(0.0..=1.0).contains(&value) {
-                return Err(CoherenceError::refused(name, value, "from 0 to 1"));
-            }
+            check::range(name, value, [0.0, 1.0], "")?;
         }
         let single = 1.0 - self.multiple;
         // What two coherency matrices of these degrees have in common, the trace of their product.
@@ -120,14 +118,12 @@ impl MixedLight {
 ///
 /// assert!((1.0 + 2.0 * cascade_variance(0.1)?).sqrt() > 1.66);
 /// assert!((1.0 + 2.0 * cascade_variance(10.0)?).sqrt() < 1.005);
-/// # Ok::<(), tem00_coherence::CoherenceError>(())
+/// # Ok::<(), tem00_coherence::Refusal>(())
 /// ```
-pub fn cascade_variance(relative_aperture: f64) -> Result<f64, CoherenceError> {
+pub fn cascade_variance(relative_aperture: f64) -> Result<f64, Refusal> {
     let r = relative_aperture;
-    if r.is_nan() || r < 0.0 {
-        let allowed = "0 or positive, the sine of the lit part's half-angle over the aperture's";
-        return Err(CoherenceError::refused("relative_aperture", r, allowed));
-    }
+    let allowed = "0 or positive, the sine of the lit part's half-angle over the aperture's";
+    check::that(r >= 0.0, "relative_aperture", r, "", allowed)?;
     // Over the wider of both spectra, the narrower ends the integral.
     let (of_pupil, of_part) = if r < 1.0 { (r, 1.0) } else { (1.0, r.recip()) };
     let integrand = |t: f64| disc_overlap(of_pupil * t).powi(2) * disc_overlap(of_part * t) * t;

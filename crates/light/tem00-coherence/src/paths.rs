@@ -37,7 +37,7 @@ pub struct DelayedLight {
 /// pairs.add(&line, &paths, &paths);
 /// assert!((pairs.self_coherence().unwrap() - 0.5).abs() < 1e-6);
 /// assert!((pairs.coherence_with_single().unwrap() - 0.5).abs() < 1e-6);
-/// # Ok::<(), tem00_coherence::CoherenceError>(())
+/// # Ok::<(), tem00_coherence::Refusal>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PathPairs {

@@ -1,4 +1,4 @@
-use crate::{CoherenceError, LineShape, SourceExtent, SpectralLine};
+use crate::{LineShape, Refusal, SourceExtent, SpectralLine};
 
 /// The light of a laser as a data sheet or a file states it: numbers as they were given. Lengths in metres.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +48,7 @@ impl LaserLight {
     /// # Errors
     ///
     /// Those of [`SpectralLine::from_peaks`].
-    pub fn of_peaks(peaks: Vec<[f64; 2]>, linewidth: f64) -> Result<Self, CoherenceError> {
+    pub fn of_peaks(peaks: Vec<[f64; 2]>, linewidth: f64) -> Result<Self, Refusal> {
         Ok(Self {
             wavelength: SpectralLine::from_peaks(&peaks)?.wavelength(),
             linewidth,
@@ -62,7 +62,7 @@ impl LaserLight {
     /// # Errors
     ///
     /// That of [`SourceExtent::disc`].
-    pub fn extent(&self) -> Result<SourceExtent, CoherenceError> {
+    pub fn extent(&self) -> Result<SourceExtent, Refusal> {
         SourceExtent::disc(self.source_half_angle)
     }
 
@@ -72,7 +72,7 @@ impl LaserLight {
     ///
     /// Those of the constructors of [`SpectralLine`], and an error for a wavelength that is not that of its
     /// [`Peaks`](Spectrum::Peaks).
-    pub fn line(&self) -> Result<SpectralLine, CoherenceError> {
+    pub fn line(&self) -> Result<SpectralLine, Refusal> {
         let &Self {
             wavelength,
             linewidth,
@@ -82,7 +82,11 @@ impl LaserLight {
         match spectrum {
             &Spectrum::Peak(shape) => SpectralLine::new(wavelength, linewidth, shape),
             &Spectrum::Comb(lines) => SpectralLine::comb(wavelength, linewidth, lines as usize)
-                .map_err(|error| error.about("span", "linewidth").about("peaks", "lines")),
+                .map_err(|refusal| match refusal.parameter {
+                    "span" => refusal.named("linewidth"),
+                    "peaks" => refusal.named("lines"),
+                    _ => refusal,
+                }),
             Spectrum::Peaks(peaks) => {
                 let line = SpectralLine::from_peaks(peaks)?;
                 // The mean of the same numbers: the same bits.
@@ -90,7 +94,7 @@ impl LaserLight {
                     line.with_linewidth(linewidth, LineShape::Gaussian)
                 } else {
                     let allowed = "that of the mean wave number of the peaks";
-                    Err(CoherenceError::refused("wavelength", wavelength, allowed))
+                    Err(Refusal::new("wavelength", wavelength, allowed).in_unit("m"))
                 }
             }
         }
@@ -130,22 +134,5 @@ mod tests {
             listed.line(),
             line.with_linewidth(1e-9, LineShape::Gaussian)
         );
-    }
-
-    #[test]
-    fn what_is_no_light_is_refused_by_the_name_of_a_field() {
-        let refused = |light: LaserLight| light.line().unwrap_err().parameter();
-        let light = |linewidth, spectrum| LaserLight {
-            wavelength: 450e-9,
-            linewidth,
-            spectrum,
-            source_half_angle: 0.0,
-        };
-        assert_eq!(refused(LaserLight::monochromatic(f64::NAN)), "wavelength");
-        assert_eq!(refused(light(50e-9, Spectrum::default())), "linewidth");
-        assert_eq!(refused(light(50e-9, Spectrum::Comb(3))), "linewidth");
-        assert_eq!(refused(light(1e-9, Spectrum::Comb(0))), "lines");
-        let peaks = Spectrum::Peaks(vec![[448e-9, 1.0], [453e-9, 3.0]]);
-        assert_eq!(refused(light(0.0, peaks)), "wavelength");
     }
 }

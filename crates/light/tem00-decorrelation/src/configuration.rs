@@ -1,9 +1,8 @@
 use glam::{DMat3, DVec3};
 
-use crate::{
-    CameraFrame, DecorrelationError, Illumination, LineOfSight, RigidMotions,
-    lens::{METRES, check_positive},
-};
+use tem00_numerics::check;
+
+use crate::{CameraFrame, Illumination, LineOfSight, Refusal, RigidMotions, vector::unit};
 
 /// Parameters of a [`Configuration`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +54,7 @@ pub struct ConfigurationData {
 ///
 /// let moved = before.pupil_point_after(&after, DVec2::ZERO).unwrap();
 /// assert!((moved - DVec2::new(180e-6, 0.0)).length() < 1e-9);
-/// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+/// # Ok::<(), tem00_decorrelation::Refusal>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Configuration {
@@ -77,15 +76,8 @@ impl Configuration {
     /// Returns an error if the wavelength is not positive and finite, if the normal is zero or not
     /// finite, if the point does not lie in front of the camera, or if the light comes from no
     /// direction there, as in a focus.
-    pub fn new(data: ConfigurationData) -> Result<Self, DecorrelationError> {
-        let normal = data
-            .normal
-            .try_normalize()
-            .ok_or(DecorrelationError::vector(
-                "normal",
-                data.normal,
-                "finite and not zero",
-            ))?;
+    pub fn new(data: ConfigurationData) -> Result<Self, Refusal> {
+        let normal = unit("normal", data.normal)?;
         let (n1, n2) = normal.any_orthonormal_pair();
         let sight = LineOfSight::new(&data.camera, data.pupil - data.point)?;
         Self {
@@ -106,7 +98,7 @@ impl Configuration {
     ///
     /// Returns an error if the point no longer lies in front of the camera, or if the light comes
     /// from no direction there. The speckle is then decorrelated, if there is any.
-    pub fn moved(&self, motions: &RigidMotions) -> Result<Self, DecorrelationError> {
+    pub fn moved(&self, motions: &RigidMotions) -> Result<Self, Refusal> {
         self.moved_into(motions, self.illumination.moved(&motions.source))
     }
 
@@ -122,7 +114,7 @@ impl Configuration {
         &self,
         motions: &RigidMotions,
         illumination: Illumination,
-    ) -> Result<Self, DecorrelationError> {
+    ) -> Result<Self, Refusal> {
         let point = motions.surface.point(self.point);
         let pupil = motions.camera.point(self.pupil);
         let camera = self.sight.camera().turned(motions.camera.rotation());
@@ -143,7 +135,7 @@ impl Configuration {
     /// # Errors
     ///
     /// Returns an error if that light comes from no direction at the point.
-    pub fn with_illumination(self, illumination: Illumination) -> Result<Self, DecorrelationError> {
+    pub fn with_illumination(self, illumination: Illumination) -> Result<Self, Refusal> {
         Self {
             illumination,
             ..self
@@ -156,20 +148,19 @@ impl Configuration {
     /// # Errors
     ///
     /// Returns an error if the wavelength is not positive and finite.
-    pub fn with_wavelength(self, wavelength: f64) -> Result<Self, DecorrelationError> {
+    pub fn with_wavelength(self, wavelength: f64) -> Result<Self, Refusal> {
         Self { wavelength, ..self }.lit()
     }
 
-    fn lit(self) -> Result<Self, DecorrelationError> {
-        check_positive(self.wavelength, "wavelength", METRES)?;
-        let to_source =
-            self.illumination
-                .direction_from(self.point)
-                .ok_or(DecorrelationError::vector(
-                    "point",
-                    self.point,
-                    "neither at the source nor in a focus, in metres",
-                ))?;
+    fn lit(self) -> Result<Self, Refusal> {
+        check::positive("wavelength", self.wavelength, "m")?;
+        let to_source = self
+            .illumination
+            .direction_from(self.point)
+            .ok_or_else(|| {
+                let allowed = "neither at the source nor in a focus";
+                Refusal::new("point", self.point.to_array(), allowed).in_unit("m")
+            })?;
         Ok(Self { to_source, ..self })
     }
 

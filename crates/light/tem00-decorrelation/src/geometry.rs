@@ -1,8 +1,9 @@
 use glam::DVec2;
+use tem00_numerics::{Shown, check};
 
 use crate::{
-    DecorrelationError, LensData, PupilDistances, ThickLensData,
-    lens::{MAGNIFICATION, METRES, check_f_number, check_positive},
+    LensData, PupilDistances, Refusal, ThickLensData,
+    lens::{check_f_number, check_longer, check_magnification},
 };
 
 /// A camera focused on a surface: a lens, its pupils and the sensor behind it.
@@ -54,7 +55,7 @@ use crate::{
 /// assert!((geometry.speckle_size() - 5.673e-6).abs() < 1e-9);
 /// assert!((geometry.speckle_size_in_pixels() - 1.644).abs() < 1e-3);
 /// assert!((geometry.axial_decorrelation_length() - 47.92e-3).abs() < 0.01e-3);
-/// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+/// # Ok::<(), tem00_decorrelation::Refusal>(())
 /// ```
 ///
 /// # References
@@ -90,7 +91,7 @@ impl ImagingGeometry {
     /// A surface inside the focal length has no real image:
     ///
     /// ```
-    /// use tem00_decorrelation::{DecorrelationError, ImagingGeometry, LensData};
+    /// use tem00_decorrelation::{Refusal, ImagingGeometry, LensData};
     ///
     /// let too_close = ImagingGeometry::from_lens(LensData {
     ///     wavelength: 650e-9,
@@ -99,9 +100,9 @@ impl ImagingGeometry {
     ///     surface_to_pupil: 20e-3,
     ///     pixel_pitch: 3.45e-6,
     /// });
-    /// assert!(matches!(too_close, Err(DecorrelationError::TooShort { .. })));
+    /// assert!(matches!(too_close, Err(Refusal::TooShort { .. })));
     /// ```
-    pub fn from_lens(lens: LensData) -> Result<Self, DecorrelationError> {
+    pub fn from_lens(lens: LensData) -> Result<Self, Refusal> {
         let LensData {
             wavelength,
             focal_length,
@@ -109,16 +110,10 @@ impl ImagingGeometry {
             surface_to_pupil,
             pixel_pitch,
         } = lens;
-        check_positive(focal_length, "focal_length", METRES)?;
+        check::positive("focal_length", focal_length, "m")?;
         check_f_number(f_number)?;
-        if !(surface_to_pupil > focal_length && surface_to_pupil.is_finite()) {
-            return Err(DecorrelationError::TooShort {
-                parameter: "surface_to_pupil",
-                value: surface_to_pupil,
-                limit: "the focal length",
-                minimum: focal_length,
-            });
-        }
+        let limit = "the focal length";
+        check_longer("surface_to_pupil", surface_to_pupil, limit, focal_length)?;
         let beyond_focus = surface_to_pupil - focal_length;
         Self {
             wavelength,
@@ -164,9 +159,9 @@ impl ImagingGeometry {
     /// assert!((geometry.pupil_to_image() - 65e-3).abs() < 1e-12);
     /// assert!((geometry.exit_pupil_diameter() - 10e-3).abs() < 1e-12);
     /// assert!((geometry.speckle_size() - 4.225e-6).abs() < 1e-12);
-    /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+    /// # Ok::<(), tem00_decorrelation::Refusal>(())
     /// ```
-    pub fn from_thick_lens(lens: ThickLensData) -> Result<Self, DecorrelationError> {
+    pub fn from_thick_lens(lens: ThickLensData) -> Result<Self, Refusal> {
         let ThickLensData {
             wavelength,
             focal_length,
@@ -175,18 +170,12 @@ impl ImagingGeometry {
             focus,
             pixel_pitch,
         } = lens;
-        check_positive(focal_length, "focal_length", METRES)?;
+        check::positive("focal_length", focal_length, "m")?;
         check_f_number(f_number)?;
-        check_positive(
-            pupil_magnification,
-            "pupil_magnification",
-            "positive and finite",
-        )?;
+        check::positive("pupil_magnification", pupil_magnification, "")?;
         let (magnification, surface_to_pupil) = focus.resolve(focal_length, pupil_magnification)?;
         let principal_distance = focal_length + focal_length * magnification / pupil_magnification;
-        check_positive(principal_distance, "magnification", MAGNIFICATION).map_err(|_| {
-            DecorrelationError::refused("magnification", magnification, MAGNIFICATION)
-        })?;
+        check_magnification(magnification, &[principal_distance])?;
         Self {
             wavelength,
             focal_length,
@@ -226,9 +215,9 @@ impl ImagingGeometry {
     /// assert!((geometry.focal_length() - 60e-3).abs() < 1e-15);
     /// assert!((geometry.magnification() - 0.25).abs() < 1e-15);
     /// assert!((geometry.speckle_size() - 4.746e-6).abs() < 1e-12);
-    /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+    /// # Ok::<(), tem00_decorrelation::Refusal>(())
     /// ```
-    pub fn from_distances(distances: PupilDistances) -> Result<Self, DecorrelationError> {
+    pub fn from_distances(distances: PupilDistances) -> Result<Self, Refusal> {
         let PupilDistances {
             wavelength,
             surface_to_pupil,
@@ -236,10 +225,10 @@ impl ImagingGeometry {
             pupil_diameter,
             pixel_pitch,
         } = distances;
-        check_positive(surface_to_pupil, "surface_to_pupil", METRES)?;
-        check_positive(pupil_to_image, "pupil_to_image", METRES)?;
+        check::positive("surface_to_pupil", surface_to_pupil, "m")?;
+        check::positive("pupil_to_image", pupil_to_image, "m")?;
         let focal_length = 1.0 / (1.0 / surface_to_pupil + 1.0 / pupil_to_image);
-        check_positive(focal_length, "focal_length", METRES)?;
+        check::positive("focal_length", focal_length, "m")?;
         Self {
             wavelength,
             focal_length,
@@ -259,28 +248,27 @@ impl ImagingGeometry {
     /// # Errors
     ///
     /// Returns an error if the wavelength is not positive and finite or exceeds the pupil.
-    pub fn with_wavelength(self, wavelength: f64) -> Result<Self, DecorrelationError> {
+    pub fn with_wavelength(self, wavelength: f64) -> Result<Self, Refusal> {
         Self { wavelength, ..self }.checked()
     }
 
-    fn checked(self) -> Result<Self, DecorrelationError> {
-        check_positive(self.wavelength, "wavelength", METRES)?;
-        check_positive(self.pixel_pitch, "pixel_pitch", METRES)?;
-        if !(self.pupil_diameter > self.wavelength && self.pupil_diameter.is_finite()) {
-            return Err(DecorrelationError::TooShort {
-                parameter: "pupil_diameter",
-                value: self.pupil_diameter,
-                limit: "the wavelength",
-                minimum: self.wavelength,
-            });
-        }
+    fn checked(self) -> Result<Self, Refusal> {
+        check::positive("wavelength", self.wavelength, "m")?;
+        check::positive("pixel_pitch", self.pixel_pitch, "m")?;
+        let diameter = self.pupil_diameter;
+        check_longer(
+            "pupil_diameter",
+            diameter,
+            "the wavelength",
+            self.wavelength,
+        )?;
         // Half the reciprocal is a numerical aperture, which no lens in air has above one.
         let distance = self.surface_to_pupil.min(self.principal_distance);
-        if distance < 0.5 * self.pupil_diameter {
-            return Err(DecorrelationError::PupilTooWide {
-                pupil_diameter: self.pupil_diameter,
-                distance,
-            });
+        if distance < 0.5 * diameter {
+            let distance = Shown(distance);
+            let allowed =
+                format!("at most twice the distance of {distance} m to surface or sensor");
+            return Err(Refusal::new("pupil_diameter", diameter, allowed).in_unit("m"));
         }
         Ok(self)
     }
@@ -417,7 +405,7 @@ impl ImagingGeometry {
     /// assert!((geometry.depth_of_focus() - 178.6e-6).abs() < 0.1e-6);
     /// assert!((geometry.sensor_depth_of_focus() - 44.65e-6).abs() < 0.01e-6);
     /// assert!((geometry.object_speckle_size() - 5.316e-6).abs() < 1e-9);
-    /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+    /// # Ok::<(), tem00_decorrelation::Refusal>(())
     /// ```
     pub fn depth_of_focus(&self) -> f64 {
         0.5 * self.axial_decorrelation_length()

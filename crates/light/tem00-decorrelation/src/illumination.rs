@@ -1,6 +1,9 @@
 use glam::DVec3;
 
-use crate::{DecorrelationError, RigidMotion, Wavefront, wavefront::unit_direction};
+use crate::{
+    Refusal, RigidMotion, Wavefront,
+    vector::{finite, unit},
+};
 
 /// A light source in the world, as far as the speckle it makes is concerned: from where it lights
 /// each point.
@@ -18,7 +21,7 @@ use crate::{DecorrelationError, RigidMotion, Wavefront, wavefront::unit_directio
 /// let line = Illumination::near(DVec3::ZERO, fan)?;
 /// let x = DVec3::new(0.1, 0.0, 0.0);
 /// assert_eq!(line.direction_from(x), source.direction_from(x));
-/// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+/// # Ok::<(), tem00_decorrelation::Refusal>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Illumination {
@@ -42,8 +45,8 @@ impl Illumination {
     /// # Errors
     ///
     /// Returns an error if the direction is zero or not finite.
-    pub fn collimated(direction_to_source: DVec3) -> Result<Self, DecorrelationError> {
-        let kind = Kind::Collimated(unit_direction(direction_to_source)?);
+    pub fn collimated(direction_to_source: DVec3) -> Result<Self, Refusal> {
+        let kind = Kind::Collimated(unit("direction_to_source", direction_to_source)?);
         Ok(Self { kind })
     }
 
@@ -52,14 +55,8 @@ impl Illumination {
     /// # Errors
     ///
     /// Returns an error if the position is not finite.
-    pub fn point_source(position: DVec3) -> Result<Self, DecorrelationError> {
-        if !position.is_finite() {
-            return Err(DecorrelationError::vector(
-                "position",
-                position,
-                "finite, in metres",
-            ));
-        }
+    pub fn point_source(position: DVec3) -> Result<Self, Refusal> {
+        finite("position", position)?;
         Ok(Self {
             kind: Kind::PointSource(position),
         })
@@ -74,14 +71,8 @@ impl Illumination {
     /// # Errors
     ///
     /// Returns an error if the position is not finite.
-    pub fn near(position: DVec3, wavefront: Wavefront) -> Result<Self, DecorrelationError> {
-        if !position.is_finite() {
-            return Err(DecorrelationError::vector(
-                "position",
-                position,
-                "finite, in metres",
-            ));
-        }
+    pub fn near(position: DVec3, wavefront: Wavefront) -> Result<Self, Refusal> {
+        finite("position", position)?;
         Ok(Self {
             kind: Kind::Near {
                 reference: position,
@@ -128,25 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn positions_that_are_not_finite_are_rejected() {
-        let wave = Wavefront::plane(DVec3::Z).unwrap();
-        for bad in [DVec3::NAN, DVec3::INFINITY] {
-            for result in [
-                Illumination::point_source(bad),
-                Illumination::near(bad, wave),
-            ] {
-                assert!(
-                    matches!(
-                        result,
-                        Err(DecorrelationError::Vector {
-                            parameter: "position",
-                            ..
-                        })
-                    ),
-                    "{result:?}"
-                );
-            }
-        }
+    fn there_is_no_light_in_a_source() {
         let source = Illumination::point_source(DVec3::X).unwrap();
         assert_eq!(source.direction_from(DVec3::X), None, "in the source");
     }

@@ -1,4 +1,6 @@
-use crate::DecorrelationError;
+use tem00_numerics::{Shown, check};
+
+use crate::Refusal;
 
 /// A thin lens at a known distance from the surface, from which an
 /// [`ImagingGeometry`](crate::ImagingGeometry) is made.
@@ -72,38 +74,22 @@ pub enum Focus {
 
 impl Focus {
     /// Returns `m` and `L`, in metres, for the focal length `f`, in metres, and `m_p`.
-    pub(crate) fn resolve(self, f: f64, m_p: f64) -> Result<(f64, f64), DecorrelationError> {
-        use DecorrelationError as E;
+    pub(crate) fn resolve(self, f: f64, m_p: f64) -> Result<(f64, f64), Refusal> {
         let (m, surface_to_pupil) = match self {
             Self::Magnification(m) => (m, f / m + f / m_p),
             Self::SurfaceToPrincipalPlane(s) => {
-                if !(s > f && s.is_finite()) {
-                    return Err(E::TooShort {
-                        parameter: "surface_to_principal_plane",
-                        value: s,
-                        limit: "the focal length",
-                        minimum: f,
-                    });
-                }
+                check_longer("surface_to_principal_plane", s, "the focal length", f)?;
                 (f / (s - f), (s - f) + f / m_p)
             }
             Self::SurfaceToPupil(surface_to_pupil) => {
                 let minimum = f / m_p;
-                if !(surface_to_pupil > minimum && surface_to_pupil.is_finite()) {
-                    return Err(E::TooShort {
-                        parameter: "surface_to_pupil",
-                        value: surface_to_pupil,
-                        limit: "the focal length over the pupil magnification",
-                        minimum,
-                    });
-                }
+                let limit = "the focal length over the pupil magnification";
+                check_longer("surface_to_pupil", surface_to_pupil, limit, minimum)?;
                 (f / (surface_to_pupil - minimum), surface_to_pupil)
             }
         };
-        check_positive(m, "magnification", MAGNIFICATION)?;
         // Finite numbers near the ends of their range have a sum or quotient that is not.
-        check_positive(surface_to_pupil, "magnification", MAGNIFICATION)
-            .map_err(|_| E::refused("magnification", m, MAGNIFICATION))?;
+        check_magnification(m, &[m, surface_to_pupil])?;
         Ok((m, surface_to_pupil))
     }
 }
@@ -126,32 +112,29 @@ pub struct PupilDistances {
     pub pixel_pitch: f64,
 }
 
-pub(crate) fn check_positive(
-    x: f64,
+/// Refuses a length that does not exceed its limit, in metres.
+pub(crate) fn check_longer(
     parameter: &'static str,
-    allowed: &'static str,
-) -> Result<(), DecorrelationError> {
-    if x > 0.0 && x.is_finite() {
-        Ok(())
-    } else {
-        Err(DecorrelationError::refused(parameter, x, allowed))
+    length: f64,
+    limit: &str,
+    minimum: f64,
+) -> Result<(), Refusal> {
+    if length > minimum && length.is_finite() {
+        return Ok(());
     }
+    let allowed = format!("finite and exceed {limit} of {} m", Shown(minimum));
+    Err(Refusal::new(parameter, length, allowed).in_unit("m"))
 }
 
-/// Allowed for magnifications.
-pub(crate) const MAGNIFICATION: &str =
-    "positive and finite, with the distances that follow from it";
-/// Allowed for lengths.
-pub(crate) const METRES: &str = "positive and finite, in metres";
+/// Refuses a magnification with which one of these numbers is not positive and finite.
+pub(crate) fn check_magnification(magnification: f64, numbers: &[f64]) -> Result<(), Refusal> {
+    let holds = numbers.iter().all(|x| *x > 0.0 && x.is_finite());
+    let allowed = "positive and finite, with the distances that follow from it";
+    check::that(holds, "magnification", magnification, "", allowed)
+}
 
-pub(crate) fn check_f_number(f_number: f64) -> Result<(), DecorrelationError> {
-    if f_number >= 0.5 && f_number.is_finite() {
-        Ok(())
-    } else {
-        Err(DecorrelationError::refused(
-            "f_number",
-            f_number,
-            "finite and at least 0.5, the limit of any lens in air",
-        ))
-    }
+pub(crate) fn check_f_number(f_number: f64) -> Result<(), Refusal> {
+    let holds = f_number >= 0.5 && f_number.is_finite();
+    let allowed = "finite and at least 0.5, the limit of any lens in air";
+    check::that(holds, "f_number", f_number, "", allowed)
 }

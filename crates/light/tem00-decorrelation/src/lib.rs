@@ -52,7 +52,6 @@
 pub mod closed_form;
 mod configuration;
 mod correlation;
-mod error;
 mod frame;
 mod geometry;
 mod illumination;
@@ -60,6 +59,7 @@ mod lens;
 mod motion;
 mod rigid;
 mod rigid_change;
+mod vector;
 mod wavefront;
 
 pub use configuration::{Configuration, ConfigurationData};
@@ -67,7 +67,6 @@ pub use correlation::{
     CorrelationLaw, add_axial_shifts, axial_correlation, equivalent_axial_shift,
     equivalent_pupil_shift, pupil_overlap_correlation,
 };
-pub use error::DecorrelationError;
 pub use frame::{CameraFrame, LineOfSight};
 pub use geometry::ImagingGeometry;
 pub use glam::{DMat3, DVec2, DVec3};
@@ -76,6 +75,7 @@ pub use lens::{Focus, LensData, PupilDistances, ThickLensData};
 pub use motion::SpeckleMotion;
 pub use rigid::{RigidMotion, RigidMotions};
 pub use rigid_change::{ChangedPoint, PointChange, RigidChange};
+pub use tem00_numerics::Refusal;
 pub use wavefront::Wavefront;
 
 /// The smallest cosine between two directions that still counts as different from zero, `2⁻²⁶`.

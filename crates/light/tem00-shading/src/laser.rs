@@ -4,8 +4,8 @@ mod wave;
 
 use glam::DVec3;
 use tem00_beam::{
-    AstigmaticBeam, BeamError, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight,
-    LineProfile, LocatedBeam, NextEvent, NextEventSlices, Placement, SpotLight, TabulatedLineLight,
+    AstigmaticBeam, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight, LineProfile,
+    LocatedBeam, NextEvent, NextEventSlices, Placement, Refusal, SpotLight, TabulatedLineLight,
 };
 use tem00_coherence::{SourceExtent, SpectralLine};
 use tem00_decorrelation::RigidMotion;
@@ -86,7 +86,7 @@ impl Laser {
     ///
     /// # Errors
     ///
-    /// Returns an error if the beam is not possible (see [`BeamError`](tem00_beam::BeamError)), if
+    /// Returns an error if the beam is not possible (see [`GaussianBeam`](tem00_beam::GaussianBeam)), if
     /// `look_at` is the position, or if the line direction is parallel to the axis.
     pub fn new(description: LaserDescription) -> Result<Self, ShadingError> {
         let placement = Placement {
@@ -281,7 +281,7 @@ impl Source {
     }
 }
 
-fn beam(wavelength: f64, waist_radius: f64, m_squared: f64) -> Result<GaussianBeam, BeamError> {
+fn beam(wavelength: f64, waist_radius: f64, m_squared: f64) -> Result<GaussianBeam, Refusal> {
     GaussianBeam::from_waist(wavelength, waist_radius)?.with_m_squared(m_squared)
 }
 
@@ -290,7 +290,7 @@ fn line_light(
     line: &LaserLine,
     placement: &Placement,
     power: f64,
-) -> Result<LineLight<f64>, BeamError> {
+) -> Result<LineLight<f64>, Refusal> {
     match line.profile() {
         LineProfile::Tabulated(_) => {
             TabulatedLineLight::place(line, placement, power).map(|light| light.line)

@@ -3,9 +3,9 @@
 use std::io::Write;
 
 use tem00_decorrelation::{
-    CameraFrame, Configuration, ConfigurationData, DVec2, DVec3, DecorrelationError, Focus,
-    Illumination, ImagingGeometry, RigidMotion, RigidMotions, ThickLensData,
-    equivalent_axial_shift, equivalent_pupil_shift,
+    CameraFrame, Configuration, ConfigurationData, DVec2, DVec3, Focus, Illumination,
+    ImagingGeometry, RigidMotion, RigidMotions, ThickLensData, equivalent_axial_shift,
+    equivalent_pupil_shift,
 };
 use tem00_report::{
     failure::Failure,
@@ -110,7 +110,7 @@ impl Change {
 }
 
 impl Speckle {
-    fn new(args: &SpeckleArgs) -> Result<Self, DecorrelationError> {
+    fn new(args: &SpeckleArgs) -> Result<Self, tem00_decorrelation::Refusal> {
         let geometry = ImagingGeometry::from_thick_lens(ThickLensData {
             wavelength: args.wavelength,
             focal_length: args.focal_length,
@@ -251,7 +251,7 @@ fn length(metres: f64) -> Cell {
 fn decorrelation(
     geometry: &ImagingGeometry,
     angle: f64,
-) -> Result<Vec<Decorrelation>, DecorrelationError> {
+) -> Result<Vec<Decorrelation>, tem00_decorrelation::Refusal> {
     let cell = geometry.object_speckle_size();
     let axial = geometry.axial_decorrelation_length();
     let [across, tilt, wavelength] = pupil_shifts(geometry, angle)?;
@@ -288,7 +288,10 @@ fn decorrelation(
 
 /// Returns how far the speckle field slides over the pupil: per length across the sight, per radian of
 /// tilt, in metres, and per relative change of the wavelength, in metres.
-fn pupil_shifts(geometry: &ImagingGeometry, angle: f64) -> Result<[f64; 3], DecorrelationError> {
+fn pupil_shifts(
+    geometry: &ImagingGeometry,
+    angle: f64,
+) -> Result<[f64; 3], tem00_decorrelation::Refusal> {
     /// Small enough for the first order, large enough for rounding.
     const STEP: f64 = 1e-6;
     let pupil = geometry.surface_to_pupil() * DVec3::Z;

@@ -40,7 +40,7 @@ pub(crate) fn read(root: &Document<'_>) -> Result<MovingCamera, Problem> {
         .ok_or_else(|| Problem::new("the scene needs a camera: a section [camera]"))?;
     let description = description(&section)?;
     let camera = Camera::new(description)
-        .map_err(|error| rejected(&error, error.parameter(), &[&section]))?;
+        .map_err(|error| rejected(&error, Some(error.parameter), &[&section]))?;
     Ok(MovingCamera {
         trajectory: trajectory(&section, pivot(&section, camera.position())?)?,
         camera,

@@ -2,7 +2,7 @@ use core::f64::consts::PI;
 use core::ops::Bound;
 
 use glam::DVec3;
-use tem00_beam::{AngularProfile, BeamError, FanGeometry, FocusCurve, GaussianBeam, LineProfile};
+use tem00_beam::{AngularProfile, FanGeometry, FocusCurve, GaussianBeam, LineProfile};
 use tem00_config::{
     ANGLE, Choice, Document, LENGTH, NUMBER, POWER, Problem, Section, Value, read_laser_light,
     rejected,
@@ -197,16 +197,12 @@ fn table(section: &Section<'_>) -> Result<AngularProfile, Problem> {
     let relative: Result<Vec<f64>, Problem> =
         powers.iter().map(|power| power.quantity(&NUMBER)).collect();
     AngularProfile::new(&radians?, &relative?).map_err(|error| {
-        let culprit = match error {
-            BeamError::Entry {
-                parameter: "angles",
-                index,
-                ..
-            } => angles.get(index),
-            BeamError::Entry { index, .. } => powers.get(index),
-            _ => None,
+        let list = if error.parameter == "angles" {
+            &angles
+        } else {
+            &powers
         };
-        match culprit {
+        match error.index.and_then(|index| list.get(index)) {
             Some(value) => value.problem(error),
             None => table.problem(error),
         }

@@ -1,8 +1,6 @@
 use core::{error, fmt};
 
-use tem00_camera::CameraError;
-use tem00_coherence::CoherenceError;
-use tem00_decorrelation::DecorrelationError;
+use tem00_numerics::Refusal;
 use tem00_shading::ShadingError;
 use tem00_speckle::SpeckleError;
 
@@ -26,12 +24,8 @@ pub enum TracerError {
         /// The allowed values.
         allowed: &'static str,
     },
-    /// The camera is not possible.
-    Camera(CameraError),
-    /// The coherence of the light is not possible.
-    Coherence(CoherenceError),
-    /// The camera's imaging geometry is not possible.
-    Imaging(DecorrelationError),
+    /// An argument of the camera, the light or a motion is refused.
+    Refused(Refusal),
     /// The speckle pattern is not possible.
     Speckle(SpeckleError),
     /// The light of a laser or its speckle is not possible.
@@ -61,7 +55,7 @@ impl TracerError {
             Self::OutOfRange { parameter, .. } | Self::Direction { parameter, .. } => {
                 Some(parameter)
             }
-            Self::Camera(source) => source.parameter(),
+            Self::Refused(source) => Some(source.parameter),
             Self::Shading(source) => source.parameter(),
             _ => None,
         }
@@ -77,9 +71,7 @@ impl fmt::Display for TracerError {
                 allowed,
             } => write!(f, "{parameter} must be {allowed}, got {value}"),
             Self::Direction { parameter, allowed } => write!(f, "{parameter} must be {allowed}"),
-            Self::Camera(source) => source.fmt(f),
-            Self::Coherence(source) => source.fmt(f),
-            Self::Imaging(source) => source.fmt(f),
+            Self::Refused(source) => source.fmt(f),
             Self::Speckle(source) => source.fmt(f),
             Self::Shading(source) => source.fmt(f),
             Self::PatternMemory { needed, allowed } => write!(
@@ -97,21 +89,9 @@ impl fmt::Display for TracerError {
 
 impl error::Error for TracerError {}
 
-impl From<CameraError> for TracerError {
-    fn from(source: CameraError) -> Self {
-        Self::Camera(source)
-    }
-}
-
-impl From<CoherenceError> for TracerError {
-    fn from(source: CoherenceError) -> Self {
-        Self::Coherence(source)
-    }
-}
-
-impl From<DecorrelationError> for TracerError {
-    fn from(source: DecorrelationError) -> Self {
-        Self::Imaging(source)
+impl From<Refusal> for TracerError {
+    fn from(source: Refusal) -> Self {
+        Self::Refused(source)
     }
 }
 

@@ -232,13 +232,6 @@ fn depth_of_focus_is_where_the_radius_has_grown() {
     assert!((depth / expected - 1.0).abs() < 1e-7, "{depth}");
     let confocal = beam.depth_of_focus(SQRT_2).unwrap() / beam.confocal_parameter();
     assert!((confocal - 1.0).abs() < 1e-15, "{confocal}");
-    for bad in [1.0, 0.5, -2.0, f64::NAN, f64::INFINITY] {
-        let result = beam.depth_of_focus(bad);
-        assert!(
-            matches!(result, Err(e) if e.parameter() == "growth"),
-            "{bad}"
-        );
-    }
 }
 
 #[test]
@@ -331,68 +324,14 @@ fn flux_is_zero_where_the_irradiance_vanishes() {
 }
 
 #[test]
-fn constructor_rejects_values_that_are_not_lengths() {
-    for bad in [0.0, -1.0, 1e-31, 1e31, f64::NAN, f64::INFINITY] {
-        assert!(
-            matches!(
-                GaussianBeam::from_waist(bad, 100e-6),
-                Err(e) if e.parameter() == "wavelength"
-            ),
-            "wavelength {bad}"
-        );
-        assert!(
-            matches!(
-                GaussianBeam::from_divergence(bad, 1e-3),
-                Err(e) if e.parameter() == "wavelength"
-            ),
-            "wavelength {bad}"
-        );
-        assert!(
-            matches!(
-                GaussianBeam::from_waist(HENE, bad),
-                Err(e) if e.parameter() == "waist_radius"
-            ),
-            "waist {bad}"
-        );
-    }
-}
-
-#[test]
-fn constructor_rejects_impossible_divergence_and_quality() {
-    for bad in [0.0, -1e-3, 0.500_001, f64::NAN, f64::INFINITY] {
-        assert!(
-            matches!(
-                GaussianBeam::from_divergence(HENE, bad),
-                Err(e) if e.parameter() == "divergence"
-            ),
-            "divergence {bad}"
-        );
-    }
-    assert!(
-        matches!(
-            GaussianBeam::from_divergence(HENE, 1e-300),
-            Err(e) if e.parameter() == "waist_radius"
-        ),
-        "a waist beyond all lengths"
-    );
-    for bad in [0.999, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(
-            matches!(beam().with_m_squared(bad), Err(e) if e.parameter() == "m_squared"),
-            "M² = {bad}"
-        );
-    }
-}
-
-#[test]
 fn paraxial_limit_follows_m_squared() {
     let tight = GaussianBeam::from_waist(HENE, 1.01 * 2.0 * HENE / PI).unwrap();
     assert!(tight.divergence() < 0.5, "{}", tight.divergence());
-    let error = tight.with_m_squared(1.1).unwrap_err();
-    let minimum = 1.1 * 2.0 * HENE / PI;
-    assert!(
-        matches!(error, BeamError::NotParaxial { minimum: m, .. } if (m / minimum - 1.0).abs() < 1e-12),
-        "{error}"
-    );
+    let limit = 1.1 * 2.0 * HENE / PI;
+    for (waist, possible) in [(0.999_999 * limit, false), (1.000_001 * limit, true)] {
+        let beam = GaussianBeam::from_waist(HENE, waist).unwrap();
+        assert_eq!(beam.with_m_squared(1.1).is_ok(), possible, "{waist}");
+    }
 }
 
 proptest! {

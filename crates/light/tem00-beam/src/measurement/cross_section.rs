@@ -3,8 +3,10 @@ mod marginal;
 
 use core::f64::consts::{LN_2, PI};
 
-use crate::BeamError;
-use crate::range::{check, check_length};
+use tem00_numerics::check;
+
+use crate::Refusal;
+use crate::range::length;
 use marginal::{Interval, power_beyond};
 
 /// The irradiance of a Gaussian beam of 1 W over a plane across it.
@@ -31,7 +33,7 @@ use marginal::{Interval, power_beyond};
 /// assert!((spot.power_in_circle(1e-3) - 0.8647).abs() < 1e-4); // 1 − e⁻²
 /// assert!((spot.power_in_circle_at([0.2e-3, 0.0], 1e-3) - 0.8430).abs() < 1e-4);
 /// assert!((spot.power_past_knife_edge(0.5e-3) - 0.1587).abs() < 1e-4); // one σ
-/// # Ok::<(), tem00_beam::BeamError>(())
+/// # Ok::<(), tem00_beam::Refusal>(())
 /// ```
 ///
 /// # References
@@ -49,9 +51,9 @@ impl CrossSection {
     /// # Errors
     ///
     /// Returns an error if a radius is not a length from 1e−30 m to 1e30 m.
-    pub fn new(radii: [f64; 2]) -> Result<Self, BeamError> {
+    pub fn new(radii: [f64; 2]) -> Result<Self, Refusal> {
         for radius in radii {
-            check_length("radius", radius)?;
+            length("radius", radius)?;
         }
         Ok(Self { radii })
     }
@@ -106,7 +108,7 @@ impl CrossSection {
     /// assert!((along_x - 1.2816e-3).abs() < 1e-7);
     /// assert!((spot.power_past_knife_edge(along_x / 2.0) - 0.1).abs() < 1e-12);
     /// assert!((along_y / along_x - 2.0).abs() < 1e-12);
-    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// # Ok::<(), tem00_beam::Refusal>(())
     /// ```
     pub fn knife_edge_width(&self) -> [f64; 2] {
         // The standard normal variate exceeds this value with a probability of 10 %; from −z σ to
@@ -155,7 +157,7 @@ impl CrossSection {
     /// let beside = spot.power_in_circle_at([20e-6, 0.0], 25e-6);
     /// assert!((centred - 0.9853).abs() < 1e-4);
     /// assert!((beside - 0.6726).abs() < 1e-4);
-    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// # Ok::<(), tem00_beam::Refusal>(())
     /// ```
     pub fn power_in_circle_at(&self, centre: [f64; 2], radius: f64) -> f64 {
         circle::power_in_circle(self.radii, centre, radius)
@@ -180,10 +182,10 @@ impl CrossSection {
     ///
     /// let spot = CrossSection::new([1e-3, 1e-3])?;
     /// assert!((spot.circle_radius(0.99)? - 1.517e-3).abs() < 1e-6);
-    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// # Ok::<(), tem00_beam::Refusal>(())
     /// ```
-    pub fn circle_radius(&self, fraction: f64) -> Result<f64, BeamError> {
-        check(
+    pub fn circle_radius(&self, fraction: f64) -> Result<f64, Refusal> {
+        check::that(
             (0.0..1.0).contains(&fraction),
             "fraction",
             fraction,

@@ -1,8 +1,9 @@
 //! Ray matrices of one transverse axis.
 
+use tem00_numerics::check;
+
 use crate::optics::ComplexBeamParameter;
-use crate::range::check;
-use crate::{BeamError, GaussianBeam, LocatedBeam};
+use crate::{GaussianBeam, LocatedBeam, Refusal};
 
 pub(crate) mod elements;
 mod resonator;
@@ -48,7 +49,7 @@ mod resonator;
 /// let beam = GaussianBeam::from_waist(632.8e-9, 0.5e-3)?;
 /// let wide = expander.transform(&LocatedBeam::new(beam, 0.0)?)?;
 /// assert!((wide.beam().waist_radius() - 2e-3).abs() < 1e-15);
-/// # Ok::<(), tem00_beam::BeamError>(())
+/// # Ok::<(), tem00_beam::Refusal>(())
 /// ```
 ///
 /// # References
@@ -76,25 +77,12 @@ impl AbcdMatrix {
     ///
     /// Returns an error if an entry is not finite, or if the determinant is not a positive finite
     /// number.
-    pub fn new(a: f64, b: f64, c: f64, d: f64) -> Result<Self, BeamError> {
-        if let Some(bad) = [a, b, c, d].into_iter().find(|entry| !entry.is_finite()) {
-            return Err(BeamError::out_of_range(
-                "matrix",
-                bad,
-                "",
-                "finite in all entries",
-            ));
-        }
+    pub fn new(a: f64, b: f64, c: f64, d: f64) -> Result<Self, Refusal> {
+        check::each(&[a, b, c, d], |entry| check::finite("matrix", entry, ""))?;
         // The first product is not rounded, the rounding of the second is put back (Kahan).
         let product = b * c;
         let determinant = a.mul_add(d, -product) - b.mul_add(c, -product);
-        check(
-            determinant > 0.0 && determinant.is_finite(),
-            "determinant",
-            determinant,
-            "",
-            "positive and finite",
-        )?;
+        check::positive("determinant", determinant, "")?;
         Ok(Self {
             a,
             b,
@@ -116,7 +104,7 @@ impl AbcdMatrix {
     /// let imaging = space.then(AbcdMatrix::thin_lens(0.1)?).then(space);
     /// assert!(imaging.b().abs() < 1e-15, "2f in front, 2f behind: an image");
     /// assert!((imaging.a() + 1.0).abs() < 1e-15, "upside down, life-size");
-    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// # Ok::<(), tem00_beam::Refusal>(())
     /// ```
     #[must_use]
     pub fn then(self, next: Self) -> Self {
@@ -206,7 +194,7 @@ impl AbcdMatrix {
     pub fn transform_parameter(
         &self,
         parameter: &ComplexBeamParameter,
-    ) -> Result<ComplexBeamParameter, BeamError> {
+    ) -> Result<ComplexBeamParameter, Refusal> {
         let (distance, scale) = self.distance_and_scale(parameter);
         let rayleigh_range = self.determinant * (parameter.rayleigh_range() / scale) / scale;
         ComplexBeamParameter::new(distance, rayleigh_range)
@@ -227,7 +215,7 @@ impl AbcdMatrix {
     /// Returns an error if the wavelength or the waist leaves the range of 1e−30 m to 1e30 m, if
     /// the waist is below the paraxial limit `2 M² λ' / π`, or if it is farther than 1e30 m from
     /// the output plane.
-    pub fn transform(&self, beam: &LocatedBeam) -> Result<LocatedBeam, BeamError> {
+    pub fn transform(&self, beam: &LocatedBeam) -> Result<LocatedBeam, Refusal> {
         let (distance, scale) = self.distance_and_scale(&beam.complex_parameter());
         let beam = beam.beam();
         let wavelength = beam.wavelength() * self.determinant;

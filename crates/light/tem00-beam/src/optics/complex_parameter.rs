@@ -1,9 +1,10 @@
 use core::f64::consts::PI;
 
 use num_complex::Complex64;
+use tem00_numerics::check;
 
-use crate::range::{check, check_coordinate, check_curvature, check_length};
-use crate::{BeamError, GaussianBeam, LocatedBeam};
+use crate::range::{coordinate, curvature as checked_curvature, length};
+use crate::{GaussianBeam, LocatedBeam, Refusal};
 
 /// The complex beam parameter `q` of a Gaussian beam in one plane.
 ///
@@ -36,7 +37,7 @@ use crate::{BeamError, GaussianBeam, LocatedBeam};
 /// assert!((q.curvature() - 10.0).abs() < 1e-12); // 1 / (2 z_R)
 /// assert!((q.radius(632.8e-9)? / 100.36e-6 - std::f64::consts::SQRT_2).abs() < 1e-4);
 /// assert_eq!(q.to_complex(), Complex64::new(0.05, 0.05));
-/// # Ok::<(), tem00_beam::BeamError>(())
+/// # Ok::<(), tem00_beam::Refusal>(())
 /// ```
 ///
 /// # References
@@ -57,18 +58,10 @@ impl ComplexBeamParameter {
     ///
     /// Returns an error if `distance_from_waist` is not finite or beyond 1e30 m, or if
     /// `rayleigh_range` does not lie between 1e−100 m and 1e100 m.
-    pub fn new(distance_from_waist: f64, rayleigh_range: f64) -> Result<Self, BeamError> {
-        check_coordinate("waist_distance", distance_from_waist)?;
-        check(
-            (1e-100..=1e100).contains(&rayleigh_range),
-            "rayleigh_range",
-            rayleigh_range,
-            "m",
-            "between 1e-100 m and 1e100 m",
-        )?;
+    pub fn new(distance_from_waist: f64, rayleigh_range: f64) -> Result<Self, Refusal> {
         Ok(Self {
-            distance_from_waist,
-            rayleigh_range,
+            distance_from_waist: coordinate("waist_distance", distance_from_waist)?,
+            rayleigh_range: check::range("rayleigh_range", rayleigh_range, [1e-100, 1e100], "m")?,
         })
     }
 
@@ -96,16 +89,16 @@ impl ComplexBeamParameter {
     /// let q = ComplexBeamParameter::from_radius_and_curvature(1e-3, -10.0, 650e-9)?;
     /// assert!((q.distance_from_waist() + 0.1).abs() < 1e-4);
     /// assert!((q.rayleigh_range() - 2.07e-3).abs() < 1e-5); // (λ/π) (f/w)²
-    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// # Ok::<(), tem00_beam::Refusal>(())
     /// ```
     pub fn from_radius_and_curvature(
         radius: f64,
         curvature: f64,
         effective_wavelength: f64,
-    ) -> Result<Self, BeamError> {
-        check_length("radius", radius)?;
-        check_curvature(curvature)?;
-        check_length("wavelength", effective_wavelength)?;
+    ) -> Result<Self, Refusal> {
+        length("radius", radius)?;
+        checked_curvature(curvature)?;
+        length("wavelength", effective_wavelength)?;
         let spread = effective_wavelength / (PI * radius * radius);
         let modulus = spread.hypot(curvature);
         Self::new(curvature / modulus / modulus, spread / modulus / modulus)
@@ -142,8 +135,8 @@ impl ComplexBeamParameter {
     /// # Errors
     ///
     /// Returns an error if `effective_wavelength` is not a length from 1e−30 m to 1e30 m.
-    pub fn radius(&self, effective_wavelength: f64) -> Result<f64, BeamError> {
-        check_length("wavelength", effective_wavelength)?;
+    pub fn radius(&self, effective_wavelength: f64) -> Result<f64, Refusal> {
+        length("wavelength", effective_wavelength)?;
         Ok(self.modulus() * (effective_wavelength / (PI * self.rayleigh_range)).sqrt())
     }
 
@@ -165,12 +158,8 @@ impl ComplexBeamParameter {
     /// Returns an error if `wavelength` is not a length from 1e−30 m to 1e30 m, if `m_squared` is
     /// not a finite number of at least 1, or if the waist that follows is below the paraxial limit
     /// or beyond 1e30 m.
-    pub fn to_located_beam(
-        &self,
-        wavelength: f64,
-        m_squared: f64,
-    ) -> Result<LocatedBeam, BeamError> {
-        check(
+    pub fn to_located_beam(&self, wavelength: f64, m_squared: f64) -> Result<LocatedBeam, Refusal> {
+        check::that(
             m_squared >= 1.0 && m_squared.is_finite(),
             "m_squared",
             m_squared,

@@ -63,7 +63,7 @@ use crate::real::Real;
 ///
 /// let upright = light.irradiance([0.0, 0.0, 0.0]);
 /// assert!((irradiance / upright - 0.5).abs() < 1e-12);
-/// # Ok::<(), tem00_beam::BeamError>(())
+/// # Ok::<(), tem00_beam::Refusal>(())
 /// ```
 ///
 /// A scene holds lights of several kinds as trait objects:
@@ -95,7 +95,7 @@ use crate::real::Real;
 /// assert!((brightest.power() - 5e-3).abs() < 1e-18);
 /// assert!((brightest.wavelength() - 650e-9).abs() < 1e-18);
 /// assert!(brightest.axis()[2] < -0.999_999);
-/// # Ok::<(), tem00_beam::BeamError>(())
+/// # Ok::<(), tem00_beam::Refusal>(())
 /// ```
 pub trait Emitter<T: Real>: PhaseSpace<T> {
     /// Returns the power, in watts.

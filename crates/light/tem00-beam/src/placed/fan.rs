@@ -3,6 +3,8 @@
 
 use core::f64::consts::FRAC_PI_2;
 
+use tem00_numerics::vectorised;
+
 use super::emitter::Emitter;
 use super::frame::Frame;
 use super::line::LineLight;
@@ -12,7 +14,6 @@ use super::record::RayPdf;
 use crate::normal::{normal_density, standard_normal};
 use crate::profile::{SlopeDensity, SlopeProfile, Variable, secant};
 use crate::real::Real;
-use tem00_numerics::vectorised;
 
 /// A laser line with a profile along its fan.
 pub trait Fan {

@@ -4,7 +4,7 @@ use super::rows::{DEFAULT_CUTOFF, check_digits, checked_power, first_three, row,
 use crate::normal::normal_density;
 use crate::profile::{SlopeDensity, SlopeProfile};
 use crate::real::Real;
-use crate::{BeamError, FocusCurve, LaserLine, LineProfile};
+use crate::{FocusCurve, LaserLine, LineProfile, Refusal};
 
 /// A laser line in a scene, prepared for a renderer.
 ///
@@ -70,7 +70,7 @@ use crate::{BeamError, FocusCurve, LaserLine, LineProfile};
 ///
 /// assert!(light.next_event([0.03, 0.0, 0.0]).is_some());
 /// assert!(light.next_event([0.0, 0.03, 0.0]).is_none());
-/// # Ok::<(), tem00_beam::BeamError>(())
+/// # Ok::<(), tem00_beam::Refusal>(())
 /// ```
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -122,9 +122,13 @@ impl LineLight<f64> {
     /// lie between 0 and 1e100 W, if the placement's axes are not finite, have no length, or are
     /// parallel, or if the profile of the line is tabulated: a
     /// [`TabulatedLineLight`](crate::TabulatedLineLight) places that.
-    pub fn place(line: &LaserLine, placement: &Placement, power: f64) -> Result<Self, BeamError> {
+    pub fn place(line: &LaserLine, placement: &Placement, power: f64) -> Result<Self, Refusal> {
         match line.profile() {
-            LineProfile::Tabulated(_) => Err(BeamError::TabulatedProfile),
+            LineProfile::Tabulated(_) => Err(Refusal::new(
+                "line",
+                "a tabulated profile",
+                "placed as a TabulatedLineLight where its profile is a table",
+            )),
             _ => Self::prepare(line, placement, power),
         }
     }
@@ -134,7 +138,7 @@ impl LineLight<f64> {
         line: &LaserLine,
         placement: &Placement,
         power: f64,
-    ) -> Result<Self, BeamError> {
+    ) -> Result<Self, Refusal> {
         let power = checked_power(power)?;
         let frame = placement.frame()?;
         let profile = line.slope_density();
@@ -169,7 +173,7 @@ impl LineLight<f64> {
     /// Returns an error if a field overflows, or if the squared waist or divergence, the source
     /// radius, the slope deviation or the peak irradiance is outside the range of normal `f32`
     /// numbers.
-    pub fn to_f32(&self) -> Result<LineLight<f32>, BeamError> {
+    pub fn to_f32(&self) -> Result<LineLight<f32>, Refusal> {
         let across = normal_density(0.0, 0.5 * self.y.w0_sq.sqrt());
         let peak = self.power * self.slope_density().per_slope(0.0) / self.apex_offset * across;
         let (y, source) = (self.y, self.source_radius);

@@ -1,12 +1,13 @@
 //! Laws that tell one light from another. The module is private, which seals the trait `Emitter`.
 #![expect(unnameable_types, reason = "the trait is sealed")]
 
+use tem00_numerics::vectorised;
+
 use super::frame::Frame;
 use super::power_bound::LocalBox;
 use super::record::{NextEvent, NextEventSlices, RayPdf};
 use super::slope::{aperture_point, direction, secant, towards_light};
 use crate::real::Real;
-use tem00_numerics::vectorised;
 
 /// The laws of a light in its own frame: +z travel, z = 0 the aperture plane.
 pub trait PhaseSpace<T: Real> {

@@ -10,7 +10,7 @@ use super::rows::{DEFAULT_CUTOFF, check_digits, checked_power, first_three, row,
 use super::slope::secant;
 use crate::normal::{joint_normal_density, standard_normal};
 use crate::real::Real;
-use crate::{AstigmaticBeam, BeamError, GaussianBeam, LocatedBeam};
+use crate::{AstigmaticBeam, GaussianBeam, LocatedBeam, Refusal};
 
 /// A Gaussian beam in a scene, circular or elliptic, prepared for a renderer.
 ///
@@ -47,7 +47,7 @@ use crate::{AstigmaticBeam, BeamError, GaussianBeam, LocatedBeam};
 ///
 /// let waist = light.irradiance([0.0, 0.0, 0.1]);
 /// assert!((waist / 254.6e3 - 1.0).abs() < 1e-3); // W/m²
-/// # Ok::<(), tem00_beam::BeamError>(())
+/// # Ok::<(), tem00_beam::Refusal>(())
 /// ```
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,7 +88,7 @@ impl SpotLight<f64> {
         waist_distance: f64,
         placement: &Placement,
         power: f64,
-    ) -> Result<Self, BeamError> {
+    ) -> Result<Self, Refusal> {
         let located = LocatedBeam::new(*beam, waist_distance)?;
         Self::place_astigmatic(&AstigmaticBeam::stigmatic(located), placement, power)
     }
@@ -108,7 +108,7 @@ impl SpotLight<f64> {
         beam: &AstigmaticBeam,
         placement: &Placement,
         power: f64,
-    ) -> Result<Self, BeamError> {
+    ) -> Result<Self, Refusal> {
         let power = checked_power(power)?;
         let frame = placement.frame()?.turned(beam.rotation());
         let [x, y] = beam
@@ -134,7 +134,7 @@ impl SpotLight<f64> {
     ///
     /// Returns an error if a field overflows, or if a squared waist or divergence or the peak
     /// irradiance is outside the range of normal `f32` numbers.
-    pub fn to_f32(&self) -> Result<SpotLight<f32>, BeamError> {
+    pub fn to_f32(&self) -> Result<SpotLight<f32>, Refusal> {
         let peak = FRAC_2_PI * self.power / (self.x.w0_sq * self.y.w0_sq).sqrt();
         let [x, y] = [self.x, self.y];
         check_digits([x.w0_sq, x.theta_sq, y.w0_sq, y.theta_sq, peak])?;

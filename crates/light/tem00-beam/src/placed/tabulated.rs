@@ -6,7 +6,7 @@ use super::rows::check_digits;
 use crate::normal::normal_density;
 use crate::profile::AngularTable;
 use crate::real::Real;
-use crate::{AngularKnot, BeamError, LaserLine, LineProfile};
+use crate::{AngularKnot, LaserLine, LineProfile, Refusal};
 
 /// A laser line in a scene whose power along the fan is a table.
 ///
@@ -48,7 +48,7 @@ use crate::{AngularKnot, BeamError, LaserLine, LineProfile};
 /// let knots = profile.to_f32()?;
 /// let single = light.to_f32(&knots)?;
 /// assert!(single.next_event([0.1, 0.0, 0.0]).is_some());
-/// # Ok::<(), tem00_beam::BeamError>(())
+/// # Ok::<(), tem00_beam::Refusal>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TabulatedLineLight<'a, T> {
@@ -64,17 +64,17 @@ impl<'a> TabulatedLineLight<'a, f64> {
     /// # Errors
     ///
     /// As [`LineLight::place`], but an error if the profile of the line is not tabulated.
-    pub fn place(
-        line: &'a LaserLine,
-        placement: &Placement,
-        power: f64,
-    ) -> Result<Self, BeamError> {
+    pub fn place(line: &'a LaserLine, placement: &Placement, power: f64) -> Result<Self, Refusal> {
         match line.profile() {
             LineProfile::Tabulated(profile) => Ok(Self {
                 line: LineLight::prepare(line, placement, power)?,
                 knots: profile.knots(),
             }),
-            _ => Err(BeamError::NotTabulated),
+            _ => Err(Refusal::new(
+                "line",
+                "another profile",
+                "placed as a LineLight where its profile is not a table",
+            )),
         }
     }
 
@@ -86,7 +86,7 @@ impl<'a> TabulatedLineLight<'a, f64> {
     pub fn to_f32<'b>(
         &self,
         knots: &'b [AngularKnot<f32>],
-    ) -> Result<TabulatedLineLight<'b, f32>, BeamError> {
+    ) -> Result<TabulatedLineLight<'b, f32>, Refusal> {
         let across = normal_density(0.0, 0.5 * self.line.y.w0_sq.sqrt());
         let peak = AngularTable(self.knots).peak();
         check_digits([self.line.power * peak / self.line.apex_offset * across])?;

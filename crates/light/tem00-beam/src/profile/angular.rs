@@ -1,10 +1,12 @@
 use core::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
+use tem00_numerics::check;
+
 use super::density::{SlopeProfile, Variable};
-use crate::BeamError;
+use crate::Refusal;
 use crate::normal::{interior, normal_between, normal_density};
-use crate::range::check_list;
+use crate::placed::too_large_for_single;
 use crate::real::Real;
 
 /// The smallest accepted distance between two angles, in radians: finer than any measurement.
@@ -38,7 +40,7 @@ const NORMAL_REACH: f64 = 9.0;
 /// assert!((knots[1].cumulative - 0.5).abs() < 1e-15);
 /// // ∫ f dθ = 0.75 · 60° · f(0)
 /// assert!((knots[1].density * 45_f64.to_radians() - 1.0).abs() < 1e-15);
-/// # Ok::<(), tem00_beam::BeamError>(())
+/// # Ok::<(), tem00_beam::Refusal>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct AngularProfile {
@@ -69,32 +71,35 @@ impl AngularProfile {
     /// # Examples
     ///
     /// ```
-    /// use tem00_beam::{AngularProfile, BeamError};
+    /// use tem00_beam::AngularProfile;
     ///
     /// let unsorted = AngularProfile::new(&[-0.3, 0.3, 0.0], &[0.0, 1.0, 0.0]);
-    /// assert!(matches!(
-    ///     unsorted,
-    ///     Err(BeamError::Entry { parameter: "angles", index: 2, .. })
-    /// ));
+    /// let refusal = unsorted.unwrap_err();
+    /// assert_eq!((refusal.parameter, refusal.index), ("angles", Some(2)));
     /// ```
-    pub fn new(angles: &[f64], powers: &[f64]) -> Result<Self, BeamError> {
+    pub fn new(angles: &[f64], powers: &[f64]) -> Result<Self, Refusal> {
         if angles.len() != powers.len() || angles.len() < 2 {
-            return Err(BeamError::ProfileLength {
-                angles: angles.len(),
-                powers: powers.len(),
-            });
+            let lengths = [angles.len() as f64, powers.len() as f64];
+            let allowed = "as many as angles, and at least 2";
+            return Err(Refusal::new("powers", lengths, allowed));
         }
-        check_angles(angles)?;
-        check_powers(powers)?;
+        let mut minimum = f64::NEG_INFINITY;
+        for (index, &angle) in angles.iter().enumerate() {
+            let holds = angle >= minimum && angle.abs() < FRAC_PI_2;
+            let allowed = "ascending within (-π/2, π/2) rad";
+            check::that(holds, "angles", angle, "rad", allowed)
+                .map_err(|refusal| refusal.at(index))?;
+            minimum = angle + MIN_SPACING;
+        }
+        check::each(powers, |power| check::not_negative("powers", power, ""))?;
         let peak = powers.iter().copied().fold(0.0, f64::max);
-        if peak <= 0.0 {
-            return Err(BeamError::out_of_range(
-                "powers",
-                peak,
-                "",
-                "greater than 0 at some angle",
-            ));
-        }
+        check::that(
+            peak > 0.0,
+            "powers",
+            peak,
+            "",
+            "greater than 0 at some angle",
+        )?;
         let table = angles.iter().zip(powers);
         let relative = table.map(|(&angle, power)| (angle, power / peak)).collect();
         Ok(Self {
@@ -107,7 +112,7 @@ impl AngularProfile {
     /// # Errors
     ///
     /// As [`new`](Self::new).
-    pub fn from_pairs(pairs: &[(f64, f64)]) -> Result<Self, BeamError> {
+    pub fn from_pairs(pairs: &[(f64, f64)]) -> Result<Self, Refusal> {
         let (angles, powers): (Vec<_>, Vec<_>) = pairs.iter().copied().unzip();
         Self::new(&angles, &powers)
     }
@@ -124,14 +129,14 @@ impl AngularProfile {
     ///
     /// Returns an error if two neighbouring angles are one in single precision, or if the whole table
     /// is hardly wider than the rounding of an angle.
-    pub fn to_f32(&self) -> Result<Vec<AngularKnot<f32>>, BeamError> {
+    pub fn to_f32(&self) -> Result<Vec<AngularKnot<f32>>, Refusal> {
         let knots: Vec<_> = self.knots.iter().map(AngularKnot::rounded).collect();
         let table = AngularTable(&knots);
         let [first, last] = table.ends();
         let same = |pair: &[AngularKnot<f32>]| pair[0].angle >= pair[1].angle;
         match knots.windows(2).position(same) {
-            Some(index) => Err(BeamError::single_precision(self.knots[index].angle)),
-            None if last - first <= 4.0 * table.margin() => Err(BeamError::single_precision(first)),
+            Some(index) => Err(too_large_for_single(self.knots[index].angle)),
+            None if last - first <= 4.0 * table.margin() => Err(too_large_for_single(first)),
             None => Ok(knots),
         }
     }
@@ -150,28 +155,6 @@ impl AngularKnot<f64> {
             cumulative: T::of(self.cumulative),
         }
     }
-}
-
-fn check_angles(angles: &[f64]) -> Result<(), BeamError> {
-    let mut minimum = f64::NEG_INFINITY;
-    for (index, &angle) in angles.iter().enumerate() {
-        if !(angle >= minimum && angle.abs() < FRAC_PI_2) {
-            return Err(BeamError::Entry {
-                parameter: "angles",
-                index,
-                value: angle,
-                unit: "rad",
-                allowed: "ascending within (-π/2, π/2) rad",
-            });
-        }
-        minimum = angle + MIN_SPACING;
-    }
-    Ok(())
-}
-
-fn check_powers(powers: &[f64]) -> Result<(), BeamError> {
-    let valid = |power: f64| power >= 0.0 && power.is_finite();
-    check_list(valid, "powers", powers, "", "finite and not negative")
 }
 
 /// Integrates and normalises a table whose largest power is 1.

@@ -98,67 +98,6 @@ fn far_out_of_focus_a_tilt_acts_by_the_blur() {
     }
 }
 
-#[test]
-fn what_cannot_be_is_refused_by_name() {
-    let name = |geometry| ResolutionCell::new(geometry).unwrap_err().parameter();
-    assert_eq!(
-        name(CellGeometry {
-            normal: DVec3::ZERO,
-            ..geometry()
-        }),
-        "normal"
-    );
-    for to_source in [-DVec3::Z, direction(91.0), DVec3::X] {
-        let below = CellGeometry {
-            to_source,
-            ..geometry()
-        };
-        assert_eq!(name(below), "to_source", "{to_source}");
-    }
-    assert_eq!(
-        name(CellGeometry {
-            to_pupil: DVec3::NAN,
-            ..geometry()
-        }),
-        "to_pupil"
-    );
-    for bad in [0.0, -0.1, 1.1, f64::NAN] {
-        assert_eq!(
-            name(CellGeometry {
-                sin_aperture: bad,
-                ..geometry()
-            }),
-            "sin_aperture",
-            "{bad}"
-        );
-    }
-    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert_eq!(
-            name(CellGeometry {
-                wavelength: bad,
-                ..geometry()
-            }),
-            "wavelength",
-            "{bad}"
-        );
-    }
-    let cell = ResolutionCell::new(geometry()).unwrap();
-    let relief = |rms_height, correlation_length| {
-        let relief = Relief {
-            rms_height,
-            correlation_length,
-        };
-        let refused = cell.clone().with_relief(relief).unwrap_err();
-        refused.parameter()
-    };
-    assert_eq!(relief(-1e-6, 0.0), "rms_height");
-    assert_eq!(relief(1e-6, f64::NAN), "correlation_length");
-    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        let refused = cell.clone().with_defocus(bad).unwrap_err();
-        assert_eq!(refused.parameter(), "defocus", "{bad}");
-    }
-}
-
 proptest! {
     #[test]
     fn correlations_are_one_at_most(

@@ -143,39 +143,6 @@ fn peaks_stand_about_their_mean() {
 }
 
 #[test]
-fn what_cannot_be_is_refused_by_name() {
-    let name = |line: Result<SpectralLine, CoherenceError>| line.unwrap_err().parameter();
-    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert_eq!(
-            name(SpectralLine::monochromatic(bad)),
-            "wavelength",
-            "{bad}"
-        );
-    }
-    for bad in [-1e-9, f64::NAN, f64::INFINITY, 66e-9] {
-        let line = SpectralLine::new(650e-9, bad, LineShape::Gaussian);
-        assert_eq!(name(line), "linewidth", "{bad}");
-        assert_eq!(name(SpectralLine::comb(650e-9, bad, 3)), "span", "{bad}");
-    }
-    let widest = SpectralLine::new(650e-9, 0.1 * 650e-9, LineShape::Gaussian);
-    assert!(widest.is_ok(), "a tenth of the wavelength");
-    for count in [0, 257, usize::MAX] {
-        assert_eq!(
-            name(SpectralLine::comb(650e-9, 1e-9, count)),
-            "peaks",
-            "{count}"
-        );
-    }
-    assert_eq!(name(SpectralLine::from_peaks(&[])), "peaks");
-    assert_eq!(name(SpectralLine::from_peaks(&[[650e-9, 0.0]])), "power");
-    // A faint peak on either side, 13 and 14 % from the mean.
-    for far in [750e-9, 570e-9] {
-        let line = SpectralLine::from_peaks(&[[650e-9, 1e6], [far, 1.0]]);
-        assert_eq!(name(line), "wavelength", "{far}");
-    }
-}
-
-#[test]
 fn draws_follow_the_line() {
     let single = |shape| shaped(3e-9, shape);
     let comb = SpectralLine::comb(650e-9, 5e-9, 3).unwrap();

@@ -125,31 +125,3 @@ fn speckle_of_speckle_is_a_mean_over_pairs_of_directions() {
         assert_abs_diff_eq!(variance, mean, epsilon = 1e-3);
     }
 }
-
-#[test]
-fn what_cannot_be_is_refused_by_its_name() {
-    let good = MixedLight::default();
-    let refused = |light: MixedLight| light.contrast().expect_err("a refusal").parameter();
-    let name = refused(MixedLight {
-        multiple: 1.1,
-        ..good
-    });
-    assert_eq!(name, "multiple");
-    let name = refused(MixedLight {
-        with_single: f64::NAN,
-        ..good
-    });
-    assert_eq!(name, "with_single");
-    let name = refused(MixedLight {
-        polarisation: [1.0, -0.1],
-        ..good
-    });
-    assert_eq!(name, "polarisation");
-    let error = cascade_variance(-1.0).expect_err("a refusal");
-    assert!(
-        error
-            .to_string()
-            .contains("relative_aperture must be 0 or positive")
-    );
-    assert!(cascade_variance(f64::NAN).is_err());
-}

@@ -1,8 +1,8 @@
 use core::f64::consts::PI;
 
-use tem00_numerics::{disc_overlap_inverse, sinc_inverse};
+use tem00_numerics::{check, disc_overlap_inverse, sinc_inverse};
 
-use crate::DecorrelationError;
+use crate::Refusal;
 
 /// Returns the pupil displacement, in units of the pupil diameter, that alone would leave a given
 /// intensity correlation γ.
@@ -31,11 +31,13 @@ use crate::DecorrelationError;
 /// assert!((shift * 3.125e-3 - 0.7254e-3).abs() < 1e-7);
 /// assert!((pupil_overlap_correlation(shift) - 0.5).abs() < 1e-12);
 /// assert!(equivalent_pupil_shift(-0.2).is_err());
-/// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+/// # Ok::<(), tem00_decorrelation::Refusal>(())
 /// ```
 #[inline]
-pub fn equivalent_pupil_shift(correlation: f64) -> Result<f64, DecorrelationError> {
-    Ok(disc_overlap_inverse(checked(correlation)?.sqrt()))
+pub fn equivalent_pupil_shift(correlation: f64) -> Result<f64, Refusal> {
+    Ok(disc_overlap_inverse(
+        check::range("correlation", correlation, [0.0, 1.0], "")?.sqrt(),
+    ))
 }
 
 /// Returns the axial displacement, in units of
@@ -61,22 +63,8 @@ pub fn equivalent_pupil_shift(correlation: f64) -> Result<f64, DecorrelationErro
 /// let shift = equivalent_axial_shift(0.5)?;
 /// assert!((shift - 0.4429).abs() < 5e-5);
 /// assert!((axial_correlation(shift) - 0.5).abs() < 1e-12);
-/// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+/// # Ok::<(), tem00_decorrelation::Refusal>(())
 /// ```
-pub fn equivalent_axial_shift(correlation: f64) -> Result<f64, DecorrelationError> {
-    Ok(sinc_inverse(checked(correlation)?.sqrt()) / PI)
-}
-
-/// Returns an intensity correlation that can be.
-#[inline]
-fn checked(correlation: f64) -> Result<f64, DecorrelationError> {
-    if (0.0..=1.0).contains(&correlation) {
-        return Ok(correlation);
-    }
-    let allowed = "from 0 to 1";
-    Err(DecorrelationError::refused(
-        "correlation",
-        correlation,
-        allowed,
-    ))
+pub fn equivalent_axial_shift(correlation: f64) -> Result<f64, Refusal> {
+    Ok(sinc_inverse(check::range("correlation", correlation, [0.0, 1.0], "")?.sqrt()) / PI)
 }

@@ -165,18 +165,11 @@ fn integrals_are_steady_where_the_product_takes_over() {
 }
 
 #[test]
-fn inverses_refuse_what_is_no_correlation() {
-    let inverses = |gamma: f64| [equivalent_pupil_shift(gamma), equivalent_axial_shift(gamma)];
+fn inverses_reach_both_ends() {
     for (gamma, end) in [(1.0, 0.0), (0.0, 1.0)] {
-        for (i, inverse) in inverses(gamma).into_iter().enumerate() {
-            let inverse = inverse.unwrap();
-            assert!((inverse - end).abs() < 1e-15, "{i} of {gamma}: {inverse}");
-        }
-    }
-    for gamma in [-0.2, -1e-17, 1.0 + f64::EPSILON, f64::INFINITY, f64::NAN] {
-        for (i, inverse) in inverses(gamma).into_iter().enumerate() {
-            let name = inverse.map_err(|error| error.parameter());
-            assert_eq!(name, Err("correlation"), "{i} of {gamma}");
+        let inverses = [equivalent_pupil_shift(gamma), equivalent_axial_shift(gamma)];
+        for inverse in inverses.map(Result::unwrap) {
+            assert!((inverse - end).abs() < 1e-15, "{gamma}: {inverse}");
         }
     }
 }

@@ -5,8 +5,9 @@
 
 use core::f64::consts::PI;
 
-use super::marginal::{Interval, power_beyond};
 use tem00_numerics::quadrature::integrate_adaptively;
+
+use super::marginal::{Interval, power_beyond};
 
 /// Distance from the axis, in radii, at which the density underflows: exp(−2 · 19.4²) = 1e−327.
 const REACH: f64 = 19.4;

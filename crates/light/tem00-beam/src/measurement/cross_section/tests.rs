@@ -267,13 +267,6 @@ fn circle_radius_inverts_the_encircled_power() {
         }
         let none = spot.circle_radius(0.0).unwrap();
         assert!(none.abs() < f64::MIN_POSITIVE, "{none}");
-        for bad in [-1e-9, 1.0, 2.0, f64::NAN] {
-            let result = spot.circle_radius(bad);
-            assert!(
-                matches!(result, Err(e) if e.parameter() == "fraction"),
-                "{bad}"
-            );
-        }
     }
 }
 
@@ -433,19 +426,6 @@ fn apertures_of_negative_size_hold_nothing() {
     ];
     for power in powers {
         assert!(power.abs() < f64::MIN_POSITIVE, "{power}");
-    }
-}
-
-#[test]
-fn radii_that_are_not_lengths_are_rejected() {
-    for bad in [0.0, -1.0, 1e31, f64::NAN, f64::INFINITY] {
-        for radii in [[bad, 1.0], [1.0, bad]] {
-            let result = CrossSection::new(radii);
-            assert!(
-                matches!(result, Err(e) if e.parameter() == "radius"),
-                "{radii:?}"
-            );
-        }
     }
 }
 

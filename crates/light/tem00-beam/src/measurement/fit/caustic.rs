@@ -1,12 +1,12 @@
 use core::f64::consts::PI;
 
-use tem00_numerics::Minimum;
+use tem00_numerics::{Minimum, check};
 
 use super::error::FitError;
 use super::least_squares::{Residual, minimise};
 use super::positions::{Axis, Estimate, check_count};
-use crate::range::{check_length, check_lengths};
-use crate::{BeamError, GaussianBeam, LocatedBeam};
+use crate::range::length;
+use crate::{GaussianBeam, LocatedBeam, Refusal};
 
 /// Errors of measured beam radii, as far as they are known.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,7 +108,7 @@ impl CausticFit {
         errors: RadiusErrors<'_>,
     ) -> Result<Self, FitError> {
         let data = Caustic::new(positions, radii, errors)?;
-        check_length("wavelength", wavelength)?;
+        length("wavelength", wavelength)?;
         let count = radii.len();
         let from_polynomial = data.polynomial().map(|start| data.search(start));
         let minimum = match from_polynomial {
@@ -207,7 +207,7 @@ impl CausticFit {
     ///
     /// Returns an error if there is no such beam: M² is below 1, or the divergence is beyond the
     /// paraxial limit of 0.5 rad.
-    pub fn beam(&self) -> Result<LocatedBeam, BeamError> {
+    pub fn beam(&self) -> Result<LocatedBeam, Refusal> {
         let beam = GaussianBeam::from_waist(self.wavelength, self.waist_radius.value)?;
         let beam = beam.with_m_squared(self.m_squared().value)?;
         LocatedBeam::new(beam, self.waist_position.value)
@@ -239,10 +239,10 @@ impl<'a> Caustic<'a> {
     fn new(positions: &[f64], radii: &[f64], errors: RadiusErrors<'a>) -> Result<Self, FitError> {
         check_count(positions, radii, PARAMETERS + 1)?;
         let axis = Axis::new(positions)?;
-        check_lengths("radii", radii)?;
+        check::each(radii, |radius| length("radii", radius))?;
         if let RadiusErrors::Known(deviations) = errors {
             check_count(positions, deviations, PARAMETERS + 1)?;
-            check_lengths("errors", deviations)?;
+            check::each(deviations, |deviation| length("errors", deviation))?;
         }
         let unit = radii.iter().copied().fold(0.0, f64::max);
         Ok(Self {

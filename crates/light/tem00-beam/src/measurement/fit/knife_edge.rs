@@ -1,11 +1,10 @@
 use core::f64::consts::{FRAC_2_SQRT_PI, SQRT_2};
 
-use tem00_numerics::Minimum;
+use tem00_numerics::{Minimum, check};
 
 use super::error::FitError;
 use super::least_squares::{Residual, minimise};
 use super::positions::{Axis, Estimate, check_count};
-use crate::range::{check_list, is_coordinate};
 
 /// A Gaussian beam fitted to the power that passes a knife edge moved across it.
 ///
@@ -168,13 +167,9 @@ struct Trace {
 impl Trace {
     fn new(positions: &[f64], powers: &[f64], with_floor: bool) -> Result<Self, FitError> {
         let axis = Axis::new(positions)?;
-        check_list(
-            is_coordinate,
-            "powers",
-            powers,
-            "",
-            "finite and within ±1e30",
-        )?;
+        check::each(powers, |power| {
+            check::range("powers", power, [-1e30, 1e30], "")
+        })?;
         let minimum = powers.iter().copied().fold(f64::INFINITY, f64::min);
         let maximum = powers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let unit = maximum - minimum;

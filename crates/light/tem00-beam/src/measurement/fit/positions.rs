@@ -1,7 +1,9 @@
 //! Positions of a measurement, and what is found along them.
 
+use tem00_numerics::check;
+
 use super::error::FitError;
-use crate::range::check_coordinates;
+use crate::range::coordinate;
 
 /// A fitted value and its standard error, in the same unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +47,7 @@ pub(super) struct Axis {
 
 impl Axis {
     pub(super) fn new(positions: &[f64]) -> Result<Self, FitError> {
-        check_coordinates("positions", positions)?;
+        check::each(positions, |x| coordinate("positions", x))?;
         let first = positions.iter().copied().fold(f64::INFINITY, f64::min);
         let last = positions.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let (middle, half_range) = (0.5 * first + 0.5 * last, 0.5 * last - 0.5 * first);

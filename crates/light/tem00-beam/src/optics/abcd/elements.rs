@@ -2,9 +2,11 @@
 
 use core::f64::consts::FRAC_PI_2;
 
+use tem00_numerics::check;
+
 use super::AbcdMatrix;
-use crate::BeamError;
-use crate::range::{check, check_coordinate, check_curvature, is_length};
+use crate::Refusal;
+use crate::range::{coordinate, curvature as checked_curvature};
 
 /// A thick lens in air.
 ///
@@ -36,8 +38,8 @@ impl AbcdMatrix {
     /// # Errors
     ///
     /// Returns an error if `length` is not finite or beyond 1e30 m.
-    pub fn free_space(length: f64) -> Result<Self, BeamError> {
-        check_coordinate("length", length)?;
+    pub fn free_space(length: f64) -> Result<Self, Refusal> {
+        coordinate("length", length)?;
         Ok(Self::unimodular([1.0, length, 0.0, 1.0]))
     }
 
@@ -46,17 +48,11 @@ impl AbcdMatrix {
     /// # Errors
     ///
     /// Returns an error if the magnitude of `focal_length` does not lie between 1e−30 m and 1e30 m.
-    pub fn thin_lens(focal_length: f64) -> Result<Self, BeamError> {
-        if is_length(focal_length.abs()) {
-            Ok(Self::power(-1.0 / focal_length))
-        } else {
-            Err(BeamError::out_of_range(
-                "focal_length",
-                focal_length,
-                "m",
-                "between 1e-30 m and 1e30 m in magnitude",
-            ))
-        }
+    pub fn thin_lens(focal_length: f64) -> Result<Self, Refusal> {
+        let holds = (1e-30..=1e30).contains(&focal_length.abs());
+        let allowed = "from 1e-30 m to 1e30 m in magnitude";
+        check::that(holds, "focal_length", focal_length, "m", allowed)?;
+        Ok(Self::power(-1.0 / focal_length))
     }
 
     /// Returns a thick lens in air, from the vertex of its front to the vertex of its back.
@@ -81,16 +77,10 @@ impl AbcdMatrix {
     /// })?;
     /// assert!((ball.focal_length().unwrap() - 3.668e-3).abs() < 1e-6);
     /// assert!((ball.back_focal_distance().unwrap() - 1.168e-3).abs() < 1e-6);
-    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// # Ok::<(), tem00_beam::Refusal>(())
     /// ```
-    pub fn thick_lens(lens: &ThickLens) -> Result<Self, BeamError> {
-        check(
-            (0.0..=1e30).contains(&lens.thickness),
-            "thickness",
-            lens.thickness,
-            "m",
-            "between 0 m and 1e30 m",
-        )?;
+    pub fn thick_lens(lens: &ThickLens) -> Result<Self, Refusal> {
+        check::range("thickness", lens.thickness, [0.0, 1e30], "m")?;
         let front = Self::curved_interface(1.0, lens.index, lens.front_curvature)?;
         let glass = Self::free_space(lens.thickness)?;
         let back = Self::curved_interface(lens.index, 1.0, lens.back_curvature)?;
@@ -106,9 +96,8 @@ impl AbcdMatrix {
     /// # Errors
     ///
     /// Returns an error if `curvature` is not finite or beyond 1e30 m⁻¹.
-    pub fn curved_mirror(curvature: f64) -> Result<Self, BeamError> {
-        check_curvature(curvature)?;
-        Ok(Self::power(-2.0 * curvature))
+    pub fn curved_mirror(curvature: f64) -> Result<Self, Refusal> {
+        Ok(Self::power(-2.0 * checked_curvature(curvature)?))
     }
 
     /// Returns a mirror of the curvature `1/R`, in m⁻¹ and positive if concave, at an angle of
@@ -127,19 +116,18 @@ impl AbcdMatrix {
     /// # References
     ///
     /// - H. Kogelnik et al., *Astigmatically Compensated Cavities for CW Dye Lasers*, 1972.
-    pub fn tilted_mirror(curvature: f64, angle_of_incidence: f64) -> Result<[Self; 2], BeamError> {
-        check_curvature(curvature)?;
-        let cos = angle_of_incidence.cos();
-        if angle_of_incidence.abs() < FRAC_PI_2 && cos > 0.0 {
-            Ok([-2.0 * curvature / cos, -2.0 * curvature * cos].map(Self::power))
-        } else {
-            Err(BeamError::out_of_range(
-                "angle_of_incidence",
-                angle_of_incidence,
-                "rad",
-                "in (-π/2, π/2) rad",
-            ))
-        }
+    pub fn tilted_mirror(curvature: f64, angle_of_incidence: f64) -> Result<[Self; 2], Refusal> {
+        checked_curvature(curvature)?;
+        let (angle, cos) = (angle_of_incidence, angle_of_incidence.cos());
+        let holds = angle.abs() < FRAC_PI_2 && cos > 0.0;
+        check::that(
+            holds,
+            "angle_of_incidence",
+            angle,
+            "rad",
+            "in (-π/2, π/2) rad",
+        )?;
+        Ok([-2.0 * curvature / cos, -2.0 * curvature * cos].map(Self::power))
     }
 
     /// Returns a flat interface from a medium of index `index_before` into one of `index_after`.
@@ -147,7 +135,7 @@ impl AbcdMatrix {
     /// # Errors
     ///
     /// Returns an error if an index does not lie between 0.001 and 1000.
-    pub fn flat_interface(index_before: f64, index_after: f64) -> Result<Self, BeamError> {
+    pub fn flat_interface(index_before: f64, index_after: f64) -> Result<Self, Refusal> {
         Self::curved_interface(index_before, index_after, 0.0)
     }
 
@@ -167,11 +155,9 @@ impl AbcdMatrix {
         index_before: f64,
         index_after: f64,
         curvature: f64,
-    ) -> Result<Self, BeamError> {
-        check_index(index_before)?;
-        check_index(index_after)?;
-        check_curvature(curvature)?;
-        let ratio = index_before / index_after;
+    ) -> Result<Self, Refusal> {
+        checked_curvature(curvature)?;
+        let ratio = checked_index(index_before)? / checked_index(index_after)?;
         Ok(Self {
             a: 1.0,
             b: 0.0,
@@ -190,15 +176,9 @@ impl AbcdMatrix {
     ///
     /// Returns an error if `gradient` does not lie between 0 and 1e30 m⁻¹, or if `length` is not
     /// finite or beyond 1e30 m.
-    pub fn grin(gradient: f64, length: f64) -> Result<Self, BeamError> {
-        check(
-            (0.0..=1e30).contains(&gradient),
-            "gradient",
-            gradient,
-            "m⁻¹",
-            "between 0 m⁻¹ and 1e30 m⁻¹",
-        )?;
-        check_coordinate("length", length)?;
+    pub fn grin(gradient: f64, length: f64) -> Result<Self, Refusal> {
+        check::range("gradient", gradient, [0.0, 1e30], "m⁻¹")?;
+        coordinate("length", length)?;
         let phase = gradient * length;
         let (sin, cos) = phase.sin_cos();
         let sinc = if phase == 0.0 { 1.0 } else { sin / phase };
@@ -226,10 +206,10 @@ impl AbcdMatrix {
     /// let collimator = AbcdMatrix::grin_rod(1.5916, gradient, quarter_pitch)?;
     /// assert!((collimator.focal_length().unwrap() - 1.921e-3).abs() < 1e-6);
     /// assert!(collimator.back_focal_distance().unwrap().abs() < 1e-15);
-    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// # Ok::<(), tem00_beam::Refusal>(())
     /// ```
-    pub fn grin_rod(index: f64, gradient: f64, length: f64) -> Result<Self, BeamError> {
-        check_index(index)?;
+    pub fn grin_rod(index: f64, gradient: f64, length: f64) -> Result<Self, Refusal> {
+        checked_index(index)?;
         let inside = Self::grin(gradient, length)?;
         Ok(Self {
             b: inside.b / index,
@@ -254,9 +234,8 @@ impl AbcdMatrix {
     }
 }
 
-fn check_index(index: f64) -> Result<(), BeamError> {
-    let valid = (1e-3..=1e3).contains(&index);
-    check(valid, "index", index, "", "in [0.001, 1000]")
+fn checked_index(index: f64) -> Result<f64, Refusal> {
+    check::range("index", index, [1e-3, 1e3], "")
 }
 
 #[cfg(test)]

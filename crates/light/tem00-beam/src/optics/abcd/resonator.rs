@@ -1,7 +1,9 @@
 //! Systems that light travels through again and again.
 
+use tem00_numerics::check;
+
 use super::AbcdMatrix;
-use crate::BeamError;
+use crate::Refusal;
 use crate::optics::ComplexBeamParameter;
 
 /// # Resonators
@@ -52,21 +54,20 @@ impl AbcdMatrix {
     ///
     /// assert!(mode.waist_distance().abs() < 1e-15, "the waist is on the plane mirror");
     /// assert!((mode.beam().waist_radius() - 0.304e-3).abs() < 0.001e-3);
-    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// # Ok::<(), tem00_beam::Refusal>(())
     /// ```
-    pub fn eigenmode(&self) -> Result<ComplexBeamParameter, BeamError> {
+    pub fn eigenmode(&self) -> Result<ComplexBeamParameter, Refusal> {
         let stability = self.stability();
-        if stability > 0.0 {
-            let distance = (0.5 * self.a - 0.5 * self.d) / self.c;
-            ComplexBeamParameter::new(distance, stability.sqrt() / self.c.abs())
-        } else {
-            Err(BeamError::out_of_range(
-                "half_trace",
-                self.half_trace(),
-                "",
-                "in (-1, 1) for a beam to reproduce itself",
-            ))
-        }
+        let allowed = "in (-1, 1) for a beam to reproduce itself";
+        check::that(
+            stability > 0.0,
+            "half_trace",
+            self.half_trace(),
+            "",
+            allowed,
+        )?;
+        let distance = (0.5 * self.a - 0.5 * self.d) / self.c;
+        ComplexBeamParameter::new(distance, stability.sqrt() / self.c.abs())
     }
 
     /// det − (A + D)²/4, in the form that does not cancel for almost plane mirrors.

@@ -86,59 +86,13 @@ fn half_the_power_density_is_left_one_rayleigh_range_away() {
 }
 
 #[test]
-fn impossible_parameters_are_rejected() {
-    for bad in [f64::NAN, f64::INFINITY, 2e30] {
-        let result = ComplexBeamParameter::new(bad, 1.0);
-        assert!(
-            matches!(result, Err(e) if e.parameter() == "waist_distance"),
-            "{bad}"
-        );
-        let result = ComplexBeamParameter::from_radius_and_curvature(1e-3, bad, 1e-6);
-        assert!(
-            matches!(result, Err(e) if e.parameter() == "curvature"),
-            "{bad}"
-        );
-    }
-    for bad in [0.0, -1.0, 1e101, f64::NAN, f64::INFINITY] {
-        let result = ComplexBeamParameter::new(0.0, bad);
-        assert!(
-            matches!(result, Err(e) if e.parameter() == "rayleigh_range"),
-            "{bad}"
-        );
-        let result = ComplexBeamParameter::from_radius_and_curvature(bad, 0.0, 1e-6);
-        assert!(
-            matches!(result, Err(e) if e.parameter() == "radius"),
-            "{bad}"
-        );
-        let result = ComplexBeamParameter::from_radius_and_curvature(1e-3, 0.0, bad);
-        assert!(
-            matches!(result, Err(e) if e.parameter() == "wavelength"),
-            "{bad}"
-        );
-        let result = parameter(0.0, 1.0).radius(bad);
-        assert!(
-            matches!(result, Err(e) if e.parameter() == "wavelength"),
-            "{bad}"
-        );
-        let result = parameter(0.0, 1.0).to_located_beam(1e-6, bad.min(0.99));
-        assert!(
-            matches!(result, Err(e) if e.parameter() == "m_squared"),
-            "{bad}"
-        );
-    }
-}
-
-#[test]
 fn a_parameter_beyond_the_paraxial_limit_makes_no_beam() {
     // δ = √(M² λ / (π z_R)) is 0.5 at z_R = 4 M² λ / π.
     let limit = 4.0 * 2.0 * 1e-6 / PI;
     let above = parameter(0.0, 1.001 * limit).to_located_beam(1e-6, 2.0);
     assert!(above.is_ok(), "{above:?}");
     let below = parameter(0.0, 0.999 * limit).to_located_beam(1e-6, 2.0);
-    assert!(
-        matches!(below, Err(BeamError::NotParaxial { .. })),
-        "{below:?}"
-    );
+    assert_eq!(below.unwrap_err().parameter, "waist_radius");
 }
 
 proptest! {

@@ -4,9 +4,7 @@ use proptest::prelude::*;
 use super::super::{Emitter, Placement, TabulatedLineLight};
 use super::*;
 use crate::real::sealed::Scalar;
-use crate::{
-    AngularProfile, BeamError, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineProfile,
-};
+use crate::{AngularProfile, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineProfile};
 
 const POWER: f64 = 5e-3;
 const APEX_OFFSET: f64 = 2e-3;
@@ -91,22 +89,6 @@ fn a_placed_line_is_the_laser_in_another_frame() {
             assert!(flux.length() > 0.0, "{line:?}: {local} is lit");
         }
     }
-}
-
-#[test]
-fn either_light_refuses_the_profile_of_the_other() {
-    let tabulated = laser(table(), FocusCurve::EqualPlane, 0.9);
-    let error = LineLight::place(&tabulated, &placement(), POWER).unwrap_err();
-    assert_eq!(error, BeamError::TabulatedProfile, "a table");
-    let smooth = laser(LineProfile::UniformAngle, FocusCurve::EqualPlane, 0.9);
-    let error = TabulatedLineLight::place(&smooth, &placement(), POWER).unwrap_err();
-    assert_eq!(error, BeamError::NotTabulated, "no table");
-    let error = TabulatedLineLight::place(&tabulated, &placement(), -1.0).unwrap_err();
-    assert_eq!(
-        error,
-        BeamError::out_of_range("power", -1.0, "W", "between 0 W and 1e100 W"),
-        "negative power"
-    );
 }
 
 #[test]

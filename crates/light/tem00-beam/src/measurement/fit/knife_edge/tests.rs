@@ -1,7 +1,6 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::BeamError;
 use crate::measurement::CrossSection;
 use crate::measurement::fit::synthetic::{assert_chi_squared, assert_standard_normal, noise, pull};
 
@@ -151,59 +150,6 @@ fn negative_power_is_no_edge() {
     let powers = [-0.3, -0.3, -0.5, -0.5, -0.9];
     let result = KnifeEdgeFit::new(&x, &powers);
     assert_eq!(result, Err(FitError::NoEdge), "every power is negative");
-}
-
-#[test]
-fn hopeless_traces_are_named() {
-    let (x, powers) = falling();
-    let fit = |x: &[f64], powers: &[f64]| KnifeEdgeFit::new(x, powers).unwrap_err();
-    let with = |values: &[f64], value: f64| {
-        let mut values = values.to_vec();
-        values[2] = value;
-        values
-    };
-    let needed = |needed| FitError::TooFewPoints {
-        got: needed - 1,
-        needed,
-    };
-    assert_eq!(fit(&x[..3], &powers[..3]), needed(4), "three points");
-    let error = KnifeEdgeFit::with_background(&x[..4], &powers[..4]).unwrap_err();
-    assert_eq!(error, needed(5), "four points");
-    let differ = FitError::LengthsDiffer {
-        positions: 24,
-        values: 25,
-    };
-    assert_eq!(fit(&x[..24], &powers), differ, "one position missing");
-    assert_eq!(fit(&[2.0; 25], &powers), FitError::EqualPositions, "place");
-    assert_eq!(fit(&x, &[2.0; 25]), FitError::NoEdge, "constant power");
-    for bad in [f64::NAN, f64::INFINITY, -2e30] {
-        let error = fit(&with(&x, bad), &powers);
-        assert!(
-            matches!(
-                error,
-                FitError::Argument(BeamError::Entry {
-                    parameter: "positions",
-                    index: 2,
-                    ..
-                })
-            ),
-            "{error}"
-        );
-        let error = fit(&x, &with(&powers, bad));
-        assert!(
-            matches!(
-                error,
-                FitError::Argument(BeamError::Entry {
-                    parameter: "powers",
-                    index: 2,
-                    ..
-                })
-            ),
-            "{error}"
-        );
-    }
-    let jump: Vec<_> = (0..25).map(|i| if i < 12 { 1.0 } else { 0.0 }).collect();
-    assert_eq!(fit(&x, &jump), FitError::Undetermined, "a jump");
 }
 
 proptest! {

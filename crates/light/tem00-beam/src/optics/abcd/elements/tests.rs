@@ -3,8 +3,6 @@ use core::f64::consts::PI;
 use super::*;
 use crate::optics::abcd::tests::{assert_same, lens, mirror, space};
 
-const INFINITE: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
-
 #[test]
 fn a_thin_lens_is_the_limit_of_a_thick_one() {
     let thick = |thickness| {
@@ -151,80 +149,5 @@ fn a_graded_medium_without_gradient_is_free_space() {
     for gradient in [0.0, 1e-200, f64::MIN_POSITIVE, 1e-10] {
         let medium = AbcdMatrix::grin(gradient, 0.4).unwrap();
         assert_same(&medium, &space(0.4), 1e-16);
-    }
-}
-
-#[test]
-fn impossible_lengths_and_curvatures_are_rejected() {
-    for bad in INFINITE.into_iter().chain([2e30, -2e30]) {
-        let result = AbcdMatrix::free_space(bad);
-        assert!(
-            matches!(result, Err(e) if e.parameter() == "length"),
-            "{bad}"
-        );
-        let result = AbcdMatrix::grin(1.0, bad);
-        assert!(
-            matches!(result, Err(e) if e.parameter() == "length"),
-            "{bad}"
-        );
-        let result = AbcdMatrix::curved_mirror(bad);
-        assert!(
-            matches!(result, Err(e) if e.parameter() == "curvature"),
-            "{bad}"
-        );
-        let result = AbcdMatrix::tilted_mirror(bad, 0.0);
-        assert!(
-            matches!(result, Err(e) if e.parameter() == "curvature"),
-            "{bad}"
-        );
-        let result = AbcdMatrix::curved_interface(1.0, 1.5, bad);
-        assert!(
-            matches!(result, Err(e) if e.parameter() == "curvature"),
-            "{bad}"
-        );
-    }
-}
-
-#[test]
-fn impossible_media_and_angles_are_rejected() {
-    for bad in INFINITE.into_iter().chain([-1.0, 2e30]) {
-        let result = AbcdMatrix::grin_rod(1.5, bad, 1.0);
-        assert!(
-            matches!(result, Err(e) if e.parameter() == "gradient"),
-            "{bad}"
-        );
-        let result = AbcdMatrix::thick_lens(&ThickLens {
-            index: 1.5,
-            front_curvature: 0.0,
-            back_curvature: 0.0,
-            thickness: bad,
-        });
-        assert!(
-            matches!(result, Err(e) if e.parameter() == "thickness"),
-            "{bad}"
-        );
-    }
-    for bad in INFINITE.into_iter().chain([0.0, -1.5, 1e-4, 1e4]) {
-        let results = [
-            AbcdMatrix::flat_interface(bad, 1.0),
-            AbcdMatrix::flat_interface(1.0, bad),
-            AbcdMatrix::grin_rod(bad, 1.0, 1.0),
-        ];
-        for result in results {
-            assert!(
-                matches!(result, Err(e) if e.parameter() == "index"),
-                "{bad}"
-            );
-        }
-    }
-    for bad in INFINITE
-        .into_iter()
-        .chain([FRAC_PI_2, -FRAC_PI_2, 3.0, 7.0])
-    {
-        let result = AbcdMatrix::tilted_mirror(1.0, bad);
-        assert!(
-            matches!(result, Err(e) if e.parameter() == "angle_of_incidence"),
-            "{bad}"
-        );
     }
 }

@@ -1,0 +1,20 @@
+//! Checks of vectors.
+
+use glam::DVec3;
+
+use crate::Refusal;
+
+/// Returns a position or displacement, in metres, if it is finite.
+pub(crate) fn finite(parameter: &'static str, vector: DVec3) -> Result<DVec3, Refusal> {
+    if vector.is_finite() {
+        Ok(vector)
+    } else {
+        Err(Refusal::new(parameter, vector.to_array(), "finite").in_unit("m"))
+    }
+}
+
+/// Returns a direction of length 1, if the vector has one.
+pub(crate) fn unit(parameter: &'static str, vector: DVec3) -> Result<DVec3, Refusal> {
+    let refused = || Refusal::new(parameter, vector.to_array(), "finite and not zero");
+    vector.try_normalize().ok_or_else(refused)
+}

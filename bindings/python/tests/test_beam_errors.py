@@ -83,7 +83,6 @@ REFUSED: list[tuple[str, Callable[[], object]]] = [
     ("ray", lambda: MATRIX.transform_ray([1, 2, 3])),
     ("radii", lambda: beam.CrossSection((1e-3, 0))),
     ("fraction", lambda: SECTION.circle_radius([0.5, 1])),
-    ("centre", lambda: SECTION.power_in_circle_at((0, 0, 0), 1e-3)),
     ("fan_angle", lambda: fan(fan_angle=4)),
     ("apex_offset", lambda: fan(apex_offset=0)),
     ("focus_distance", lambda: fan(focus_distance=NAN)),

@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use tem00_beam as physics;
 
-use super::arguments::{OrRaiseAs, components, coordinates, map, map_inner, try_map};
+use super::arguments::{OrRaiseAs, components, map, map_inner, try_map};
 use crate::arrays::{Numbers, Values, Vector, Vectors};
 
 /// The irradiance of a Gaussian beam of 1 W over a plane across it.
@@ -25,33 +25,6 @@ impl CrossSection {
     fn new(radii: [f64; 2]) -> PyResult<Self> {
         let section = physics::measurement::CrossSection::new(radii);
         Ok(Self(section.or_raise_as(&[("radius", "radii")])?))
-    }
-
-    /// Return the fraction of the power within a circle anywhere.
-    ///
-    /// Parameters
-    /// ----------
-    /// centre : array_like, shape (..., 2)
-    ///     Centre of the circle, in metres.
-    /// radius : float or array_like
-    ///     Radius of the circle, in metres; it broadcasts with ``centre[..., 0]``.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Fraction from 0 to 1, in the common shape.
-    fn power_in_circle_at<'py>(
-        &self,
-        py: Python<'py>,
-        centre: Vectors<'py>,
-        radius: Numbers<'py>,
-    ) -> PyResult<Values<'py>> {
-        let [x, y] = components(("centre", &centre))?;
-        let [radius] = coordinates([("radius", &radius)])?;
-        let columns = [x, y, radius];
-        map_inner(py, columns, &[], |[x, y, radius]| {
-            [self.0.power_in_circle_at([x, y], radius)]
-        })
     }
 
     /// Return the radius of the centred circle that holds a fraction of the power, in metres.

@@ -5,13 +5,8 @@
 //! | [`gauss_legendre`] | nodes and weights of any order, at compile time |
 //! | [`integrate`], [`for_each_node`] | smooth functions whose finest feature is known |
 //! | [`integrate_from_root`] | the same with a root `√(x − start)` at the start |
-//! | [`integrate_adaptively`] | functions that are never negative, to a stated accuracy |
-
-mod adaptive;
 
 use core::f64::consts::PI;
-
-pub use adaptive::integrate_adaptively;
 
 /// Sixteen points per panel.
 const RULE: [(f64, f64); 16] = gauss_legendre();

@@ -13,23 +13,16 @@ pub(super) struct Interval {
     middle: f64,
     /// Half the width, not negative.
     half: f64,
-    /// The lower end.
-    low: f64,
 }
 
 impl Interval {
     /// The interval of half-width `half` about `middle`, or its mirror image about 0. A negative
     /// width holds nothing.
     pub(super) fn new(middle: f64, half: f64) -> Self {
-        let (middle, half) = (middle.abs(), half.max(0.0));
-        let low = middle - half;
-        Self { middle, half, low }
-    }
-
-    /// The same interval, for a caller who knows its lower end more precisely than
-    /// `middle − half`.
-    pub(super) const fn with_low(self, low: f64) -> Self {
-        Self { low, ..self }
+        Self {
+            middle: middle.abs(),
+            half: half.max(0.0),
+        }
     }
 
     /// The fraction of the power in this interval if the 1/e² half-width is `w`.
@@ -40,7 +33,7 @@ impl Interval {
         if h < NARROW && m * h < NARROW {
             return narrow(m, h);
         }
-        let (low, high) = (in_units(self.low, w), in_units(self.middle + self.half, w));
+        let (low, high) = (in_units(self.middle - self.half, w), in_units(self.middle + self.half, w));
         if low > 0.0 {
             0.5 * (libm::erfc(low) - libm::erfc(high))
         } else {

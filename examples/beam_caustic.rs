@@ -19,8 +19,8 @@ use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use table::Failure;
-use tem00::beam::measurement::{CausticFit, Estimate};
 use tem00::beam::{GaussianBeam, Refusal};
+use tem00::optics::{CausticFit, Estimate};
 
 const WAVELENGTH: f64 = 650e-9;
 

@@ -11,8 +11,8 @@ mod plot;
 use std::error::Error;
 
 use kuva::prelude::{LinePlot, Plot};
-use tem00::beam::optics::{AbcdMatrix, ThickLens};
 use tem00::beam::{GaussianBeam, LocatedBeam, Refusal};
+use tem00::optics::{AbcdMatrix, ThickLens, through_lens};
 
 const FOCAL_LENGTH: f64 = 0.1;
 
@@ -59,7 +59,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let focus = (-200..=400).map(|i| {
             let s = f64::from(i) / 100.0;
             let beam = before_lens(relative * FOCAL_LENGTH, s * FOCAL_LENGTH)?;
-            let behind = beam.through_lens(FOCAL_LENGTH)?.waist_distance();
+            let behind = through_lens(&beam, FOCAL_LENGTH)?.waist_distance();
             Ok((s, behind / FOCAL_LENGTH))
         });
         let focus = focus.collect::<Result<Vec<_>, Refusal>>()?;

@@ -19,7 +19,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use table::Failure;
 use tem00::beam::Refusal;
-use tem00::beam::measurement::{CrossSection, KnifeEdgeFit};
+use tem00::optics::{CrossSection, KnifeEdgeFit};
 
 /// A trace of a 1 mW beam with w = 0.5 mm around 3 mm, with an error of ±5 µW.
 fn made_up() -> Result<[Vec<f64>; 2], Refusal> {

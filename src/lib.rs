@@ -15,6 +15,7 @@
 //! | [`decorrelation`] | `tem00-decorrelation` | imaging geometry → displacement → correlation |
 //! | [`coherence`] | `tem00-coherence` | linewidth → contrast, grain and line noise of speckle |
 //! | [`camera`] | `tem00-camera` | lens and sensor: projection, focus, tilt, distortion |
+//! | [`optics`] | `tem00-optics` | lenses, apertures and fits of measured beams |
 //! | [`numerics`] | `tem00-numerics` | grids, pruned Fourier transform, pupil functions |
 #![cfg_attr(
     feature = "statistics",
@@ -62,6 +63,7 @@ pub use tem00_coherence as coherence;
 pub use tem00_config as config;
 pub use tem00_decorrelation as decorrelation;
 pub use tem00_numerics as numerics;
+pub use tem00_optics as optics;
 #[cfg(feature = "scan")]
 pub use tem00_scan as scan;
 #[cfg(feature = "tracer")]

@@ -1,7 +1,7 @@
 //! Ray matrices of one transverse axis.
 
 use pyo3::prelude::*;
-use tem00_beam::optics as physics;
+use tem00_optics as physics;
 
 use super::{
     arguments::{OrRaiseAs, components, map_inner},

@@ -99,7 +99,7 @@ impl AstigmaticBeam {
     /// AstigmaticBeam
     ///     The beam seen from the output plane.
     fn through_axes(&self, systems: [PyRef<'_, AbcdMatrix>; 2]) -> PyResult<Self> {
-        let beam = self.0.through_axes(systems.map(|system| system.0));
+        let beam = tem00_optics::through_axes(&self.0, systems.map(|system| system.0));
         Ok(Self(beam.or_raise_as(&[("determinant", "systems")])?))
     }
 
@@ -126,7 +126,7 @@ impl AstigmaticBeam {
     ///     Distance from the reference plane, in metres.
     fn cross_section_at(&self, z: f64) -> PyResult<CrossSection> {
         let z = coordinate("z", z)?;
-        Ok(CrossSection(self.0.cross_section_at(z)))
+        CrossSection::of(self.0.radii_at(z))
     }
 
     /// Return the wavefront curvatures along the principal axes, in 1/m, positive where diverging.

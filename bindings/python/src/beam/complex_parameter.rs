@@ -19,7 +19,7 @@ use crate::arrays::{Numbers, Values};
 ///     Rayleigh range, in metres, from 1e-100 to 1e100.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ComplexBeamParameter(pub(super) physics::optics::ComplexBeamParameter);
+pub(crate) struct ComplexBeamParameter(pub(super) tem00_optics::ComplexBeamParameter);
 
 #[expect(clippy::wrong_self_convention, reason = "Python objects are borrowed")]
 #[pymethods]
@@ -27,7 +27,7 @@ impl ComplexBeamParameter {
     #[new]
     fn new(distance_from_waist: f64, rayleigh_range: f64) -> PyResult<Self> {
         let parameter =
-            physics::optics::ComplexBeamParameter::new(distance_from_waist, rayleigh_range);
+            tem00_optics::ComplexBeamParameter::new(distance_from_waist, rayleigh_range);
         let names = [("waist_distance", "distance_from_waist")];
         Ok(Self(parameter.or_raise_as(&names)?))
     }
@@ -48,7 +48,7 @@ impl ComplexBeamParameter {
         curvature: f64,
         effective_wavelength: f64,
     ) -> PyResult<Self> {
-        let parameter = physics::optics::ComplexBeamParameter::from_radius_and_curvature(
+        let parameter = tem00_optics::ComplexBeamParameter::from_radius_and_curvature(
             radius,
             curvature,
             effective_wavelength,

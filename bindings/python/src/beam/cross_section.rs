@@ -1,7 +1,6 @@
 //! The irradiance over a plane across a beam.
 
 use pyo3::prelude::*;
-use tem00_beam as physics;
 
 use super::arguments::{OrRaiseAs, components, map, map_inner, try_map};
 use crate::arrays::{Numbers, Values, Vector, Vectors};
@@ -17,13 +16,21 @@ use crate::arrays::{Numbers, Values, Vector, Vectors};
 ///     Principal radii (1/e²) along x and y, in metres, from 1e-30 to 1e30.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct CrossSection(pub(super) physics::measurement::CrossSection);
+pub(crate) struct CrossSection(pub(super) tem00_optics::CrossSection);
+
+impl CrossSection {
+    /// The cross-section of a beam that has these radii there.
+    pub(super) fn of(radii: [f64; 2]) -> PyResult<Self> {
+        let section = tem00_optics::CrossSection::new(radii);
+        Ok(Self(section.or_raise_as(&[("radius", "z")])?))
+    }
+}
 
 #[pymethods]
 impl CrossSection {
     #[new]
     fn new(radii: [f64; 2]) -> PyResult<Self> {
-        let section = physics::measurement::CrossSection::new(radii);
+        let section = tem00_optics::CrossSection::new(radii);
         Ok(Self(section.or_raise_as(&[("radius", "radii")])?))
     }
 

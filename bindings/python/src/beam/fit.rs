@@ -20,10 +20,10 @@ pyo3::create_exception!(
 );
 
 /// A fitted value and its standard error, in the same unit: `tem00._estimate.Estimate` in Python, a number.
-pub(crate) struct Estimate(physics::measurement::Estimate);
+pub(crate) struct Estimate(tem00_optics::Estimate);
 
-impl From<physics::measurement::Estimate> for Estimate {
-    fn from(estimate: physics::measurement::Estimate) -> Self {
+impl From<tem00_optics::Estimate> for Estimate {
+    fn from(estimate: tem00_optics::Estimate) -> Self {
         Self(estimate)
     }
 }
@@ -64,7 +64,7 @@ pub(super) fn estimate_class(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
 ///     If the data do not determine a beam.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct CausticFit(physics::measurement::CausticFit);
+pub(crate) struct CausticFit(tem00_optics::CausticFit);
 
 #[pymethods]
 impl CausticFit {
@@ -102,11 +102,11 @@ impl CausticFit {
         let (positions, radii) = (list("positions", &positions)?, list("radii", &radii)?);
         let known = errors.known(radii.len())?;
         let errors = match (&errors, known) {
-            (_, Some(deviations)) => physics::measurement::RadiusErrors::Known(deviations),
-            (Errors::Equal, None) => physics::measurement::RadiusErrors::Equal,
-            _ => physics::measurement::RadiusErrors::Relative,
+            (_, Some(deviations)) => tem00_optics::RadiusErrors::Known(deviations),
+            (Errors::Equal, None) => tem00_optics::RadiusErrors::Equal,
+            _ => tem00_optics::RadiusErrors::Relative,
         };
-        physics::measurement::CausticFit::with_errors(wavelength, positions, radii, errors)
+        tem00_optics::CausticFit::with_errors(wavelength, positions, radii, errors)
             .map(Self)
             .map_err(|error| raised(error, "radii"))
     }
@@ -183,14 +183,14 @@ methods! {
 ///     If the data do not determine a beam.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct KnifeEdgeFit(physics::measurement::KnifeEdgeFit);
+pub(crate) struct KnifeEdgeFit(tem00_optics::KnifeEdgeFit);
 
 #[pymethods]
 impl KnifeEdgeFit {
     #[new]
     fn new(positions: Components<'_>, powers: Components<'_>) -> PyResult<Self> {
         let (positions, powers) = (list("positions", &positions)?, list("powers", &powers)?);
-        let fit = physics::measurement::KnifeEdgeFit::new(positions, powers);
+        let fit = tem00_optics::KnifeEdgeFit::new(positions, powers);
         fit.map(Self).map_err(|error| raised(error, "powers"))
     }
 
@@ -210,7 +210,7 @@ impl KnifeEdgeFit {
     #[staticmethod]
     fn with_background(positions: Components<'_>, powers: Components<'_>) -> PyResult<Self> {
         let (positions, powers) = (list("positions", &positions)?, list("powers", &powers)?);
-        let fit = physics::measurement::KnifeEdgeFit::with_background(positions, powers);
+        let fit = tem00_optics::KnifeEdgeFit::with_background(positions, powers);
         fit.map(Self).map_err(|error| raised(error, "powers"))
     }
 
@@ -289,12 +289,13 @@ impl Errors<'_> {
 }
 
 /// The exception for data that cannot be fitted; `values` is the name of what was measured.
-fn raised(error: physics::measurement::FitError, values: &str) -> PyErr {
+fn raised(error: tem00_optics::FitError, values: &str) -> PyErr {
     let name = match &error {
-        physics::measurement::FitError::Argument(argument) => argument.parameter(),
-        physics::measurement::FitError::TooFewPoints { .. }
-        | physics::measurement::FitError::EqualPositions => "positions",
-        physics::measurement::FitError::LengthsDiffer { .. } => values,
+        tem00_optics::FitError::Argument(argument) => argument.parameter(),
+        tem00_optics::FitError::TooFewPoints { .. } | tem00_optics::FitError::EqualPositions => {
+            "positions"
+        }
+        tem00_optics::FitError::LengthsDiffer { .. } => values,
         _ => return FitError::new_err(error.to_string()),
     };
     refused(name, error.to_string())

@@ -71,7 +71,7 @@ impl GaussianBeam {
     ///     Signed distance from the waist, in metres.
     fn cross_section_at(&self, z: f64) -> PyResult<CrossSection> {
         let z = coordinate("z", z)?;
-        Ok(CrossSection(self.0.cross_section_at(z)))
+        CrossSection::of([self.0.radius_at(z); 2])
     }
 
     /// Return the energy-flow vector per watt of beam power, in 1/m².

@@ -47,7 +47,7 @@ impl LocatedBeam {
     ///     Signed distance from the reference plane, in metres.
     fn cross_section_at(&self, z: f64) -> PyResult<CrossSection> {
         let z = coordinate("z", z)?;
-        Ok(CrossSection(self.0.cross_section_at(z)))
+        CrossSection::of([self.0.radius_at(z); 2])
     }
 
     /// Return the beam behind a thin lens in the reference plane.
@@ -62,7 +62,9 @@ impl LocatedBeam {
     /// LocatedBeam
     ///     The beam seen from the lens.
     fn through_lens(&self, focal_length: f64) -> PyResult<Self> {
-        Ok(Self(self.0.through_lens(focal_length).or_raise()?))
+        Ok(Self(
+            tem00_optics::through_lens(&self.0, focal_length).or_raise()?,
+        ))
     }
 
     pub(super) fn __repr__(&self) -> String {
@@ -85,7 +87,7 @@ methods! {
     get waist_distance -> f64;
 
     /// Complex beam parameter in the reference plane.
-    get complex_parameter -> ComplexBeamParameter = ComplexBeamParameter(this.0.complex_parameter());
+    get complex_parameter -> ComplexBeamParameter = ComplexBeamParameter(tem00_optics::ComplexBeamParameter::of(&this.0));
 
     /// Return the beam radius (1/e²) in metres.
     ///

@@ -3,12 +3,7 @@ use core::f64::consts::PI;
 use glam::{DVec2, DVec3};
 use tem00_numerics::check;
 
-use crate::measurement::CrossSection;
-use crate::optics::AbcdMatrix;
 use crate::{GaussianBeam, LocatedBeam, Refusal};
-
-/// Largest relative difference of the determinants of the two axes of a system.
-const DETERMINANT_TOLERANCE: f64 = 1e-9;
 
 /// An elliptic Gaussian beam with simple astigmatism: two principal axes at right angles, each with
 /// its own waist, waist position and M².
@@ -67,7 +62,9 @@ impl AstigmaticBeam {
     pub fn new(x: LocatedBeam, y: LocatedBeam) -> Result<Self, Refusal> {
         let [first, second] = [x, y].map(|axis| axis.beam().wavelength());
         if (first - second).abs() > 0.0 {
-            return Err(Refusal::new("wavelength", [first, second], EQUAL).in_unit("m"));
+            return Err(
+                Refusal::new("wavelength", [first, second], "equal in both axes").in_unit("m"),
+            );
         }
         Ok(Self {
             axes: [x, y],
@@ -134,43 +131,6 @@ impl AstigmaticBeam {
         Ok(Self { rotation, ..self })
     }
 
-    /// Returns the beam behind a system, seen from its output plane, for this beam in front of it,
-    /// seen from its input plane, where the two matrices act along the principal axes of the beam.
-    ///
-    /// Spherical lenses are the same in both axes, cylinder lenses and tilted mirrors are not.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if the determinants of the matrices differ by more than 1e−9, or as
-    /// [`AbcdMatrix::transform`] does for either axis.
-    ///
-    /// # Examples
-    ///
-    /// A laser diode, focused by a lens of 4.5 mm to 200 mm behind it:
-    ///
-    /// ```
-    /// use tem00_beam::AstigmaticBeam;
-    /// use tem00_beam::optics::AbcdMatrix;
-    ///
-    /// let diode = AstigmaticBeam::from_divergences(658e-9, [0.133, 0.326])?;
-    /// let lens = AbcdMatrix::free_space(4.6036e-3)?.then(AbcdMatrix::thin_lens(4.5e-3)?);
-    /// let [wx, wy] = diode.through_axes([lens; 2])?.radii_at(0.2);
-    /// assert!((wx - 68.4e-6).abs() < 0.1e-6 && (wy - 27.9e-6).abs() < 0.1e-6);
-    /// # Ok::<(), tem00_beam::Refusal>(())
-    /// ```
-    pub fn through_axes(&self, systems: [AbcdMatrix; 2]) -> Result<Self, Refusal> {
-        check_determinants(&systems)?;
-        let x = systems[0].transform(&self.axes[0])?;
-        let y = systems[1].transform(&self.axes[1])?;
-        // The wavelength of y is that of x but for rounding.
-        let beam = GaussianBeam::from_waist(x.beam().wavelength(), y.beam().waist_radius())?
-            .with_m_squared(y.beam().m_squared())?;
-        Ok(Self {
-            axes: [x, LocatedBeam::new(beam, y.waist_distance())?],
-            ..*self
-        })
-    }
-
     /// Returns the beams along the first and the second principal axis.
     pub const fn axes(&self) -> &[LocatedBeam; 2] {
         &self.axes
@@ -190,12 +150,6 @@ impl AstigmaticBeam {
     /// reference plane.
     pub fn radii_at(&self, z: f64) -> [f64; 2] {
         self.axes.map(|axis| axis.radius_at(z))
-    }
-
-    /// Returns the distribution of the irradiance over the plane at the distance `z`, in metres, from
-    /// the reference plane, along the principal axes.
-    pub fn cross_section_at(&self, z: f64) -> CrossSection {
-        CrossSection::of_radii(self.radii_at(z))
     }
 
     /// Returns the wavefront curvatures `1/R` along the principal axes, in m⁻¹, at the distance `z`
@@ -304,16 +258,6 @@ impl AstigmaticBeam {
     fn principal(&self, point: DVec3) -> DVec2 {
         DVec2::from_angle(-self.rotation).rotate(point.truncate())
     }
-}
-
-/// What both axes of a beam or a system must share is …
-const EQUAL: &str = "equal in both axes";
-
-/// Checks that light leaves both axes of a system into one medium.
-fn check_determinants(axes: &[AbcdMatrix; 2]) -> Result<(), Refusal> {
-    let [x, y] = axes.map(|axis| axis.determinant());
-    let holds = (x - y).abs() <= DETERMINANT_TOLERANCE * x;
-    check::that(holds, "determinant", [x, y], "", EQUAL)
 }
 
 /// Returns the two solutions, measured from the waist of `x`, of

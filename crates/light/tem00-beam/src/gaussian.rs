@@ -1,11 +1,9 @@
-use core::f64::consts::PI;
+use core::f64::consts::{LN_2, PI};
 
 use glam::DVec3;
 use tem00_numerics::{Shown, check};
 
 use crate::Refusal;
-use crate::measurement::CrossSection;
-use crate::range::length;
 
 /// The largest divergence, in radians, for which the paraxial model is trusted.
 const PARAXIAL_LIMIT: f64 = 0.5;
@@ -84,8 +82,8 @@ impl GaussianBeam {
     /// ```
     pub fn from_waist(wavelength: f64, waist_radius: f64) -> Result<Self, Refusal> {
         Self {
-            wavelength: length("wavelength", wavelength)?,
-            waist_radius: length("waist_radius", waist_radius)?,
+            wavelength: check::length("wavelength", wavelength)?,
+            waist_radius: check::length("waist_radius", waist_radius)?,
             m_squared: 1.0,
         }
         .paraxial()
@@ -121,7 +119,7 @@ impl GaussianBeam {
     /// # Ok::<(), tem00_beam::Refusal>(())
     /// ```
     pub fn from_divergence(wavelength: f64, divergence: f64) -> Result<Self, Refusal> {
-        length("wavelength", wavelength)?;
+        check::length("wavelength", wavelength)?;
         check::that(
             divergence > 0.0 && divergence <= PARAXIAL_LIMIT,
             "divergence",
@@ -130,7 +128,7 @@ impl GaussianBeam {
             "in (0, 0.5] rad",
         )?;
         let waist_radius = wavelength / (PI * divergence);
-        length("waist_radius", waist_radius)?;
+        check::length("waist_radius", waist_radius)?;
         Ok(Self {
             wavelength,
             waist_radius,
@@ -281,34 +279,13 @@ impl GaussianBeam {
     /// Returns the full width at half maximum `√(2 ln 2) w(z)`, in metres, of the irradiance at the
     /// signed distance `z` from the waist.
     pub fn fwhm_at(&self, z: f64) -> f64 {
-        let [width, _] = self.cross_section_at(z).fwhm();
-        width
+        (2.0 * LN_2).sqrt() * self.radius_at(z)
     }
 
     /// Returns the D4σ width `2 w(z)`, in metres, at the signed distance `z` from the waist: four
     /// times the standard deviation of the irradiance, a diameter.
     pub fn d4_sigma_at(&self, z: f64) -> f64 {
-        let [width, _] = self.cross_section_at(z).d4_sigma();
-        width
-    }
-
-    /// Returns the distribution of the irradiance over the plane at the signed distance `z`, in
-    /// metres, from the waist.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use tem00_beam::GaussianBeam;
-    ///
-    /// let beam = GaussianBeam::from_waist(650e-9, 0.1e-3)?;
-    /// let spot = beam.cross_section_at(0.3);
-    /// let through_pinhole = spot.power_in_circle(beam.radius_at(0.3));
-    /// assert!((through_pinhole - 0.8647).abs() < 0.0001);
-    /// # Ok::<(), tem00_beam::Refusal>(())
-    /// ```
-    pub fn cross_section_at(&self, z: f64) -> CrossSection {
-        let radius = self.radius_at(z);
-        CrossSection::of_radii([radius, radius])
+        2.0 * self.radius_at(z)
     }
 
     /// Returns the wavefront curvature `1/R(z)`, in m⁻¹, at the signed distance `z` from the waist.

@@ -13,7 +13,6 @@
 //! - Beams: [`GaussianBeam`] (z = 0 at the waist), [`LocatedBeam`] (at a reference plane),
 //!   [`AstigmaticBeam`] (elliptic).
 //! - Laser lines: [`LaserLine`] (z = 0 at the lens) with a [`LineProfile`].
-//! - The laboratory: [`optics`] for lenses and mirrors, [`measurement`] for widths, apertures and fits.
 //!
 //! *Renderer*, in `f32` or `f64` and in world coordinates: [`SpotLight`], [`LineLight`] and
 //! [`TabulatedLineLight`], plain structs prepared from the above by a [`Placement`], queried through
@@ -24,7 +23,8 @@
 //! # Scope and non-goals
 //!
 //! Paraxial, scalar beams of one wavelength, with M² ≥ 1, in free space and through ideal lenses,
-//! mirrors and interfaces. Not here: aberrations, beams wider than 0.5 rad, higher modes other than
+//! mirrors and interfaces. Lenses, mirrors, apertures and fits of measured beams
+//! are in `tem00-optics`. Not here: aberrations, beams wider than 0.5 rad, higher modes other than
 //! through M², spots that turn on their way, pulses, polarisation, interference between beams, and
 //! what a surface does with the light. It is no laser-safety tool.
 
@@ -33,12 +33,9 @@ pub mod closed_form;
 mod gaussian;
 mod line;
 mod located;
-pub mod measurement;
 mod normal;
-pub mod optics;
 mod placed;
 mod profile;
-mod range;
 mod real;
 
 pub use astigmatic::AstigmaticBeam;
@@ -46,7 +43,6 @@ pub use gaussian::GaussianBeam;
 pub use glam::DVec3;
 pub use line::{FanGeometry, FocusCurve, LaserLine};
 pub use located::LocatedBeam;
-pub use num_complex::Complex64;
 pub use placed::{
     ApertureHit, Axis, Bounds, Emitter, LineLight, NextEvent, NextEventSlices, Placement, RayPdf,
     RaySample, SampledEvent, SpotLight, TabulatedLineLight,

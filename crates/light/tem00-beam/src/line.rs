@@ -5,7 +5,6 @@ use tem00_numerics::check;
 
 use crate::normal::normal_density;
 use crate::profile::{SlopeDensity, SlopeProfile};
-use crate::range::coordinate;
 use crate::{GaussianBeam, LineProfile, Refusal};
 
 /// The apex offset must exceed this many source radii, so that the fan has a sharp apex.
@@ -134,7 +133,7 @@ impl LaserLine {
             "rad",
             "in (0, π) rad",
         )?;
-        coordinate("focus_distance", fan.focus_distance)?;
+        check::coordinate("focus_distance", fan.focus_distance)?;
         let density = profile.slope_density(fan.fan_angle)?;
         let line = Self {
             focus,

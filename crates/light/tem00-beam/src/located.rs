@@ -1,5 +1,5 @@
-use crate::measurement::CrossSection;
-use crate::range::coordinate;
+use tem00_numerics::check;
+
 use crate::{GaussianBeam, Refusal};
 
 /// A Gaussian beam and where its waist lies, seen from a reference plane.
@@ -36,7 +36,7 @@ impl LocatedBeam {
     pub fn new(beam: GaussianBeam, waist_distance: f64) -> Result<Self, Refusal> {
         Ok(Self {
             beam,
-            waist_distance: coordinate("waist_distance", waist_distance)?,
+            waist_distance: check::coordinate("waist_distance", waist_distance)?,
         })
     }
 
@@ -53,12 +53,6 @@ impl LocatedBeam {
     /// Returns the beam radius, in metres, at the signed distance `z` from the reference plane.
     pub fn radius_at(&self, z: f64) -> f64 {
         self.beam.radius_at(z - self.waist_distance)
-    }
-
-    /// Returns the distribution of the irradiance over the plane at the signed distance `z`, in
-    /// metres, from the reference plane.
-    pub fn cross_section_at(&self, z: f64) -> CrossSection {
-        CrossSection::of_radii([self.radius_at(z); 2])
     }
 
     /// Returns the wavefront curvature `1/R`, in m⁻¹, at the signed distance `z` from the reference

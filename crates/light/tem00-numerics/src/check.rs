@@ -71,6 +71,24 @@ pub fn range(
     that(false, parameter, x, unit, format!("from {least} to {most}")).map(|()| x)
 }
 
+/// Returns a length from 1e−30 m to 1e30 m: squares, products and quotients of such lengths stay within `f64`.
+///
+/// # Errors
+///
+/// Returns its refusal if not.
+pub fn length(parameter: &'static str, x: f64) -> Result<f64, Refusal> {
+    range(parameter, x, [1e-30, 1e30], "m")
+}
+
+/// Returns a coordinate within ±1e30 m.
+///
+/// # Errors
+///
+/// Returns its refusal if not.
+pub fn coordinate(parameter: &'static str, x: f64) -> Result<f64, Refusal> {
+    range(parameter, x, [-1e30, 1e30], "m")
+}
+
 /// Checks every entry of a list, and says which is refused.
 ///
 /// # Errors

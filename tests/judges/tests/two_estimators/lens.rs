@@ -4,10 +4,8 @@ use std::f64::consts::PI;
 
 use tem00::{
     DVec2,
-    beam::{
-        DVec3, GaussianBeam, LocatedBeam,
-        optics::{AbcdMatrix, ThickLens},
-    },
+    beam::{DVec3, GaussianBeam, LocatedBeam},
+    optics::{AbcdMatrix, ThickLens},
     tracer::{Frame, Material, Method, Scene, Shape, TriangleMesh},
 };
 

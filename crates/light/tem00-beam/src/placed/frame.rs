@@ -1,7 +1,7 @@
 use glam::DVec3;
+use tem00_numerics::check;
 
 use crate::Refusal;
-use crate::range::coordinate;
 use crate::real::Real;
 
 /// The sine of the smallest accepted angle between the fan axis and the direction.
@@ -23,7 +23,7 @@ impl Placement {
     /// Returns the frame of the light.
     pub(super) fn frame(&self) -> Result<Frame<f64>, Refusal> {
         for x in self.origin.to_array() {
-            coordinate("origin", x)?;
+            check::coordinate("origin", x)?;
         }
         let refused =
             |parameter, vector: DVec3, allowed| Refusal::new(parameter, vector.to_array(), allowed);

@@ -1,0 +1,69 @@
+use core::{error, fmt};
+
+use tem00_beam::Refusal;
+
+/// Reasons why measured data have no fit.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum FitError {
+    /// The lists of measured values differ in length.
+    LengthsDiffer {
+        /// The number of positions.
+        positions: usize,
+        /// The number of values that belong to them.
+        values: usize,
+    },
+    /// There are fewer points than the parameters and one error estimate need.
+    TooFewPoints {
+        /// The number of points.
+        got: usize,
+        /// The smallest number accepted.
+        needed: usize,
+    },
+    /// An argument, or an entry of one, is outside its range.
+    Argument(Refusal),
+    /// All positions are the same.
+    EqualPositions,
+    /// The power does not change along the trace, or only a beam of negative power would fit it.
+    NoEdge,
+    /// The data leave a parameter open: no divergence is to be seen, or no waist, or an edge falls
+    /// between two positions.
+    Undetermined,
+    /// The search for the best parameters did not come to an end, as for radii on a straight line,
+    /// which fit the better the smaller the waist.
+    NotConverged,
+}
+
+impl fmt::Display for FitError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::LengthsDiffer { positions, values } => write!(
+                f,
+                "each position needs one value, got {positions} positions and {values} values"
+            ),
+            Self::TooFewPoints { got, needed } => {
+                write!(f, "the fit needs at least {needed} points, got {got}")
+            }
+            Self::Argument(error) => error.fmt(f),
+            Self::EqualPositions => write!(f, "positions must differ, but all are the same"),
+            Self::NoEdge => write!(
+                f,
+                "the power does not change along the trace as it would across a beam"
+            ),
+            Self::Undetermined => write!(f, "the data do not determine all parameters"),
+            Self::NotConverged => write!(
+                f,
+                "the search for the best fit did not converge: \
+                 the data may not determine all parameters"
+            ),
+        }
+    }
+}
+
+impl error::Error for FitError {}
+
+impl From<Refusal> for FitError {
+    fn from(error: Refusal) -> Self {
+        Self::Argument(error)
+    }
+}

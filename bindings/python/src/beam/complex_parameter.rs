@@ -1,7 +1,6 @@
 //! The complex beam parameter.
 
 use pyo3::{prelude::*, types::PyComplex};
-use tem00_beam as physics;
 
 use super::arguments::{OrRaiseAs, try_map};
 use crate::arrays::{Numbers, Values};

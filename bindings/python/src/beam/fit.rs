@@ -1,7 +1,6 @@
 //! Beams fitted to measured data.
 
 use pyo3::{exceptions::PyRuntimeError, prelude::*};
-use tem00_beam as physics;
 
 use super::{
     arguments::{list, map},

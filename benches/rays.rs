@@ -25,11 +25,10 @@ use obvhs::{
 use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use tem00::camera::Ray;
+use tem00::engine::{SpeckleModel, SpecklePlan, render_frame, samples_per_frame};
+use tem00::geometry::{Hit, Intersector, Rectangle, Segment, Shape, TriangleMesh};
 use tem00::scene::parse_scene;
-use tem00::tracer::{
-    Hit, Intersector, LocalFrame, Rectangle, RenderOptions, Scene, Segment, Shape, SpeckleModel,
-    SpecklePlan, TriangleMesh, render_frame,
-};
+use tem00::tracer::{LocalFrame, RenderOptions, Scene};
 
 /// Every eighth pixel of a 512² image in both directions, and the rays of each.
 const PIXELS: usize = 64;
@@ -362,7 +361,7 @@ fn renders(criterion: &mut Criterion) {
     let plan = SpecklePlan::new(&scene, 0).expect("a small pattern");
     let model = SpeckleModel::generate(&scene, &plan).expect("a small pattern");
     let mut group = criterion.benchmark_group("camera samples, all threads");
-    group.throughput(Throughput::Elements(scene.samples_per_frame(&options)));
+    group.throughput(Throughput::Elements(samples_per_frame(&scene, &options)));
     for (name, speckle) in [
         ("laser line", None),
         ("laser line with speckle", Some(&model)),
@@ -410,7 +409,10 @@ fn corners(criterion: &mut Criterion) {
         let scene = corner(linewidth);
         let plan = SpecklePlan::new(&scene, 0).expect("a small pattern");
         let model = SpeckleModel::generate(&scene, &plan).expect("a small pattern");
-        group.throughput(Throughput::Elements(scene.samples_per_frame(&scene.render)));
+        group.throughput(Throughput::Elements(samples_per_frame(
+            &scene,
+            &scene.render,
+        )));
         group.bench_function(name, |bencher| {
             let cancel = AtomicBool::new(false);
             bencher.iter(|| render_frame(&scene, Some(&model), 0, &scene.render, |_| (), &cancel));

@@ -27,7 +27,15 @@
 )]
 #![cfg_attr(
     feature = "tracer",
-    doc = "| [`tracer`] | `tem00-tracer` | a reference path and light tracer (feature `tracer`) |"
+    doc = "| [`geometry`] | `tem00-geometry` | shapes, meshes and where rays meet them (feature `tracer`) |"
+)]
+#![cfg_attr(
+    feature = "tracer",
+    doc = "| [`tracer`] | `tem00-tracer` | scenes, and the reference integrator (feature `tracer`) |"
+)]
+#![cfg_attr(
+    feature = "tracer",
+    doc = "| [`engine`] | `tem00-engine` | the same scenes, rendered fast (feature `tracer`) |"
 )]
 #![cfg_attr(
     feature = "tracer",
@@ -62,6 +70,10 @@ pub use tem00_coherence as coherence;
 #[cfg(any(feature = "tracer", feature = "triangulation"))]
 pub use tem00_config as config;
 pub use tem00_decorrelation as decorrelation;
+#[cfg(feature = "tracer")]
+pub use tem00_engine as engine;
+#[cfg(feature = "tracer")]
+pub use tem00_geometry as geometry;
 pub use tem00_numerics as numerics;
 pub use tem00_optics as optics;
 #[cfg(feature = "scan")]

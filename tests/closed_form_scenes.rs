@@ -8,9 +8,10 @@
 use std::{path::Path, sync::atomic::AtomicBool};
 
 use tem00::{
+    engine::render_frame,
     scene::parse_scene,
     statistics::t_test_mean,
-    tracer::{Frame, RenderOptions, render_frame},
+    tracer::{Frame, RenderOptions},
 };
 
 /// A correct renderer fails a comparison with this probability at a given set of seeds.

@@ -10,10 +10,11 @@ use std::{path::Path, sync::atomic::AtomicBool};
 use tem00::{
     Camera, CameraDescription, DVec2, DVec3, Laser, Pose, Speckle, SpeckleFrame,
     decorrelation::pupil_overlap_correlation,
+    engine::{SpeckleModel, SpecklePlan, render_frame},
     numerics::{Grid, cast::to_f32},
     scene::parse_scene,
     statistics::{Moments, pearson_correlation},
-    tracer::{RenderOptions, SpeckleModel, SpecklePlan, render_frame},
+    tracer::RenderOptions,
 };
 
 const SIZE: [usize; 2] = [160, 120];

@@ -12,9 +12,10 @@ use std::{
 
 use tem00::{
     beam::GaussianBeam,
+    engine::{SpeckleModel, SpecklePlan, render_frame},
     scene::parse_scene,
     statistics::t_test_mean,
-    tracer::{Frame, RenderError, RenderOptions, Scene, SpeckleModel, SpecklePlan, render_frame},
+    tracer::{Frame, RenderError, RenderOptions, Scene},
 };
 
 const SEEDS: u64 = 20;

@@ -21,8 +21,9 @@ use std::{
     time::Instant,
 };
 
+use tem00::engine::render_frame;
 use tem00::scene::read_scene;
-use tem00::tracer::{Frame, LightEvents, RenderOptions, Sampling, Scene, render_frame};
+use tem00::tracer::{Frame, LightEvents, RenderOptions, Sampling, Scene};
 
 #[derive(Default)]
 struct Server {

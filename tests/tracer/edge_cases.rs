@@ -4,11 +4,9 @@ use core::sync::atomic::AtomicBool;
 use std::path::Path;
 
 use tem00::{
+    engine::render_frame,
     scene::parse_scene,
-    tracer::{
-        Environment, Frame, LaserEvents, Light, Material, Method, RenderOptions, Scene,
-        render_frame,
-    },
+    tracer::{Environment, Frame, LaserEvents, Light, Material, Method, RenderOptions, Scene},
 };
 
 use super::estimate::{self, assert_mean};

@@ -3,8 +3,9 @@ use std::path::Path;
 
 use glam::DVec2;
 use tem00::{
+    engine::{LaserInspection, LightFate, LightPart, inspect_lasers, render_frame},
     scene::parse_scene,
-    tracer::{LaserInspection, LightFate, LightPart, RenderOptions, Scene, render_frame},
+    tracer::{RenderOptions, Scene},
 };
 
 /// A spot of 1 mm on a plate, in the middle of an image of 48 × 40 pixels that shows 19 × 16 mm.
@@ -43,7 +44,7 @@ fn and(sections: &str) -> Scene {
 }
 
 fn inspected(scene: &Scene) -> LaserInspection {
-    scene.inspect_lasers(0).unwrap().remove(0)
+    inspect_lasers(scene, 0).unwrap().remove(0)
 }
 
 /// Returns the greatest radiance of light straight from the laser that a render finds.

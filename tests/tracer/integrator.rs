@@ -3,10 +3,10 @@ use std::path::Path;
 
 use glam::DVec3;
 use tem00::{
+    engine::render_frame,
     scene::parse_scene,
     tracer::{
         Environment, Frame, LaserEvents, Light, LightEvents, Material, Metal, RenderOptions, Scene,
-        render_frame,
     },
 };
 

@@ -2,11 +2,11 @@ use core::sync::atomic::AtomicBool;
 use std::path::Path;
 
 use tem00::{
+    engine::{SpeckleModel, SpecklePlan, render_frame},
     numerics::Grid,
     scene::parse_scene,
     tracer::{
-        Crop, Filter, Frame, Material, RenderError, RenderOptions, Sampling, Scene, SpeckleModel,
-        SpecklePlan, TracerError, render_frame,
+        Crop, Filter, Frame, Material, RenderError, RenderOptions, Sampling, Scene, TracerError,
     },
 };
 

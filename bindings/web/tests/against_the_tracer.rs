@@ -8,11 +8,10 @@
 use std::sync::atomic::AtomicBool;
 
 use glam::DVec3;
+use tem00_engine::{SpeckleModel, SpecklePlan, render_frame};
+use tem00_geometry::{Rectangle, Shape};
 use tem00_gpu::{Gpu, wgpu};
-use tem00_tracer::{
-    Frame, Material, Rectangle, RenderOptions, Scene, Shape, SpeckleModel, SpecklePlan, Surface,
-    Trajectory, render_frame,
-};
+use tem00_tracer::{Frame, Material, RenderOptions, Scene, Surface, Trajectory};
 use tem00_web::{
     Passes, measure,
     optics::{self, SENSOR},

@@ -10,10 +10,11 @@ use core::f64::consts::PI;
 use std::{path::Path, sync::atomic::AtomicBool};
 
 use tem00::{
+    geometry::{Rectangle, Shape},
     numerics::Grid,
     scan::{Measurement, MeasurementScene, ScanSettings},
     scene::parse_scene,
-    tracer::{Material, Rectangle, Scene, Shape, Surface, Trajectory},
+    tracer::{Material, Scene, Surface, Trajectory},
     triangulation::{CalibrationSettings, DVec2, DVec3, DetectorSettings, SensorDescription},
 };
 

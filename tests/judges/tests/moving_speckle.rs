@@ -13,11 +13,12 @@ use tem00::{
         CameraFrame, Configuration, ConfigurationData, Illumination, ImagingGeometry, LensData,
         RigidMotion, RigidMotions, SpeckleMotion, axial_correlation, pupil_overlap_correlation,
     },
+    engine::{SpeckleModel, SpecklePlan, render_frame},
     numerics::Grid,
     scene::parse_scene,
     speckle::{PupilField, SlicePath, SpeckleStack},
     statistics::pearson_correlation,
-    tracer::{RenderOptions, SpeckleModel, SpecklePlan, render_frame},
+    tracer::RenderOptions,
 };
 
 const LENS: LensData = LensData {

@@ -1,4 +1,4 @@
-use tem00_tracer::SpeckleChange;
+use tem00_engine::SpeckleChange;
 use tem00_triangulation::TriangulationError;
 
 use crate::ScanError;

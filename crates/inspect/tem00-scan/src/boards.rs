@@ -6,9 +6,10 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec2, DVec3};
 use tem00_camera::Camera;
+use tem00_geometry::{MeshInstance, Shape, TriangleMesh};
 use tem00_tracer::{
-    Laser, Light, Material, MeshInstance, Relief, RigidMotion, Scene, Shape, Surface,
-    SurfaceSpeckle, TracerError, Trajectory, TriangleMesh,
+    Laser, Light, Material, Relief, RigidMotion, Scene, Surface, SurfaceSpeckle, TracerError,
+    Trajectory,
 };
 use tem00_triangulation::{
     BoardSettings, Checkerboard, LaserPlane, TriangulationError, Triangulator,

@@ -1,8 +1,9 @@
 use std::borrow::Cow;
 
 use glam::{DMat3, DVec2, DVec3};
+use tem00_engine::{ReferencePoint, SpeckleChange};
 use tem00_numerics::{Grid, cast::to_f32};
-use tem00_tracer::{ReferencePoint, RigidMotion, SpeckleChange};
+use tem00_tracer::RigidMotion;
 use tem00_triangulation::{
     Calibration, ColumnLight, LineDetector, LinePoint, PositionNoise, ProfilePoint, RawFrame,
     Sensor, Validity, speckle_covariance,

@@ -3,11 +3,9 @@ use core::sync::atomic::AtomicBool;
 use glam::DMat3;
 use glam::{DVec2, DVec3};
 use tem00_camera::Camera;
+use tem00_engine::{ReferencePoint, SpeckleChange, SpeckleModel, render_frame};
 use tem00_numerics::seed::{Purpose, derived};
-use tem00_tracer::{
-    BeamShape, Filter, Frame, Laser, Method, ReferencePoint, Scene, SpeckleChange, SpeckleModel,
-    SurfaceSpeckle, render_frame,
-};
+use tem00_tracer::{BeamShape, Filter, Frame, Laser, Method, Scene, SurfaceSpeckle};
 use tem00_triangulation::{
     Calibration, DetectorSettings, LineDetector, Sensor, SensorDescription, TriangulationError,
 };

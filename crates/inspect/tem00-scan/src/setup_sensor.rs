@@ -5,6 +5,8 @@ use std::path::Path;
 
 use glam::DVec2;
 use tem00_camera::{Camera, CameraDescription};
+use tem00_engine::render_frame;
+use tem00_geometry::{Rectangle, Shape as Surface, Sphere, TriangleMesh};
 use tem00_numerics::{
     Grid,
     cast::to_f32,
@@ -12,10 +14,7 @@ use tem00_numerics::{
 };
 use tem00_scene::parse_scene;
 use tem00_topography::{Artefact, Axis, DVec3, Field, Groove, ProfileSensor, Shape, SurfacePoint};
-use tem00_tracer::{
-    Filter, Keyframe, Rectangle, RenderOptions, Scene, Shape as Surface, Sphere, TracerError,
-    Trajectory, TriangleMesh, render_frame,
-};
+use tem00_tracer::{Filter, Keyframe, RenderOptions, Scene, TracerError, Trajectory};
 use tem00_triangulation::{CalibrationSettings, LineImage, Setup};
 
 use crate::{

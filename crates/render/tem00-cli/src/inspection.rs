@@ -5,8 +5,9 @@ mod words;
 
 use std::path::{Path, PathBuf};
 
+use tem00_engine::{LaserInspection, inspect_lasers};
 use tem00_report::{args::IndexRange, failure::Failure};
-use tem00_tracer::{LaserInspection, Scene, TracerError};
+use tem00_tracer::{Scene, TracerError};
 
 /// The most frames that are looked at.
 const MAX_FRAMES: u32 = 8;
@@ -26,7 +27,7 @@ impl<'a> Inspection<'a> {
     ///
     /// Returns an error if the geometry cannot be built.
     pub fn new(scene: &'a Scene, frames: IndexRange) -> Result<Self, TracerError> {
-        let frames = spread(frames).map(|frame| Ok((frame, scene.inspect_lasers(frame)?)));
+        let frames = spread(frames).map(|frame| Ok((frame, inspect_lasers(scene, frame)?)));
         Ok(Self {
             scene,
             frames: frames.collect::<Result<_, TracerError>>()?,

@@ -4,10 +4,9 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
+use tem00_engine::{PatternPlan, SpecklePlan, mean_over_sample_displacements};
 use tem00_statistics::{Contrast, StatisticsError, airy_autocovariance};
-use tem00_tracer::{
-    Laser, LaserLayers, PatternPlan, Scene, SpecklePlan, mean_over_sample_displacements,
-};
+use tem00_tracer::{Laser, LaserLayers, Scene};
 
 /// The brightness of the previews.
 #[derive(Clone, Debug, Deserialize, Serialize)]

@@ -1,10 +1,9 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use tem00_config::Folder;
+use tem00_geometry::{MeshInstance, TriangleMesh};
 use tem00_numerics::Grid;
-use tem00_tracer::TriangleMesh;
 
 use crate::mesh_file::{MeshFileError, read_mesh_with};
 use crate::radiance_map::{RadianceMapError, read_radiance_map};
@@ -26,7 +25,7 @@ pub(crate) struct Assets {
     /// Sentences about what was left out of them.
     notes: Vec<String>,
     /// The meshes by canonical path, in the unit of their files.
-    meshes: HashMap<(PathBuf, Shading), Arc<TriangleMesh>>,
+    meshes: HashMap<(PathBuf, Shading), MeshInstance>,
 }
 
 impl Assets {
@@ -45,10 +44,10 @@ impl Assets {
         &mut self,
         path: &Path,
         shading: Shading,
-    ) -> Result<Arc<TriangleMesh>, MeshFileError> {
+    ) -> Result<MeshInstance, MeshFileError> {
         let canonical = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
         if let Some(mesh) = self.meshes.get(&(canonical.clone(), shading)) {
-            return Ok(Arc::clone(mesh));
+            return Ok(mesh.clone());
         }
         let (mesh, notes) = read_mesh_with(path, 1.0, self.folder.access).map_err(|error| {
             if self.folder.holds(&canonical) {
@@ -63,7 +62,7 @@ impl Assets {
             }
             _ => mesh,
         };
-        let mesh = Arc::new(mesh);
+        let mesh = MeshInstance::from(mesh);
         self.note(path);
         for note in notes {
             let note = format!("{}: {note}", path.display());
@@ -71,7 +70,7 @@ impl Assets {
                 self.notes.push(note);
             }
         }
-        self.meshes.insert((canonical, shading), Arc::clone(&mesh));
+        self.meshes.insert((canonical, shading), mesh.clone());
         Ok(mesh)
     }
 

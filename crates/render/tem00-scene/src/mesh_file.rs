@@ -10,8 +10,8 @@ mod stl;
 use std::path::Path;
 
 use tem00_config::{FileAccess, MAX_ASSET_BYTES, read_input};
+use tem00_geometry::TriangleMesh;
 use tem00_numerics::check_memory;
-use tem00_tracer::TriangleMesh;
 
 use polygons::Polygons;
 

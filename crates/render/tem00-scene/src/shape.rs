@@ -1,7 +1,8 @@
 use glam::DVec3;
 use tem00_config::{Choice, LENGTH, NUMBER, Problem, Section, Value, rejected};
 use tem00_decorrelation::RigidMotion;
-use tem00_tracer::{Cylinder, MeshInstance, Rectangle, Rotation, Shape, Sphere};
+use tem00_geometry::{Cylinder, MeshInstance, Rectangle, Shape, Sphere};
+use tem00_tracer::Rotation;
 
 use crate::assets::{Assets, Shading};
 use crate::mesh_file::MeshFileError;
@@ -69,13 +70,14 @@ pub(crate) fn rectangle(section: &Section<'_>) -> Result<Rectangle, Problem> {
         half_width * right,
         half_height * normal.cross(right),
     )
-    .map_err(|error| rejected(&error, error.parameter(), &[section]))
+    .map_err(|error| rejected(&error, Some(error.parameter()), &[section]))
 }
 
 fn sphere(section: &Section<'_>) -> Result<Sphere, Problem> {
     let centre = section.or("centre", DVec3::ZERO, Value::lengths)?;
     let radius = section.required("radius", "\"10 mm\"")?.positive(&LENGTH)?;
-    Sphere::new(centre, radius).map_err(|error| rejected(&error, error.parameter(), &[section]))
+    Sphere::new(centre, radius)
+        .map_err(|error| rejected(&error, Some(error.parameter()), &[section]))
 }
 
 /// Reads a tube, placed by the middle of its axis or by the end where the axis begins.
@@ -95,7 +97,7 @@ fn cylinder(section: &Section<'_>) -> Result<PlacedShape, Problem> {
         }
     };
     let tube = Cylinder::new(centre, axis, radius, length);
-    let tube = tube.map_err(|error| rejected(&error, error.parameter(), &[section]))?;
+    let tube = tube.map_err(|error| rejected(&error, Some(error.parameter()), &[section]))?;
     Ok(PlacedShape {
         shape: Shape::Cylinder(tube),
         position,
@@ -124,8 +126,8 @@ fn mesh(section: &Section<'_>, assets: &mut Assets) -> Result<(MeshInstance, DVe
     };
     let mesh = assets.mesh(&path, shading).map_err(failed)?;
     let place = |motion: &RigidMotion| {
-        let placed = MeshInstance::new(mesh.clone()).placed(unit * scale, motion);
-        placed.map_err(|error| rejected(&error, error.parameter(), &[section]))
+        let placed = mesh.placed(unit * scale, motion);
+        placed.map_err(|error| rejected(&error, Some(error.parameter()), &[section]))
     };
     let turned = place(&turn)?;
     let position = match &centre {

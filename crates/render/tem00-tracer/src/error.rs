@@ -24,7 +24,7 @@ pub enum TracerError {
         /// The allowed values.
         allowed: &'static str,
     },
-    /// An argument of the camera, the light or a motion is refused.
+    /// An argument of a shape, the camera, the light or a motion is refused.
     Refused(Refusal),
     /// The speckle pattern is not possible.
     Speckle(SpeckleError),
@@ -44,8 +44,6 @@ pub enum TracerError {
         /// The bytes that are available.
         available: u64,
     },
-    /// The scene has none of something it needs.
-    Missing(&'static str),
 }
 
 impl TracerError {
@@ -82,7 +80,6 @@ impl fmt::Display for TracerError {
                 f,
                 "the layers of a frame need {needed} bytes of memory, and {available} are available"
             ),
-            Self::Missing(what) => write!(f, "the scene needs {what}"),
         }
     }
 }

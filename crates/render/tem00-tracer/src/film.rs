@@ -1,11 +1,15 @@
+//! The layers of a frame, and the sums over the samples of a pixel that fill them.
+
 mod layout;
 mod memory;
+mod sample;
 mod sums;
 
 use tem00_numerics::{Grid, cast::to_f32};
 
-pub(crate) use self::layout::FilmLayout;
-pub(crate) use self::sums::PixelSums;
+pub use self::layout::FilmLayout;
+pub use self::sample::{LaserSample, Sample, Seen};
+pub use self::sums::{LaserSums, Moments, PixelSums};
 use crate::TracerError;
 
 /// The rendered layers of one frame, or of the part of it that was cropped.
@@ -68,7 +72,7 @@ pub struct LaserLayers {
 
 /// The layers while they are rendered.
 #[derive(Debug)]
-pub(crate) struct Film {
+pub struct Film {
     frame: Frame,
     /// The power on target and its variance by strip and laser, summed at the end in the order of the strips, so that
     /// the sum has the same bits for any number of threads.
@@ -81,7 +85,7 @@ impl Film {
     /// # Errors
     ///
     /// Returns an error if there is not enough memory for the layers.
-    pub(crate) fn new(layout: &FilmLayout<'_>) -> Result<Self, TracerError> {
+    pub fn new(layout: &FilmLayout<'_>) -> Result<Self, TracerError> {
         let area = layout.area;
         memory::check(layout)?;
         let layer = || Grid::filled(area.width, area.height, 0.0_f32);
@@ -111,12 +115,12 @@ impl Film {
     }
 
     /// Counts rays that were followed.
-    pub(crate) const fn count_rays(&mut self, rays: u64) {
+    pub const fn count_rays(&mut self, rays: u64) {
         self.frame.rays += rays;
     }
 
     /// Writes what the samples of a pixel of a strip have found.
-    pub(crate) fn write(&mut self, strip: usize, at: [usize; 2], pixel: &PixelSums) {
+    pub fn write(&mut self, strip: usize, at: [usize; 2], pixel: &PixelSums) {
         let at = at.into();
         for (layers, laser) in self.frame.lasers.iter_mut().zip(&pixel.lasers) {
             layers.single[at] = to_f32(pixel.mean(laser.single));
@@ -141,7 +145,7 @@ impl Film {
     }
 
     /// Returns the finished frame.
-    pub(crate) fn into_frame(mut self) -> Frame {
+    pub fn into_frame(mut self) -> Frame {
         let lasers = self.frame.lasers.len();
         for (index, layers) in self.frame.lasers.iter_mut().enumerate() {
             let strips = || self.power.iter().skip(index).step_by(lasers);
@@ -149,52 +153,5 @@ impl Film {
             layers.power_error = strips().map(|[_, variance]| variance).sum::<f64>().sqrt();
         }
         self.frame
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use core::sync::atomic::AtomicBool;
-
-    use glam::DVec3;
-    use tem00_statistics::{Moments, t_test_mean};
-
-    use crate::{RenderOptions, render_frame, testing};
-
-    #[test]
-    fn the_error_of_the_power_is_its_scatter_from_seed_to_seed() {
-        // A spot of an eighth of a pixel, which one or none of 16 samples meets.
-        let camera = testing::camera(DVec3::new(0.0, 0.0, 0.3), [8, 8]);
-        let laser = testing::spot(DVec3::new(0.1, 0.0, 0.3), 5e-6);
-        let scene = testing::scene(
-            camera,
-            &[laser],
-            testing::plate(DVec3::ZERO, DVec3::Z, [0.02, 0.02]),
-        );
-        let render = |seed| {
-            let options = RenderOptions {
-                samples_per_pixel: 16,
-                seed,
-                ..scene.render
-            };
-            let frame = render_frame(&scene, None, 0, &options, |_| (), &AtomicBool::new(false));
-            frame.unwrap().lasers.remove(0)
-        };
-        let layers: Vec<_> = (0..2000).map(render).collect();
-        let powers: Vec<f64> = layers
-            .iter()
-            .map(|layers| layers.power_on_target / 1e-3)
-            .collect();
-        let variance = layers
-            .iter()
-            .map(|layers| (layers.power_error / 1e-3).powi(2));
-        let stated = (variance.sum::<f64>() / layers.len() as f64).sqrt();
-        let seen = Moments::from_samples(&powers).unwrap().standard_deviation();
-        assert!(t_test_mean(&powers, 1.0).unwrap().p_value > 1e-3);
-        // Samples that keep apart meet it somewhat more evenly than independent ones.
-        assert!(
-            (1.0..1.25).contains(&(stated / seen)),
-            "stated {stated}, seen {seen}"
-        );
     }
 }

@@ -10,9 +10,8 @@
 //!
 //! # Main types
 //!
-//! [`Scene`] describes what is rendered; `tem00-scene` reads one from a file. [`SpecklePlan`] chooses the
-//! patterns and says why, [`SpeckleModel`] generates them, and [`render_frame`] renders a [`Frame`] of
-//! layers. [`SpeckleChange`] is how speckle moves and changes between two frames.
+//! [`Scene`] describes what is rendered; `tem00-scene` reads one from a file. [`ReferenceSpeckle`] holds its speckle, and
+//! a [`Frame`] of layers.
 //!
 //! # Scope and non-goals
 //!
@@ -24,51 +23,29 @@
 
 mod environment;
 mod error;
-mod film;
+pub mod film;
 mod filter;
 mod finish;
-mod inspection;
-mod integrator;
-mod intersector;
 mod light;
-mod light_tracer;
 mod local_frame;
 mod material;
-mod mesh;
 mod metal;
-mod render;
-mod sampler;
+mod options;
+mod render_error;
 mod scene;
-mod shape;
-mod speckle;
-mod spread;
-mod survey;
-#[cfg(test)]
-mod testing;
 
 pub use environment::Environment;
 pub use error::TracerError;
 pub use film::{Frame, LaserLayers};
 pub use filter::{Filter, FilterSample, FilterSampler};
 pub use finish::FinishingProcess;
-pub use inspection::{LaserInspection, LightFate, LightPart};
-pub use intersector::{Intersector, Segment};
 pub use light::{Light, LightSample};
 pub use local_frame::LocalFrame;
 pub use material::{BsdfSample, Material, OpticalRoughness, OpticalRoughnessQuery};
-pub use mesh::{MeshError, TriangleMesh};
 pub use metal::Metal;
-pub use render::{
-    Crop, LaserEvents, LightEvents, Method, RenderError, RenderOptions, Sampling, render_frame,
-};
-pub use sampler::mean_over_sample_displacements;
+pub use options::{Crop, LaserEvents, LightEvents, Method, RenderOptions, Sampling};
+pub use render_error::RenderError;
 pub use scene::{Scene, SpeckleSettings, Surface, SurfaceSpeckle};
-
-pub use shape::{Cylinder, Hit, MeshInstance, Rectangle, Shape, Sphere};
-pub use speckle::{
-    CascadeNote, CorrelationNote, PatternPlan, ReferencePoint, RoughnessNote, SpeckleChange,
-    SpeckleModel, SpecklePlan,
-};
 
 /// Lasers, and motions from frame to frame.
 pub use tem00_shading::{

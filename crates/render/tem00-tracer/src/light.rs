@@ -4,10 +4,11 @@ mod spherical_rectangle;
 use core::f64::consts::PI;
 
 use glam::DVec3;
+use tem00_geometry::Rectangle;
 
 pub use self::sample::LightSample;
 use self::spherical_rectangle::SphericalRectangle;
-use crate::{Environment, Rectangle, TracerError};
+use crate::{Environment, TracerError};
 
 /// The solid angle, in steradian, below which near rectangles are sampled by area as far ones are:
 /// its rounding error is 1e−11 of this.

@@ -85,7 +85,7 @@ impl Material {
     }
 
     /// Returns whether only the side of the normal scatters light.
-    pub(crate) const fn is_one_sided(&self) -> bool {
+    pub const fn is_one_sided(&self) -> bool {
         self.one_sided
     }
 

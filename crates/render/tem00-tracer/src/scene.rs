@@ -1,7 +1,8 @@
 use tem00_camera::Camera;
 use tem00_coherence::Relief;
+use tem00_geometry::Shape;
 
-use crate::{Laser, Light, Material, RenderOptions, Shape, Trajectory};
+use crate::{Laser, Light, Material, RenderOptions, Trajectory};
 
 /// An object: a shape made of a material, perhaps moving from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -146,20 +147,21 @@ impl Scene {
         surfaces.chain(lights).collect()
     }
 
-    /// Returns whether a plate is all that light can meet: it meets it once.
-    pub(crate) fn is_plate(&self) -> bool {
-        matches!(
-            self.surfaces.as_slice(),
-            [] | [Surface {
-                shape: Shape::Rectangle(_),
-                ..
-            }]
-        )
+    /// Returns whether an object is a mirror or of smooth glass.
+    ///
+    /// If so, the light that it sends from a laser to other surfaces is followed from the laser.
+    pub fn has_specular_surfaces(&self) -> bool {
+        let mut surfaces = self.surfaces.iter();
+        surfaces.any(|surface| surface.material.is_specular())
     }
 
     /// Returns whether the speckle of laser `laser` on surface `surface` may differ between two
     /// frames: whether surface, camera or laser move.
-    pub(crate) fn speckle_moves(&self, laser: usize, surface: usize) -> bool {
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `laser < lasers.len()` and `surface < surfaces.len()`.
+    pub fn speckle_moves(&self, laser: usize, surface: usize) -> bool {
         self.frames > 1
             && !(self.camera_trajectory.is_still()
                 && self.lasers[laser].trajectory().is_still()

@@ -10,10 +10,11 @@ use tem00::coherence::{
     ResolutionCell, SpectralLine,
 };
 use tem00::decorrelation::pupil_overlap_correlation;
+use tem00::engine::{ReferencePoint, SpeckleChange, SpeckleModel, SpecklePlan, render_frame};
+use tem00::geometry::{Rectangle, Shape};
 use tem00::tracer::{
-    BeamShape, Laser, LaserDescription, Material, Rectangle, ReferencePoint, RenderOptions,
-    Rotation, Scene, Shape, SpeckleChange, SpeckleModel, SpecklePlan, Surface, Trajectory,
-    render_frame,
+    BeamShape, Laser, LaserDescription, Material, RenderOptions, Rotation, Scene, Surface,
+    Trajectory,
 };
 
 const WAVELENGTH: f64 = 450e-9;

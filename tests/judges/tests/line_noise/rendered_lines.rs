@@ -3,8 +3,9 @@
 use std::{error::Error, path::Path, sync::atomic::AtomicBool};
 
 use tem00::{
+    engine::{SpeckleModel, SpecklePlan, render_frame},
     scene::parse_scene,
-    tracer::{Crop, RenderOptions, Scene, SpeckleModel, SpecklePlan, render_frame},
+    tracer::{Crop, RenderOptions, Scene},
     triangulation::{
         DVec2, DVec3, DetectorSettings, LaserPlane, LineDetector, LineMethod, Triangulator,
     },

@@ -2,9 +2,10 @@
 
 use tem00::{
     decorrelation::{DVec3, pupil_overlap_correlation},
+    geometry::{Rectangle, Shape},
     numerics::Grid,
     statistics::pearson_correlation,
-    tracer::{Rectangle, Scene, Shape, Surface, SurfaceSpeckle},
+    tracer::{Scene, Surface, SurfaceSpeckle},
 };
 
 use super::setting::{LENS, SIDE, Setting, Step, part, speckle, tolerance};
@@ -88,7 +89,7 @@ fn bodies_that_share_a_pattern_for_the_memory_have_places_of_their_own() {
     let mut scene = scene();
     // 32 slices of 64 × 64 samples of 8 bytes, but not the plate's one beside them.
     scene.speckle.memory = 1 << 20;
-    let plan = tem00::tracer::SpecklePlan::new(&scene, 6);
+    let plan = tem00::engine::SpecklePlan::new(&scene, 6);
     let plan = plan.expect("a pattern").to_string();
     assert!(plan.contains("2 positions in one pattern"), "{plan}");
     judge(&scene);

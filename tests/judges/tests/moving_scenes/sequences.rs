@@ -5,9 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use tem00::{
     decorrelation::{DVec3, pupil_overlap_correlation},
+    geometry::{Rectangle, Shape},
     numerics::Grid,
     statistics::pearson_correlation,
-    tracer::{Keyframe, Rectangle, Scene, Shape, Trajectory},
+    tracer::{Keyframe, Scene, Trajectory},
 };
 
 use super::setting::{LENS, SIDE, Setting, part, speckle, tolerance};

@@ -5,9 +5,10 @@ use tem00::{
         CameraFrame, Configuration, ConfigurationData, DVec2, DVec3, Illumination, ImagingGeometry,
         LensData, RigidMotion, RigidMotions, SpeckleMotion,
     },
+    engine::{SpeckleModel, SpecklePlan, render_frame},
     numerics::Grid,
     scene::parse_scene,
-    tracer::{RenderOptions, Rotation, Scene, SpeckleModel, SpecklePlan, Trajectory, render_frame},
+    tracer::{RenderOptions, Rotation, Scene, Trajectory},
 };
 
 /// A plate at the origin that faces a camera 0.3 m away.

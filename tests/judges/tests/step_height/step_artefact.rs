@@ -4,8 +4,8 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use tem00::config::FileAccess;
+use tem00::engine::{SpeckleModel, SpecklePlan};
 use tem00::scan::{MeasuredFrame, MeasuredPoint, Measurement, MeasurementScene, mean_point};
-use tem00::tracer::{SpeckleModel, SpecklePlan};
 
 /// The height of the step, in metres.
 pub(crate) const STEP: f64 = 1e-3;

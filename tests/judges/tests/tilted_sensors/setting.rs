@@ -2,12 +2,12 @@ use std::{path::Path, sync::atomic::AtomicBool};
 
 use tem00::{
     camera::{Camera, CameraDescription, RadialDistortion, SensorTilt},
+    engine::{SpeckleModel, SpecklePlan, render_frame},
+    geometry::{Rectangle, Shape},
     numerics::Grid,
     scan::{MeasuredFrame, Measurement, MeasurementScene, ScanSettings},
     scene::parse_scene,
-    tracer::{
-        Rectangle, RenderOptions, Shape, SpeckleModel, SpecklePlan, Trajectory, render_frame,
-    },
+    tracer::{RenderOptions, Trajectory},
     triangulation::{CalibrationSettings, DVec2, DVec3, DetectorSettings, SensorDescription},
 };
 

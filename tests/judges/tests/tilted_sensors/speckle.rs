@@ -5,9 +5,9 @@ use core::f64::consts::PI;
 use tem00::{
     camera::{RadialDistortion, SensorTilt},
     decorrelation::equivalent_pupil_shift,
+    engine::{ReferencePoint, SpeckleChange},
     numerics::{Grid, jinc},
     scan::SensorSpeckle,
-    tracer::{ReferencePoint, SpeckleChange},
     triangulation::{DVec2, DVec3},
     wave::displacement_between,
 };

@@ -4,13 +4,11 @@ use std::{path::Path, sync::atomic::AtomicBool};
 
 use tem00::{
     camera::{Camera, CameraDescription},
+    engine::{SpeckleModel, render_frame},
     numerics::Grid,
     scene::parse_scene,
     statistics::{kolmogorov_smirnov, t_test_mean},
-    tracer::{
-        Frame, LaserEvents, LaserLayers, Material, Method, RenderOptions, Scene, SpeckleModel,
-        render_frame,
-    },
+    tracer::{Frame, LaserEvents, LaserLayers, Material, Method, RenderOptions, Scene},
 };
 
 /// Correct tracers fail a comparison with this probability at the fixed seeds.

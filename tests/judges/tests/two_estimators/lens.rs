@@ -6,7 +6,7 @@ use tem00::{
     DVec2,
     beam::{DVec3, GaussianBeam, LocatedBeam},
     optics::{AbcdMatrix, ThickLens},
-    tracer::{Frame, Material, Method, Scene, Shape, TriangleMesh},
+    geometry::{Shape, TriangleMesh}, tracer::{Frame, Material, Method, Scene},
 };
 
 use super::comparison::{Series, assert_mean, paint, sharp_scene};

@@ -2,10 +2,9 @@
 
 use tem00::{
     beam::DVec3,
-    tracer::{
-        LaserEvents, LaserLayers, Material, Method, Rectangle, Scene, Shape, SpeckleModel,
-        SpecklePlan,
-    },
+    engine::{SpeckleModel, SpecklePlan},
+    geometry::{Rectangle, Shape},
+    tracer::{LaserEvents, LaserLayers, Material, Method, Scene},
 };
 
 use super::comparison::{Series, assert_agree, assert_mean, paint, sharp_scene};

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use tem00_cli::{Inspection, check_room, frames, tracer_failure};
+use tem00_engine::{SpeckleChange, SpeckleModel, SpecklePlan, samples_per_frame};
 use tem00_report::{
     args::IndexRange, failure::Failure, interrupt, output, progress::FrameProgress,
 };
@@ -10,7 +11,6 @@ use tem00_scan::{
     Averaging, HeightMap, MeasuredFrame, MeasuredPoint, Measurement, MeasurementScene, Scan,
     ScanError,
 };
-use tem00_tracer::{SpeckleChange, SpeckleModel, SpecklePlan};
 
 use super::{
     files::Files,
@@ -79,7 +79,7 @@ impl<'a> Job<'a> {
 
     pub(super) fn progress(&self) -> FrameProgress {
         let scene = self.measurement.scene();
-        let samples_per_frame = scene.samples_per_frame(&scene.render);
+        let samples_per_frame = samples_per_frame(scene, &scene.render);
         let frames = u64::from(self.frames.last - self.frames.first) + 1;
         FrameProgress::new(frames, samples_per_frame)
     }

@@ -1,7 +1,8 @@
 use std::sync::atomic::AtomicBool;
 
+use tem00_engine::{SpeckleModel, SpecklePlan, render_frame};
 use tem00_numerics::Grid;
-use tem00_tracer::{Filter, RenderOptions, Scene, SpeckleModel, SpecklePlan, render_frame};
+use tem00_tracer::{Filter, RenderOptions, Scene};
 use tem00_triangulation::{
     BoardSettings, BoardView, Calibration, CameraModel, LineDetector, RawFrame, Sensor, calibrate,
 };

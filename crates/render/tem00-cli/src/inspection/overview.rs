@@ -6,8 +6,10 @@ use kuva::render::{
     render::{PathData, Primitive, Scene as Canvas, TextAnchor},
 };
 use tem00_camera::Camera;
+use tem00_engine::LaserInspection;
+use tem00_geometry::Shape;
 use tem00_report::plot::Drawing;
-use tem00_tracer::{LaserInspection, Scene, Shape};
+use tem00_tracer::Scene;
 
 /// The side of a view, and the room about it, in units of the drawing.
 const SIDE: f64 = 380.0;

@@ -1,8 +1,9 @@
 //! The text of an inspection.
 
 use glam::DVec3;
+use tem00_engine::{LaserInspection, LightFate, LightPart};
 use tem00_report::digits::rounded;
-use tem00_tracer::{Crop, LaserInspection, LightFate, LightPart, Scene};
+use tem00_tracer::{Crop, Scene};
 
 /// The minimum fraction of a laser's power that is reported.
 const TOLD: f64 = 0.01;

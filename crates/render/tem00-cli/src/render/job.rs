@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use tem00_engine::{SpeckleModel, SpecklePlan, cascade_notes, roughness_notes, samples_per_frame};
 use tem00_report::{
     args::IndexRange,
     failure::Failure,
@@ -10,7 +11,7 @@ use tem00_report::{
     output::{self, note},
 };
 use tem00_speckle::SpeckleError;
-use tem00_tracer::{Scene, SpeckleModel, SpecklePlan, TracerError};
+use tem00_tracer::{Scene, TracerError};
 
 use super::{record::Fingerprint, report::note_roughness};
 use crate::{
@@ -116,9 +117,9 @@ impl<'a> Render<'a> {
         for line in plan.to_string().lines() {
             note(&format!("speckle: {line}"));
         }
-        let notes = self.scene.roughness_notes();
+        let notes = roughness_notes(&self.scene);
         note_roughness(&notes.map_err(|error| tracer_failure(&self.args.common.scene, &error))?);
-        let cascades = self.scene.cascade_notes();
+        let cascades = cascade_notes(&self.scene);
         for line in cascades.map_err(|error| tracer_failure(&self.args.common.scene, &error))? {
             note(&format!("speckle: {line}"));
         }
@@ -132,7 +133,7 @@ impl<'a> Render<'a> {
     }
 
     pub(super) fn samples_per_frame(&self) -> u64 {
-        self.scene.samples_per_frame(&self.scene.render)
+        samples_per_frame(&self.scene, &self.scene.render)
     }
 
     pub(super) fn description(&self) -> String {

@@ -11,8 +11,9 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 use tem00_config::{MAX_TEXT_BYTES, open_input, read_input};
+use tem00_geometry::{Shape, TriangleMesh};
 use tem00_report::{atomic::write_atomically, failure::Failure};
-use tem00_tracer::{Scene, Shape, TriangleMesh};
+use tem00_tracer::Scene;
 
 use crate::summary::{Exposure, FrameSummary};
 

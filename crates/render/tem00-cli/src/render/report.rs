@@ -1,7 +1,8 @@
 //! The notes of a render on standard error.
 
+use tem00_engine::RoughnessNote;
 use tem00_report::{colour::xyz_of_wavelength, output::note};
-use tem00_tracer::{LaserEvents, RoughnessNote, Scene};
+use tem00_tracer::{LaserEvents, Scene};
 
 use crate::summary::FrameSummary;
 

@@ -2,10 +2,9 @@
 
 use std::{path::Path, time::Instant};
 
+use tem00_engine::{SpeckleModel, render_frame};
 use tem00_report::{failure::Failure, interrupt, output::note, progress::FrameProgress};
-use tem00_tracer::{
-    Filter, Frame, Method, RenderError, Sampling, SpeckleModel, SurfaceSpeckle, render_frame,
-};
+use tem00_tracer::{Filter, Frame, Method, RenderError, Sampling, SurfaceSpeckle};
 
 use super::{
     job::{Render, tracer_failure},

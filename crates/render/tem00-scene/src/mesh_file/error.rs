@@ -1,7 +1,7 @@
 use core::{error, fmt};
 use std::path::PathBuf;
 
-use tem00_tracer::MeshError;
+use tem00_geometry::MeshError;
 
 /// An error of a file with a triangle mesh.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,5 +1,5 @@
 use glam::DVec3;
-use tem00_tracer::{MeshError, TriangleMesh};
+use tem00_geometry::{MeshError, TriangleMesh};
 
 use super::error::{MeshFileError, format_error, wrong};
 use super::faces::Cut;

@@ -9,7 +9,7 @@ use std::{fs, io::Cursor, path::PathBuf};
 use glam::DVec3;
 use tempfile::TempDir;
 
-use tem00_tracer::{Intersector, Shape, TriangleMesh};
+use tem00_geometry::{Intersector, Shape, TriangleMesh};
 
 use super::{MeshFileError, MeshFormat, parse, read_mesh, read_mesh_bytes};
 

@@ -3,7 +3,8 @@ use glam::DVec3;
 use tem00_beam::{AngularProfile, FocusCurve, LineProfile};
 
 use super::{CAMERA, LASER, SURFACE, TETRAHEDRON, minimal, parse, parse_with_mesh, with};
-use tem00_tracer::{BeamShape, Light, Material, Metal, RenderOptions, Shape, SpeckleSettings};
+use tem00_geometry::Shape;
+use tem00_tracer::{BeamShape, Light, Material, Metal, RenderOptions, SpeckleSettings};
 
 /// Asserts that two vectors of length 1 at most are equal but for a few roundings of 1e−16.
 #[track_caller]

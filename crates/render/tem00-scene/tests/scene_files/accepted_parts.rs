@@ -12,9 +12,10 @@ use tempfile::TempDir;
 use tem00_scene::{SceneFile, read_scene};
 
 use super::{CAMERA, LASER, TETRAHEDRON, minimal, parse, parse_with_mesh, with};
+use tem00_geometry::{Cylinder, Shape};
 use tem00_tracer::{
-    Crop, Cylinder, Environment, Filter, Keyframe, LaserEvents, Light, LineShape, Material, Metal,
-    Method, Relief, Rotation, Sampling, Shape, SpectralLine, Surface, SurfaceSpeckle, Trajectory,
+    Crop, Environment, Filter, Keyframe, LaserEvents, Light, LineShape, Material, Metal, Method,
+    Relief, Rotation, Sampling, SpectralLine, Surface, SurfaceSpeckle, Trajectory,
 };
 
 /// Reads the minimal scene with further keys of its surface.

@@ -1,8 +1,8 @@
 use approx::assert_relative_eq;
 use tem00_statistics::chi_squared;
+use tem00_testkit::Numbers;
 
 use super::*;
-use crate::sampler::Sampler;
 
 const WIDTH: usize = 80;
 const HEIGHT: usize = 6;
@@ -41,10 +41,10 @@ fn place(direction: DVec3) -> (usize, usize) {
 fn directions_are_drawn_in_proportion_to_the_light() {
     const DRAWS: u32 = 60_000;
     let sky = uneven();
-    let mut sampler = Sampler::new(1, 0);
+    let mut sampler = Numbers::new(1);
     let mut counts = vec![0_u64; WIDTH * HEIGHT];
     for _ in 0..DRAWS {
-        let direction = sky.sample(sampler.uniform_2d()).unwrap().direction;
+        let direction = sky.sample(sampler.units()).unwrap().direction;
         let (y, x) = place(direction);
         counts[y * WIDTH + x] += 1;
     }

@@ -2,7 +2,7 @@ use crate::Crop;
 
 /// Sizes of a film, and the light that it keeps apart.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FilmLayout<'a> {
+pub struct FilmLayout<'a> {
     /// The wavelengths of the lasers, in metres.
     pub wavelengths: &'a [f64],
     /// The part of the image that is rendered.

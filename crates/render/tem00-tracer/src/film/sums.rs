@@ -1,10 +1,11 @@
 use glam::DVec3;
 
-use crate::integrator::{CameraSample, LaserSample};
+use super::{LaserSample, Sample};
 
 /// Sums over the samples of one pixel.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct PixelSums {
+pub struct PixelSums {
+    /// The number of samples.
     pub samples: u32,
     /// The sums of each laser.
     pub lasers: Vec<LaserSums>,
@@ -20,18 +21,23 @@ pub(crate) struct PixelSums {
 
 /// Sums over the samples of one pixel for one laser.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct LaserSums {
+pub struct LaserSums {
+    /// Radiance of light that has met one rough surface, before speckle.
     pub single: f64,
+    /// Radiance of light that has met more than one, before speckle.
     pub multiple: f64,
+    /// The speckle factors.
     pub speckle: f64,
     /// The radiance with its speckle.
     pub radiance: Moments,
+    /// The power on the surface.
     pub power: Moments,
 }
 
 /// The sums of values and of their squares.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Moments {
+pub struct Moments {
+    /// The sum of the values.
     pub sum: f64,
     squares: f64,
 }
@@ -56,7 +62,7 @@ impl Moments {
 
 impl PixelSums {
     /// Starts with no sample.
-    pub(crate) fn new(lasers: usize) -> Self {
+    pub fn new(lasers: usize) -> Self {
         Self {
             lasers: vec![LaserSums::default(); lasers],
             ..Self::default()
@@ -64,7 +70,7 @@ impl PixelSums {
     }
 
     /// Adds a camera sample with its values for each laser.
-    pub(crate) fn add(&mut self, sample: &CameraSample, lasers: &[LaserSample]) {
+    pub fn add(&mut self, sample: &Sample, lasers: &[LaserSample]) {
         let weight = sample.weight;
         let lights = weight * sample.lights;
         let mut total = lights;
@@ -88,32 +94,32 @@ impl PixelSums {
     }
 
     /// Returns the mean over the samples of what adds up to `sum`.
-    pub(crate) fn mean(&self, sum: f64) -> f64 {
+    pub fn mean(&self, sum: f64) -> f64 {
         sum / f64::from(self.samples.max(1))
     }
 
     /// Returns the variance of the mean of what has these `moments`.
-    pub(crate) fn variance(&self, moments: &Moments) -> f64 {
+    pub fn variance(&self, moments: &Moments) -> f64 {
         moments.variance_of_mean(self.samples)
     }
 
     /// Returns the mean radiance of all sources.
-    pub(crate) fn radiance(&self) -> f64 {
+    pub fn radiance(&self) -> f64 {
         self.mean(self.total.sum)
     }
 
     /// Returns the standard deviation of the radiances of the samples; infinite for a single one.
-    pub(crate) fn deviation(&self) -> f64 {
+    pub fn deviation(&self) -> f64 {
         (self.variance(&self.total) * f64::from(self.samples)).sqrt()
     }
 
     /// Returns the mean depth of the samples that meet something, in metres, or 0.
-    pub(crate) fn depth(&self) -> f64 {
+    pub fn depth(&self) -> f64 {
         self.depth / f64::from(self.hits.max(1))
     }
 
     /// Returns the mean normal.
-    pub(crate) fn normal(&self) -> DVec3 {
+    pub fn normal(&self) -> DVec3 {
         self.normal / f64::from(self.samples.max(1))
     }
 }

@@ -1,6 +1,5 @@
 use glam::{DVec2, DVec3};
-
-use crate::Rectangle;
+use tem00_geometry::Rectangle;
 
 /// A rectangle as seen from a point before it: its image on the unit sphere.
 ///

@@ -6,7 +6,6 @@ mod plastic;
 mod specular;
 
 use core::f64::consts::{PI, TAU};
-
 use std::sync::LazyLock;
 
 use proptest::prelude::*;

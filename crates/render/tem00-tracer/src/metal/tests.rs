@@ -1,5 +1,6 @@
-use super::*;
 use proptest::prelude::*;
+
+use super::*;
 
 const ALL: [Metal; 12] = [
     Metal::Aluminium,

@@ -1,0 +1,361 @@
+//! Fate of a laser's light on its way to the camera, found without rendering an image.
+
+use glam::{DVec2, DVec3};
+use tem00_camera::{Camera, Ray};
+use tem00_geometry::{Hit, Intersector};
+use tem00_tracer::{Crop, Laser, LocalFrame, Scene, TracerError};
+
+use crate::spread::even;
+
+/// Rays of each laser, and rays of the camera, that are followed.
+const RAYS: u32 = 4096;
+/// Rays of each laser whose way is kept.
+const KEPT: u32 = 64;
+/// The maximum number of mirrors and glass surfaces that a ray is followed over.
+const MAX_SPECULAR: u32 = 16;
+/// The fraction of a laser's power from which on it counts as seen in the image.
+const MIN_FRACTION: f64 = 1e-5;
+
+/// Fate of a laser's light on its way to the camera, in one frame.
+///
+/// It is found from two sides. Rays drawn from the beam are followed over mirrors and through glass to
+/// their first rough surface, and from there straight to the camera. Rays of the camera are followed
+/// over mirrors and through glass to their first rough surface, and from there straight to the laser.
+/// Light that meets rough surfaces one after the other does not count.
+///
+/// # Validity
+///
+/// 4096 rays from either side: what fewer than one in a thousand of them find may be missed.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct LaserInspection {
+    /// The fates of the light, the largest fraction first.
+    pub parts: Vec<LightPart>,
+    /// The part of the laser's power, from 0 to about 1, on what the image shows: rough surfaces seen
+    /// straight, in mirrors or through glass, and lit straight by the laser.
+    pub fraction_in_image: f64,
+    /// The corners of the ways of the first 64 rays, from the aperture to their first rough surface, or
+    /// out of the scene.
+    pub ways: Vec<Vec<DVec3>>,
+}
+
+/// Light of a laser that meets the same fate on the same surface.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct LightPart {
+    /// The fate of this light.
+    pub fate: LightFate,
+    /// The index of the surface that it meets, unless it misses all.
+    pub surface: Option<usize>,
+    /// The part of the laser's power that it is, from 0 to 1.
+    pub fraction: f64,
+    /// The middle of the lit points, in metres; of the aperture, where it misses.
+    pub centre: DVec3,
+    /// The image point of the middle, in pixels; `None` where there is none, as behind the camera.
+    pub pixel: Option<DVec2>,
+}
+
+/// Fate of light on its way to the camera.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum LightFate {
+    /// The camera sees what it lights.
+    Seen,
+    /// It meets no rough surface: it leaves the scene, ends on a light or stays among mirrors and glass.
+    Misses,
+    /// It meets a one-sided surface from behind, which scatters nothing.
+    MeetsBack,
+    /// It lights the side of a surface that faces away from the camera.
+    LightsFarSide,
+    /// It lights what lies behind the camera.
+    BehindCamera,
+    /// It lights what lies beside the image, or beside the part of it that is rendered.
+    OutsideImage,
+    /// Something stands between what it lights and the camera: the surface of this index, or a light
+    /// for an index beyond those of the surfaces.
+    Hidden {
+        /// The index among the surfaces, and the area lights behind them.
+        by: usize,
+    },
+}
+
+impl LaserInspection {
+    /// Returns whether the camera sees light of the laser: at least a hundred thousandth of it.
+    pub fn is_seen(&self) -> bool {
+        self.fraction_in_image >= MIN_FRACTION || self.fraction_of(LightFate::Seen) > 0.0
+    }
+
+    /// Returns the part of the laser's power that meets this fate, from 0 to 1.
+    pub fn fraction_of(&self, fate: LightFate) -> f64 {
+        let parts = self.parts.iter().filter(|part| part.fate == fate);
+        parts.map(|part| part.fraction).sum()
+    }
+}
+
+/// Tells for each laser what becomes of its light in `frame`, up to the camera: to find out, before
+/// anything is rendered, why the image might stay dark.
+///
+/// # Errors
+///
+/// Returns an error if the geometry cannot be built.
+pub fn inspect_lasers(scene: &Scene, frame: u32) -> Result<Vec<LaserInspection>, TracerError> {
+    let inspector = Inspector {
+        scene,
+        camera: scene.camera_at(frame),
+        area: scene.render.crop.unwrap_or_else(|| whole(&scene.camera)),
+        intersector: Intersector::build(&scene.shapes_at(frame))?,
+        far: reach(scene),
+    };
+    let lasers = scene.lasers.iter().map(|laser| laser.in_frame(frame));
+    Ok(lasers.map(|laser| inspector.laser(&laser)).collect())
+}
+
+/// Returns a length, in metres, beyond which nothing of the scene is seen from any of its parts.
+fn reach(scene: &Scene) -> f64 {
+    let bounds = scene.surfaces.iter().map(|surface| surface.shape.bounds());
+    let points = bounds
+        .flat_map(|(low, high)| [low, high])
+        .chain(
+            scene
+                .lasers
+                .iter()
+                .map(|laser| laser.description().position),
+        )
+        .chain([scene.camera.position()]);
+    let nothing = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (low, high) = points.fold(nothing, |(low, high), p| (low.min(p), high.max(p)));
+    (high - low).length()
+}
+
+fn whole(camera: &Camera) -> Crop {
+    Crop {
+        x: 0,
+        y: 0,
+        width: camera.width(),
+        height: camera.height(),
+    }
+}
+
+/// Looks at the light in one frame.
+struct Inspector<'a> {
+    scene: &'a Scene,
+    camera: Camera,
+    /// The part of the image that is rendered.
+    area: Crop,
+    intersector: Intersector,
+    far: f64,
+}
+
+/// A ray at its end.
+struct Arrival {
+    /// The rough surface, unless it met none.
+    hit: Option<Hit>,
+    /// The direction in which it arrived.
+    direction: DVec3,
+    /// The length of its way, in metres.
+    length: f64,
+    /// The fraction of its light that mirrors and glass have left, from 0 to 1.
+    weight: f64,
+}
+
+impl Inspector<'_> {
+    fn laser(&self, laser: &Laser) -> LaserInspection {
+        let mut parts = Parts::default();
+        let mut ways = Vec::new();
+        for index in 0..RAYS {
+            let [a, b, c, d, u, v] = even(index);
+            let ray = laser.sample_ray([a, b, c, d]).ray;
+            let mut way = vec![ray.origin];
+            let arrival = self.follow(ray, laser.wavelength(), index, &mut way);
+            if index < KEPT {
+                ways.push(way);
+            }
+            let fraction = arrival.weight / f64::from(RAYS);
+            match &arrival.hit {
+                None => parts.add(LightFate::Misses, None, fraction, ray.origin),
+                Some(hit) => {
+                    let fate = self.fate(hit, arrival.direction, [u, v]);
+                    parts.add(fate, Some(hit.surface), fraction, hit.position);
+                }
+            }
+        }
+        LaserInspection {
+            parts: parts.finish(&self.camera),
+            fraction_in_image: self.fraction_in_image(laser),
+            ways,
+        }
+    }
+
+    /// Follows a ray over mirrors and through glass to its first rough surface.
+    fn follow(&self, ray: Ray, wavelength: f64, index: u32, way: &mut Vec<DVec3>) -> Arrival {
+        // The origin may lie in a surface, as an aperture does in a wall.
+        let mut ray = self
+            .intersector
+            .ray_from(ray.origin, ray.direction, ray.direction);
+        let mut arrival = Arrival {
+            hit: None,
+            direction: ray.direction,
+            length: 0.0,
+            weight: 1.0,
+        };
+        for step in 0..=MAX_SPECULAR {
+            arrival.direction = ray.direction;
+            let Some(hit) = self.intersector.intersect(&ray) else {
+                way.push(ray.origin + self.far * ray.direction);
+                return arrival;
+            };
+            way.push(hit.position);
+            arrival.length += hit.distance;
+            let Some(surface) = self.scene.surfaces.get(hit.surface) else {
+                return arrival;
+            };
+            if !surface.material.is_specular() {
+                arrival.hit = Some(hit);
+                return arrival;
+            }
+            let axes = LocalFrame::from_normal(hit.shading_normal);
+            let back = axes.to_local(-ray.direction);
+            let [u, v] = even(index.wrapping_add(step.wrapping_mul(RAYS)));
+            let Some(sample) = surface.material.sample(back, [u, v], wavelength) else {
+                return arrival;
+            };
+            arrival.weight *= sample.weight * sample.eta_squared;
+            let onward = axes.to_world(sample.wi);
+            ray = self.intersector.ray_from(hit.position, hit.normal, onward);
+        }
+        arrival
+    }
+
+    /// Returns what becomes of light that arrives at a rough surface in this direction.
+    fn fate(&self, hit: &Hit, direction: DVec3, lens: [f64; 2]) -> LightFate {
+        let lit_side = -direction.dot(hit.normal);
+        let one_sided = self.scene.surfaces[hit.surface].material.is_one_sided();
+        if one_sided && lit_side < 0.0 {
+            return LightFate::MeetsBack;
+        }
+        let to_camera = self.camera.position() - hit.position;
+        if to_camera.dot(self.camera.axes().z_axis) <= 0.0 {
+            return LightFate::BehindCamera;
+        }
+        if lit_side * to_camera.dot(hit.normal) <= 0.0 {
+            return LightFate::LightsFarSide;
+        }
+        let connection = self.camera.connect(hit.position, lens);
+        let Some(connection) = connection.filter(|found| self.is_rendered(found.pixel)) else {
+            return LightFate::OutsideImage;
+        };
+        match self.between(hit, connection.lens_point) {
+            Some(by) => LightFate::Hidden { by },
+            None => LightFate::Seen,
+        }
+    }
+
+    fn is_rendered(&self, pixel: DVec2) -> bool {
+        let Crop {
+            x,
+            y,
+            width,
+            height,
+        } = self.area;
+        let within = |value: f64, start: usize, length: usize| {
+            value >= start as f64 && value < (start + length) as f64
+        };
+        within(pixel.x, x, width) && within(pixel.y, y, height)
+    }
+
+    /// Returns the index of the first shape between a surface point and another point, if any.
+    fn between(&self, hit: &Hit, to: DVec3) -> Option<usize> {
+        if self.intersector.visible(hit.position, hit.normal, to) {
+            return None;
+        }
+        let direction = (to - hit.position).try_normalize()?;
+        let ray = self
+            .intersector
+            .ray_from(hit.position, hit.normal, direction);
+        // What hides it by a hair may not be met again: then it is the surface itself.
+        let hiding = self.intersector.intersect(&ray);
+        Some(hiding.map_or(hit.surface, |hiding| hiding.surface))
+    }
+
+    /// Returns the part of the laser's power on what the image shows.
+    ///
+    /// ```text
+    /// P = Σ E cos θ_i dA,    dA = Ω r² / cos θ_o       Ω the solid angle of each camera ray
+    /// ```
+    fn fraction_in_image(&self, laser: &Laser) -> f64 {
+        let Crop {
+            x,
+            y,
+            width,
+            height,
+        } = self.area;
+        let corner = DVec2::new(x as f64, y as f64);
+        let size = DVec2::new(width as f64, height as f64);
+        let pixels_per_ray = size.x * size.y / f64::from(RAYS);
+        let power: f64 = (0..RAYS)
+            .map(|index| {
+                let [s, t, u, v] = even(index);
+                let pixel = corner + DVec2::new(s, t) * size;
+                let ray = self.camera.sample_ray(pixel, [u, v]).ray;
+                let arrival = self.follow(ray, laser.wavelength(), index, &mut Vec::new());
+                let solid_angle = pixels_per_ray * self.camera.solid_angle_per_pixel(pixel);
+                solid_angle * self.power_per_solid_angle(laser, &arrival)
+            })
+            .sum();
+        power / laser.power()
+    }
+
+    /// Returns the power with which a laser lights what a camera ray shows, per solid angle of the ray,
+    /// in W/sr.
+    fn power_per_solid_angle(&self, laser: &Laser, seen: &Arrival) -> f64 {
+        let Some(hit) = &seen.hit else {
+            return 0.0;
+        };
+        let Some(light) = laser.next_event(hit.position) else {
+            return 0.0;
+        };
+        let [seen_from, lit_from] = [-seen.direction, light.wi].map(|d| d.dot(hit.normal));
+        let front = !self.scene.surfaces[hit.surface].material.is_one_sided() || lit_from > 0.0;
+        let lit = front && seen_from * lit_from > 0.0;
+        if lit && (self.intersector).visible(hit.position, hit.normal, light.point) {
+            let irradiance = light.e_perp * lit_from.abs();
+            irradiance * seen.length.powi(2) / seen_from.abs()
+        } else {
+            0.0
+        }
+    }
+}
+
+/// The sums over rays with the same fate on the same surface.
+#[derive(Debug, Default)]
+struct Parts(Vec<LightPart>);
+
+impl Parts {
+    /// Adds a ray; `centre` is the sum of fraction · point until the end.
+    fn add(&mut self, fate: LightFate, surface: Option<usize>, fraction: f64, point: DVec3) {
+        let same = |part: &&mut LightPart| (part.fate, part.surface) == (fate, surface);
+        match self.0.iter_mut().find(same) {
+            Some(part) => {
+                part.fraction += fraction;
+                part.centre += fraction * point;
+            }
+            None => self.0.push(LightPart {
+                fate,
+                surface,
+                fraction,
+                centre: fraction * point,
+                pixel: None,
+            }),
+        }
+    }
+
+    fn finish(mut self, camera: &Camera) -> Vec<LightPart> {
+        self.0.retain(|part| part.fraction > 0.0);
+        for part in &mut self.0 {
+            part.centre /= part.fraction;
+            part.pixel = part.surface.and_then(|_| camera.project(part.centre));
+        }
+        self.0.sort_by(|a, b| b.fraction.total_cmp(&a.fraction));
+        self.0
+    }
+}

@@ -1,0 +1,122 @@
+//! Light followed from the lasers to the camera.
+//!
+//! The path tracer connects what the camera sees straight to the lasers, so it knows no light that a
+//! mirror or a lens has turned on its way to a surface. Here rays drawn from the phase space of a
+//! beam carry its power. Mirrors and glass send them on; at every rough surface they are connected
+//! to the camera.
+//!
+//! What the camera sees in a mirror or through glass cannot be connected to it. Light that meets
+//! specular surfaces on both sides, between laser and rough surface and between rough surface and
+//! camera, is found neither from here nor from there.
+//!
+//! Light that a mirror or glass has turned keeps its coherence: up to the first rough surface it
+//! counts as coherent, and its speckle is looked up at the image point. Where something moves, that
+//! speckle moves and changes as if the light came straight from the laser.
+
+mod draws;
+mod job;
+mod specular_search;
+mod splats;
+mod walk;
+mod way;
+
+use core::sync::atomic::{AtomicBool, Ordering};
+
+use rayon::prelude::*;
+use tem00_tracer::{LaserLayers, RenderError};
+
+pub(crate) use self::draws::{DrawKey, Draws};
+pub(crate) use self::job::{LightJob, LightLayers, LightSelection, LightTracer};
+pub use self::specular_search::has_specular_surfaces_on_both_sides;
+pub(crate) use self::way::WayPoint;
+use self::{splats::SplatFilm, walk::Walk};
+
+/// The groups of light paths whose points of phase space are spread evenly.
+#[derive(Clone, Copy, Debug)]
+struct Groups {
+    paths: u64,
+    count: u64,
+}
+
+impl Groups {
+    /// As large as spreads the points well, but not so few that their scatter is unknown.
+    fn new(paths: u64) -> Self {
+        const FEW: u64 = 64;
+        const LARGE: u64 = 1 << 12;
+        let size = (paths / FEW).clamp(1, LARGE);
+        Self {
+            paths,
+            count: paths.div_ceil(size),
+        }
+    }
+
+    /// Returns the number of paths in group `index`; groups differ by one path at most.
+    fn size(self, index: u64) -> u64 {
+        let start =
+            |group: u64| u128::from(group) * u128::from(self.paths) / u128::from(self.count);
+        u64::try_from(start(index + 1) - start(index)).unwrap_or(u64::MAX)
+    }
+}
+
+/// The groups that are followed before their light is put into the image, in their order: memory is
+/// bounded, and the sums have the same bits for any number of threads.
+const GROUPS_AT_ONCE: usize = 64;
+
+impl LightTracer<'_> {
+    /// Follows the light of one laser.
+    ///
+    /// `progress` is told, from any thread, the number of light paths done since its last call.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`RenderError::Cancelled`] if `cancel` was set before the end.
+    pub(crate) fn trace(
+        &self,
+        job: &LightJob,
+        progress: &(impl Fn(u64) + Sync),
+        cancel: &AtomicBool,
+    ) -> Result<LightLayers, RenderError> {
+        let walk = Walk::new(self, job);
+        let groups = Groups::new(job.paths);
+        let mut film = SplatFilm::new(self.area);
+        for first in (0..groups.count).step_by(GROUPS_AT_ONCE) {
+            let wave = first..groups.count.min(first + GROUPS_AT_ONCE as u64);
+            let followed: Vec<_> = wave
+                .into_par_iter()
+                .map(|index| {
+                    if cancel.load(Ordering::Relaxed) {
+                        return Err(RenderError::Cancelled);
+                    }
+                    let splats = walk.group(index, groups.size(index));
+                    progress(groups.size(index));
+                    Ok(splats)
+                })
+                .collect::<Result<_, _>>()?;
+            for splats in &followed {
+                film.add(splats);
+            }
+        }
+        Ok(film.layers(groups.count, groups.paths))
+    }
+}
+
+impl LightLayers {
+    /// Adds the light to the layers of its laser.
+    pub(crate) fn add_to(&self, layers: &mut LaserLayers) {
+        let pairs = [
+            (&mut layers.single, &self.single),
+            (&mut layers.multiple, &self.multiple),
+            (&mut layers.radiance, &self.radiance),
+            (&mut layers.variance, &self.variance),
+        ];
+        for (sum, light) in pairs {
+            let values = sum.values_mut().iter_mut().zip(light.values());
+            values.for_each(|(sum, light)| *sum += light);
+        }
+        layers.power_on_target += self.power_on_target;
+        layers.power_error = layers.power_error.hypot(self.power_error);
+    }
+}
+
+#[cfg(test)]
+mod tests;

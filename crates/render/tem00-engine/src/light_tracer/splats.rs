@@ -1,0 +1,117 @@
+use tem00_numerics::Grid;
+use tem00_tracer::Crop;
+
+use super::LightLayers;
+
+/// Radiance that light paths bring to one pixel, in W/(m² sr).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Splat {
+    /// The number of the pixel in the part of the image that is rendered.
+    pub pixel: usize,
+    pub single: f64,
+    pub multiple: f64,
+    pub radiance: f64,
+}
+
+/// Contribution of a group of light paths to the image.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Splats {
+    /// By pixel in the end, one for each.
+    list: Vec<Splat>,
+    /// The power on the first rough surface where that is seen, in watts.
+    pub power: f64,
+}
+
+impl Splats {
+    pub(super) fn push(&mut self, splat: Splat) {
+        self.list.push(splat);
+    }
+
+    /// Adds up what belongs to the same pixel.
+    pub(super) fn merge(&mut self) {
+        // Stable: the order of the sums is that of the paths.
+        self.list.sort_by_key(|splat| splat.pixel);
+        self.list.dedup_by(|next, sum| {
+            let same = next.pixel == sum.pixel;
+            if same {
+                sum.single += next.single;
+                sum.multiple += next.multiple;
+                sum.radiance += next.radiance;
+            }
+            same
+        });
+    }
+}
+
+/// The image while it is made: 32 bytes per pixel.
+#[derive(Debug)]
+pub(super) struct SplatFilm {
+    area: Crop,
+    pixels: Vec<PixelSums>,
+    /// The sums over groups of the power and of its square.
+    power: [f64; 2],
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct PixelSums {
+    single: f64,
+    multiple: f64,
+    radiance: f64,
+    /// The sum over groups of the square of what the group brings.
+    squares: f64,
+}
+
+impl SplatFilm {
+    pub(super) fn new(area: Crop) -> Self {
+        Self {
+            area,
+            pixels: vec![PixelSums::default(); area.width * area.height],
+            power: [0.0; 2],
+        }
+    }
+
+    /// Adds what one group brings.
+    pub(super) fn add(&mut self, splats: &Splats) {
+        for splat in &splats.list {
+            let pixel = &mut self.pixels[splat.pixel];
+            pixel.single += splat.single;
+            pixel.multiple += splat.multiple;
+            pixel.radiance += splat.radiance;
+            pixel.squares += splat.radiance.powi(2);
+        }
+        self.power[0] += splats.power;
+        self.power[1] += splats.power.powi(2);
+    }
+
+    /// Returns the layers after so many groups and paths, each of which stood for the whole laser.
+    pub(super) fn layers(&self, groups: u64, paths: u64) -> LightLayers {
+        let (groups, paths) = (groups as f64, paths.max(1) as f64);
+        let variance = |[sum, squares]: [f64; 2]| {
+            if groups < 2.0 {
+                return f64::INFINITY;
+            }
+            // Rounding alone can make it negative.
+            let scatter = (squares - sum * sum / groups).max(0.0);
+            groups / (groups - 1.0) * scatter / (paths * paths)
+        };
+        LightLayers {
+            single: self.layer(|pixel| pixel.single / paths),
+            multiple: self.layer(|pixel| pixel.multiple / paths),
+            radiance: self.layer(|pixel| pixel.radiance / paths),
+            variance: self.layer(|pixel| variance([pixel.radiance, pixel.squares])),
+            power_on_target: self.power[0] / paths,
+            power_error: variance(self.power).sqrt(),
+        }
+    }
+
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "images are stored in single precision"
+    )]
+    fn layer(&self, value: impl Fn(&PixelSums) -> f64) -> Grid<f32> {
+        let Crop { width, height, .. } = self.area;
+        Grid::from_fn(width, height, |x, y| {
+            value(&self.pixels[y * width + x]) as f32
+        })
+    }
+}

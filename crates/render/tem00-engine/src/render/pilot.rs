@@ -1,0 +1,229 @@
+//! What a few first samples of each pixel say of how many it needs.
+
+use core::iter::once;
+
+use tem00_numerics::{Grid, cast::to_f32};
+use tem00_tracer::{RenderOptions, Sampling, film::PixelSums};
+
+/// The power of the standard deviation that the number of samples is in proportion to. The mean square error of an image
+/// of independent samples, of variance σ²/n, would be least with 1, and that of edges, of variance σ²/n², with 2/3.
+const POWER: f64 = 2.0 / 3.0;
+
+/// The finest step of numbers of samples, in parts of a doubling.
+const STEPS: usize = 16;
+
+/// The steps below which pixels get the least number of samples, whatever is left.
+const DARKEST: usize = 64 * STEPS;
+
+/// The radiance below which a pixel's error is compared with this radiance instead of its own, by the
+/// mean radiance of the image.
+const DARK: f64 = 0.1;
+
+/// The maximum number of times that the least number of samples of a pixel is doubled.
+const DOUBLINGS: u32 = 6;
+
+/// Returns the numbers of samples that a pixel can get. If there are several, the first is that of the pilot.
+pub(crate) fn sample_counts(options: &RenderOptions) -> Vec<u32> {
+    let count = options.samples_per_pixel;
+    let counts = |pilot, least: u32| {
+        let doubled = (0..=DOUBLINGS).map(|times| least.saturating_mul(1 << times));
+        once(pilot).chain(doubled).collect()
+    };
+    match options.sampling {
+        Sampling::Adaptive if count >= 4 => counts((count / 4).clamp(2, 8), count / 2),
+        Sampling::Even | Sampling::Adaptive => vec![count],
+        Sampling::TargetError(_) => counts(16, count),
+    }
+}
+
+/// What the samples of a pilot have found.
+pub(super) struct Pilot {
+    radiance: Grid<f32>,
+    /// The standard deviation of the samples.
+    deviation: Grid<f32>,
+    /// The number of samples of a pixel, and of all pixels.
+    samples: u32,
+    all_samples: u64,
+}
+
+impl Pilot {
+    pub(super) fn new(width: usize, height: usize) -> Self {
+        let layer = || Grid::filled(width, height, 0.0_f32);
+        Self {
+            radiance: layer(),
+            deviation: layer(),
+            samples: 0,
+            all_samples: 0,
+        }
+    }
+
+    /// Tells whether a pilot looks at a pixel of the whole image. Two samples are the least that differ: where they would be more
+    /// than a quarter of all, every second pixel speaks for its neighbours, as on a chessboard.
+    pub(super) const fn looks_at(options: &RenderOptions, [x, y]: [usize; 2]) -> bool {
+        let all = matches!(options.sampling, Sampling::TargetError(_));
+        all || options.samples_per_pixel >= 8 || (x + y).is_multiple_of(2)
+    }
+
+    /// Writes what was found in a pixel, if it was looked at.
+    pub(super) fn write(&mut self, at: [usize; 2], pixel: &PixelSums) {
+        if pixel.samples == 0 {
+            return;
+        }
+        self.radiance[at.into()] = to_f32(pixel.radiance());
+        self.deviation[at.into()] = to_f32(pixel.deviation());
+        self.samples = pixel.samples;
+        self.all_samples += u64::from(pixel.samples);
+    }
+
+    /// Returns the number of samples that the pilot leaves of those asked for.
+    pub(super) fn left(&self, options: &RenderOptions) -> u64 {
+        let pixels = self.radiance.values().len() as u64;
+        (pixels * u64::from(options.samples_per_pixel)).saturating_sub(self.all_samples)
+    }
+
+    /// Returns which of the numbers of samples, the first of which is that of the pilot, each pixel gets.
+    pub(super) fn levels(&self, options: &RenderOptions, counts: &[u32]) -> Grid<u8> {
+        match options.sampling {
+            Sampling::TargetError(target) => self.levels_for(target, counts),
+            Sampling::Even | Sampling::Adaptive => self.shared_levels(self.left(options), counts),
+        }
+    }
+
+    /// Shares so many samples at most.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a step is not negative, and that of no deviation saturates"
+    )]
+    fn shared_levels(&self, budget: u64, counts: &[u32]) -> Grid<u8> {
+        let deviations = around(&self.deviation, f32::max);
+        let all = deviations.values().iter().copied();
+        let largest = all.fold(f32::MIN_POSITIVE, f32::max);
+        // How much less a pixel gets than the one that gets most, in steps.
+        let below = |deviation: f32| {
+            let doublings = POWER * libm::log2(f64::from(largest / deviation));
+            ((doublings * STEPS as f64) as usize).min(DARKEST)
+        };
+        let mut histogram = vec![0_u64; DARKEST + 1];
+        for &deviation in deviations.values() {
+            histogram[below(deviation)] += 1;
+        }
+        let level = |below: usize, most: usize| {
+            (1 + most.saturating_sub(below) / STEPS).min(counts.len() - 1)
+        };
+        let samples = |most: usize| -> u64 {
+            let parts = histogram
+                .iter()
+                .enumerate()
+                .filter(|(_, pixels)| **pixels > 0);
+            let samples =
+                parts.map(|(below, pixels)| pixels * u64::from(counts[level(below, most)]));
+            samples.sum()
+        };
+        // The most that the pixel of the largest deviation can get, in steps above the least.
+        let most = (0..DARKEST)
+            .rev()
+            .find(|&most| samples(most) <= budget)
+            .unwrap_or(0);
+        deviations.map(|&deviation| level(below(deviation), most) as u8)
+    }
+
+    /// Returns the levels that bring every pixel below a relative standard error.
+    #[expect(clippy::cast_possible_truncation, reason = "there are few levels")]
+    fn levels_for(&self, target: f64, counts: &[u32]) -> Grid<u8> {
+        let all = self.radiance.values().iter().copied();
+        let mean = all.map(f64::from).sum::<f64>() / self.radiance.values().len() as f64;
+        // Nine pixels together tell a deviation, but for about 1/√n of it, more where light is rare.
+        let raised = (1.0 + 2.0 / (9.0 * f64::from(self.samples)).sqrt()) / 3.0;
+        let deviations = around(&self.deviation, libm::hypotf);
+        Grid::from_fn(deviations.width(), deviations.height(), |x, y| {
+            let radiance = f64::from(self.radiance[(x, y)]).max(DARK * mean);
+            let needed = (raised * f64::from(deviations[(x, y)]) / (target * radiance)).powi(2);
+            let enough = counts[1..].partition_point(|&count| f64::from(count) < needed);
+            (1 + enough).min(counts.len() - 1) as u8
+        })
+    }
+}
+
+/// Combines the values of each pixel and its eight neighbours, which at the rim of the image it stands for itself.
+fn around(layer: &Grid<f32>, combine: impl Fn(f32, f32) -> f32) -> Grid<f32> {
+    let [right, down] = [layer.width() - 1, layer.height() - 1];
+    let combined = |layer: &Grid<f32>, [dx, dy]: [usize; 2]| {
+        Grid::from_fn(layer.width(), layer.height(), |x, y| {
+            let before = layer[(x.saturating_sub(dx), y.saturating_sub(dy))];
+            let after = layer[((x + dx).min(right), (y + dy).min(down))];
+            combine(combine(before, layer[(x, y)]), after)
+        })
+    };
+    combined(&combined(layer, [1, 0]), [0, 1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COUNTS: [u32; 8] = [8, 16, 32, 64, 128, 256, 512, 1024];
+
+    /// A pilot of 8 samples in a row of pixels, each of which stands three times beside itself.
+    fn pilot(deviations: &[f32]) -> Pilot {
+        let layer = |values: &[f32]| {
+            let row: Vec<f32> = values.iter().flat_map(|&value| [value; 3]).collect();
+            Grid::from_vec(row.len(), 1, row).unwrap()
+        };
+        Pilot {
+            radiance: layer(&vec![2.0; deviations.len()]),
+            deviation: layer(deviations),
+            samples: 8,
+            all_samples: 24 * deviations.len() as u64,
+        }
+    }
+
+    fn counts(levels: &Grid<u8>) -> Vec<u32> {
+        let levels = levels.values().iter();
+        levels.map(|&level| COUNTS[usize::from(level)]).collect()
+    }
+
+    #[test]
+    fn samples_go_where_they_differ_and_are_no_more_than_asked_for() {
+        // From 1 to 8 times the deviation, 4 times the samples; where nothing differs the least.
+        let row = [0.0, 0.0, 1.0, 1.0, 8.0, 8.0, 0.0, 0.0];
+        for budget in [30, 40, 56, 100] {
+            let shared = counts(&pilot(&row).shared_levels(budget * 24, &COUNTS));
+            assert!(
+                shared.iter().sum::<u32>() <= 24 * u32::try_from(budget).unwrap(),
+                "{shared:?}"
+            );
+            assert_eq!((shared[1], shared[22]), (16, 16), "nothing differs");
+            let [one, eight] = [shared[8], shared[13]];
+            assert!(eight == 4 * one || one == 16 || eight == 1024, "{shared:?}");
+            assert!(eight > 16, "{shared:?}");
+        }
+    }
+
+    #[test]
+    fn neighbours_of_what_differs_get_as_many() {
+        let shared = counts(&pilot(&[0.0, 1.0, 0.0]).shared_levels(9 * 200, &COUNTS));
+        let most = shared[4];
+        assert_eq!(shared, [16, 16, most, most, most, most, most, 16, 16]);
+        assert!(most > 16, "{most}");
+    }
+
+    #[test]
+    fn a_dark_image_gets_the_least() {
+        let shared = counts(&pilot(&[0.0; 4]).shared_levels(12 * 56, &COUNTS));
+        assert_eq!(shared, [16; 12]);
+    }
+
+    #[test]
+    fn a_target_asks_for_the_samples_of_independent_ones() {
+        // σ / √n, raised by 1 + 2/√72, below 0.01 of a radiance of 2.
+        let deviations = [0.01, 0.05, 0.1, 0.5, 50.0];
+        let asked = counts(&pilot(&deviations).levels_for(0.01, &COUNTS));
+        for (pixel, deviation) in deviations.into_iter().enumerate() {
+            let needed = (f64::from(deviation) * (1.0 + 2.0 / 72_f64.sqrt()) / 0.02).powi(2);
+            let count = f64::from(asked[3 * pixel + 1]);
+            assert!(count >= needed.min(1024.0), "{deviation}: {asked:?}");
+            assert!(count < 2.0 * needed.max(16.0), "{deviation}: {asked:?}");
+        }
+    }
+}

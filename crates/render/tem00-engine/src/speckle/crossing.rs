@@ -1,0 +1,331 @@
+//! Motions that slices along one line cannot follow.
+
+use core::fmt;
+use std::collections::BTreeSet;
+
+use glam::DVec2;
+use tem00_decorrelation::{ImagingGeometry, pupil_overlap_correlation};
+use tem00_shading::{Bandwidth, LightPath};
+use tem00_tracer::{Scene, SpectralLine};
+
+use super::{
+    change::{Change, ReferencePoint},
+    prescan::{FrameNeeds, MotionPrescan},
+};
+
+/// Two frames whose speckle is rendered with another correlation than the law has.
+///
+/// The pupil moves over the speckle in two directions, and bodies share a stack or points move apart; or the law has no
+/// value from the reference frame. Its `Display` is one line that says so.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CorrelationNote {
+    /// The name of the surface.
+    pub surface: String,
+    /// The index of the laser.
+    pub laser: usize,
+    /// The frames.
+    pub frames: [u32; 2],
+    /// The correlation of intensity with which a point of the surface is rendered, its displacement in the image apart.
+    pub rendered: f64,
+    /// That of the law.
+    pub law: f64,
+}
+
+impl fmt::Display for CorrelationNote {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            surface,
+            laser,
+            frames: [first, second],
+            rendered,
+            law,
+        } = self;
+        write!(
+            f,
+            "surface `{surface}`, laser {laser}: speckle of frames {first} and {second} correlates by {rendered:.2} where \
+             the law has {law:.2}; slices cannot follow its change"
+        )
+    }
+}
+
+/// The way by which slices along a line follow a motion of the pupil.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Following {
+    /// By its length, to either side of the reference frame.
+    #[default]
+    Length,
+    /// By its component along an axis, on a line of each frame's own, in the middle of the ways of what it sees.
+    Axis(DVec2),
+}
+
+impl Following {
+    pub(super) fn axis(self) -> Option<DVec2> {
+        match self {
+            Self::Length => None,
+            Self::Axis(axis) => Some(axis),
+        }
+    }
+}
+
+/// How slices follow the motion of a group of surfaces.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Followed {
+    pub following: Following,
+    /// The frames whose correlation errs most.
+    worst: Option<FramePair>,
+}
+
+/// Two frames: the correlation with which a surface is rendered, and that of the law.
+#[derive(Clone, Copy, Debug)]
+struct FramePair {
+    surface: usize,
+    frames: [u32; 2],
+    rendered: f64,
+    law: f64,
+}
+
+impl FramePair {
+    fn error(&self) -> f64 {
+        (self.rendered - self.law).abs()
+    }
+}
+
+impl Followed {
+    fn error(&self) -> f64 {
+        self.worst.as_ref().map_or(0.0, FramePair::error)
+    }
+
+    /// Returns a note if a correlation errs by more than [`MAX_ERROR`].
+    pub(super) fn note(&self, scene: &Scene, laser: usize) -> Option<CorrelationNote> {
+        let pair = self.worst.filter(|pair| pair.error() > MAX_ERROR)?;
+        Some(CorrelationNote {
+            surface: scene.surfaces[pair.surface].name.clone(),
+            laser,
+            frames: pair.frames,
+            rendered: pair.rendered,
+            law: pair.law,
+        })
+    }
+}
+
+/// The largest error of a correlation that asks for nothing: neither for another way to follow a motion, nor for a note.
+const MAX_ERROR: f64 = 0.05;
+
+/// Frames that are compared, evenly spread; with each, the next.
+const SPREAD: u32 = 32;
+
+/// Frames with which one is compared, of those where the pupil has moved about as far.
+const NEIGHBOURS: usize = 64;
+
+/// Points that are followed, beside the middle of what each frame sees, where ways differ by less than this, in pupil
+/// diameters.
+const POINTS: usize = 4;
+const ALIKE: f64 = 0.1;
+
+/// The ways of the pupil over the speckle of some points, of surfaces that move alike, in some frames.
+pub(super) struct Tracks {
+    frames: Vec<u32>,
+    /// The middle of the ways of all that each of the frames sees.
+    middles: Vec<DVec2>,
+    /// The axis along which the ways in a frame differ most.
+    axis: DVec2,
+    /// The ways of each point, in the frames that see it.
+    points: Vec<Vec<Way>>,
+}
+
+/// The way of the pupil over the speckle of a point.
+#[derive(Clone, Copy, Debug)]
+struct Way {
+    /// The frame, among those of the tracks.
+    frame: usize,
+    vector: DVec2,
+    /// Its length, negative on the other side of the reference frame.
+    length: f64,
+    /// The way since the frame before, by the law from that one.
+    step: Option<DVec2>,
+}
+
+/// The waves of a line on a surface.
+pub(super) struct Waves<'a> {
+    surface: usize,
+    line: Option<(&'a SpectralLine, Bandwidth)>,
+    /// Their covariance without a motion.
+    variance: f64,
+}
+
+impl Tracks {
+    /// Follows points of a group of surfaces under a laser.
+    pub(super) fn new(
+        scene: &Scene,
+        (laser, geometry): (usize, &ImagingGeometry),
+        prescan: &MotionPrescan,
+    ) -> Self {
+        let frames = compared(prescan, scene.frames);
+        let changes = frames.iter().map(|&frame| {
+            let before = frame.saturating_sub(1);
+            [scene.reference_frame, before].map(|from| Change::between(scene, [from, frame]))
+        });
+        let changes: Vec<_> = changes.collect();
+        let way = |point: &ReferencePoint, frame: usize| {
+            let [change, since] = &changes[frame];
+            let seen = change.seen(laser, point)?;
+            let shift = change.speckle_shift(laser, geometry, &seen);
+            let side = change.side(laser, geometry, prescan.reference_point.as_ref());
+            let step = since.known_shift(laser, geometry, &seen, LightPath::Direct);
+            Some(Way {
+                frame,
+                vector: shift.pupil_vector(),
+                length: side * shift.pupil,
+                step: step.map(|shift| shift.pupil_vector()),
+            })
+        };
+        let ways = |point| (0..changes.len()).filter_map(|f| way(point, f)).collect();
+        let stride = prescan.points.len().div_ceil(POINTS).max(1);
+        let points = prescan.points.iter().step_by(stride).map(ways);
+        let needs = frames.iter().map(|&f| &prescan.frames[f as usize]);
+        let middle = needs.clone().zip(0..);
+        let middle = middle.filter_map(|(needs, frame)| Way::in_the_middle(needs, frame));
+        Self {
+            points: points.chain([middle.collect()]).collect(),
+            middles: needs.map(|needs| needs.ways.middle()).collect(),
+            axis: prescan.widest_axis(),
+            frames,
+        }
+    }
+
+    /// Returns how slices can follow the points: by the length of the motion, and as well as they can.
+    pub(super) fn followed(&self, waves: &[Waves<'_>]) -> [Followed; 2] {
+        let follow = |following: Following| {
+            let pairs = waves
+                .iter()
+                .filter_map(|waves| self.worst(following, waves));
+            Followed {
+                following,
+                worst: pairs.max_by(|a, b| a.error().total_cmp(&b.error())),
+            }
+        };
+        let by_length = follow(Following::Length);
+        if by_length.error() <= MAX_ERROR {
+            return [by_length; 2];
+        }
+        let widest = waves.iter().max_by(|a, b| a.reach().total_cmp(&b.reach()));
+        let tilt = widest.filter(|waves| waves.line.is_some());
+        let along = follow(Following::Axis(tilt.map_or(self.axis, Waves::axis)));
+        let is_better = along.error() < by_length.error();
+        [by_length, if is_better { along } else { by_length }]
+    }
+
+    /// Returns the two frames whose correlation errs most in some waves.
+    fn worst(&self, following: Following, waves: &Waves<'_>) -> Option<FramePair> {
+        let axis = following.axis().unwrap_or(waves.axis());
+        let place = |way: &Way| match following {
+            Following::Length => way.length * axis,
+            Following::Axis(_) => {
+                let middle = self.middles[way.frame].dot(axis.perp());
+                way.vector.dot(axis) * axis + middle * axis.perp()
+            }
+        };
+        let pair = |one: &Way, other: &Way| {
+            let frames = [one, other].map(|way| self.frames[way.frame]);
+            let step = other.step.filter(|_| frames[1] == frames[0] + 1);
+            FramePair {
+                surface: waves.surface,
+                frames,
+                rendered: waves.correlation(place(other) - place(one), axis),
+                law: waves.correlation(step.unwrap_or(other.vector - one.vector), waves.axis()),
+            }
+        };
+        let ways = self.points.iter();
+        let pairs = ways.flat_map(|ways| {
+            let firsts = ways.iter().enumerate();
+            firsts.flat_map(move |(i, one)| ways[i + 1..].iter().map(move |other| (one, other)))
+        });
+        pairs
+            .map(|(one, other)| pair(one, other))
+            .max_by(|a, b| a.error().total_cmp(&b.error()))
+    }
+}
+
+/// The frames that are compared: some that are spread evenly, and the two that slices along one line confuse most, each
+/// with the next.
+fn compared(prescan: &MotionPrescan, count: u32) -> Vec<u32> {
+    let spread = (0..SPREAD).map(|i| i * (count - 1) / (SPREAD - 1));
+    let frames = spread.chain(most_confused(prescan, count));
+    let frames: BTreeSet<_> = frames
+        .flat_map(|frame| [frame, (frame + 1).min(count - 1)])
+        .collect();
+    frames.into_iter().collect()
+}
+
+/// The two frames in which the pupil has moved about as far, but elsewhere.
+fn most_confused(prescan: &MotionPrescan, count: u32) -> [u32; 2] {
+    let middle = |frame: u32| {
+        let middle = Way::in_the_middle(&prescan.frames[frame as usize], 0);
+        Some((frame, middle?))
+    };
+    let mut ways: Vec<_> = (0..count).filter_map(middle).collect();
+    ways.sort_by(|(_, a), (_, b)| a.length.total_cmp(&b.length));
+    let mut most = ([0; 2], 0.0);
+    for (i, (first, one)) in ways.iter().enumerate() {
+        let near = ways[i + 1..].iter().take(NEIGHBOURS);
+        for (second, other) in near.take_while(|(_, other)| other.length - one.length < 1.0) {
+            let rendered = pupil_overlap_correlation(other.length - one.length);
+            let law = pupil_overlap_correlation((other.vector - one.vector).length());
+            if rendered - law > most.1 {
+                most = ([*first, *second], rendered - law);
+            }
+        }
+    }
+    most.0
+}
+
+impl Way {
+    /// That in the middle of what a frame sees, if all of it moves about alike.
+    fn in_the_middle(needs: &FrameNeeds, frame: usize) -> Option<Self> {
+        let is_alike = needs.ways.size().length() < ALIKE;
+        is_alike.then(|| Self {
+            frame,
+            vector: needs.ways.middle(),
+            length: 0.5 * (needs.span[0] + needs.span[1]),
+            step: None,
+        })
+    }
+}
+
+impl<'a> Waves<'a> {
+    /// Light of one wavelength.
+    pub(super) fn single(surface: usize) -> Self {
+        Self {
+            surface,
+            line: None,
+            variance: 1.0,
+        }
+    }
+
+    pub(super) fn of(line: &'a SpectralLine, surface: usize, bandwidth: Bandwidth) -> Self {
+        let mut waves = Self {
+            line: Some((line, bandwidth)),
+            ..Self::single(surface)
+        };
+        waves.variance = waves.correlation(DVec2::ZERO, DVec2::X);
+        waves
+    }
+
+    /// The direction in which they displace the pupil.
+    fn axis(&self) -> DVec2 {
+        self.line.as_ref().map_or(DVec2::X, |(_, b)| b.axis)
+    }
+
+    fn reach(&self) -> f64 {
+        self.line.as_ref().map_or(0.0, |(_, b)| b.reach)
+    }
+
+    /// Returns the correlation of intensities between which the pupil has moved by so many diameters, where waves
+    /// displace it along an axis.
+    pub(super) fn correlation(&self, shift: DVec2, axis: DVec2) -> f64 {
+        let Some((line, bandwidth)) = &self.line else {
+            return pupil_overlap_correlation(shift.length());
+        };
+        bandwidth.covariance(line, shift, axis) / self.variance
+    }
+}

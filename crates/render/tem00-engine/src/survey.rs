@@ -1,0 +1,395 @@
+//! A survey of the light that has met several rough surfaces, before a frame is rendered.
+
+mod from_camera;
+
+use std::collections::BTreeMap;
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+use tem00_geometry::{Intersector, Segment, Shape};
+use tem00_tracer::{Crop, RenderOptions, Scene, Surface, TracerError};
+
+use crate::{
+    SpecklePlan,
+    integrator::Vertex,
+    light_tracer::{LightJob, LightSelection, LightTracer, WayPoint},
+    sampler::{pixel_key, point_in_square},
+    speckle::{
+        CascadeNote, Change, Lattice, LightKey, MultipleMap, MultiplePath, MultipleSums,
+        SpecklePoint,
+    },
+};
+
+/// Which frame is surveyed, and how finely.
+pub(crate) struct Survey<'a> {
+    pub scene: &'a Scene,
+    pub frame: u32,
+    /// The surfaces as they stand in the frame.
+    pub intersector: &'a Intersector,
+    /// The motion since the reference frame.
+    pub change: &'a Change,
+    pub seed: u64,
+    /// The maximum number of surfaces that light may meet between laser and camera; `None` for no limit.
+    pub max_depth: Option<u32>,
+    /// The number of cells along the longer side of the image.
+    pub cells: usize,
+}
+
+/// Tells the random numbers of a survey from those of a render.
+const SEED: u64 = 0x005e_ed0f;
+
+/// Tells whether a frame shows multiple light whose speckle is not simply that of the single light: its paths differ by
+/// a length that counts, by a motion, or by polarisation.
+pub(crate) fn asks_for_survey(scene: &Scene, frame: u32, options: &RenderOptions) -> bool {
+    let is_broad = scene
+        .lasers
+        .iter()
+        .any(|l| !l.spectral_line().is_monochromatic());
+    let is_depolarised = scene.surfaces.iter().any(|s| s.speckle.polarisation < 1.0);
+    let is_other_frame = frame != scene.reference_frame && moves(scene);
+    !is_single(scene, options) && (is_broad || is_depolarised || is_other_frame)
+}
+
+/// Tells whether light cannot meet more than one rough surface.
+fn is_single(scene: &Scene, options: &RenderOptions) -> bool {
+    is_plate(scene) || options.max_depth == Some(1)
+}
+
+/// Returns whether a plate is all that light can meet: it meets it once.
+pub(crate) fn is_plate(scene: &Scene) -> bool {
+    matches!(
+        scene.surfaces.as_slice(),
+        [] | [Surface {
+            shape: Shape::Rectangle(_),
+            ..
+        }]
+    )
+}
+
+/// Tells whether anything that matters to speckle moves.
+pub(crate) fn moves(scene: &Scene) -> bool {
+    let mut lasers = 0..scene.lasers.len();
+    lasers.any(|laser| (0..scene.surfaces.len()).any(|surface| scene.speckle_moves(laser, surface)))
+}
+
+/// The cells of a survey that plans the slices.
+const PLANNED_CELLS: usize = 16;
+
+impl SpecklePlan {
+    /// Chooses the patterns for a scene.
+    ///
+    /// Each is the [`StackPlan`](tem00_speckle::StackPlan) for the image, the part of the scene that moves into it, and the
+    /// longest way by which the frames carry the pupil: rays find it in every frame. Where the slices of all frames do not
+    /// fit the memory, or do not lie along one line, each frame has slices of its own, a part of a path without end. What
+    /// the scene file sets is kept.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if C exceeds Q/2, if the imaging geometry is not possible, if the speckle of
+    /// a surface is not a sum of patterns, if something moves in more than 262,144 frames, or if the patterns of no frame
+    /// fit the memory that the scene allows.
+    pub fn new(scene: &Scene, seed: u64) -> Result<Self, TracerError> {
+        let options = &scene.render;
+        Self::with_survey(scene, seed, &|frame, intersector, change| {
+            let survey = Survey {
+                scene,
+                frame,
+                intersector,
+                change,
+                seed,
+                max_depth: options.max_depth,
+                cells: PLANNED_CELLS,
+            };
+            asks_for_survey(scene, frame, options).then(|| survey.map())?
+        })
+    }
+}
+
+/// The groups of light paths of a laser, and the paths in each. A place of the image sees two groups, which are
+/// independent of each other; the places beside it see others.
+const GROUPS: usize = 16;
+const PATHS: usize = 32;
+
+/// Of so many cells along each side, one is looked at in both ways.
+const PROBE: usize = 4;
+
+/// Where paths start.
+///
+/// A beam narrow against what is seen hides from paths that start at the camera, and what is small in a wide beam from
+/// paths that start at the laser.
+#[derive(Clone, Copy)]
+enum Way {
+    FromLaser,
+    FromCamera,
+}
+
+/// Of each laser, of each group, of each path: the rough surfaces that it has met.
+type WayPoints<'a> = Vec<Vec<Vec<Vec<WayPoint<'a>>>>>;
+
+/// Returns a note for each laser and surface where multiple light comes from so small a part of another surface that
+/// its own speckle is as coarse as what the camera resolves: the speckle of speckle is left out.
+///
+/// The reference frame is judged, where the light is not faint.
+///
+/// # Errors
+///
+/// Returns an error if the geometry cannot be built.
+pub fn cascade_notes(scene: &Scene) -> Result<Vec<CascadeNote>, TracerError> {
+    if is_single(scene, &scene.render) {
+        return Ok(Vec::new());
+    }
+    let frame = scene.reference_frame;
+    let survey = Survey {
+        scene,
+        frame,
+        intersector: &Intersector::build(&scene.shapes_at(frame))?,
+        change: &Change::new(scene, frame),
+        seed: 0,
+        max_depth: scene.render.max_depth,
+        cells: PLANNED_CELLS,
+    };
+    let map = survey.map();
+    let notes = map.iter().flat_map(MultipleMap::strongest_cascades);
+    Ok(notes
+        .filter(|(_, variance)| *variance > CASCADE)
+        .map(|((laser, surface), variance)| CascadeNote {
+            surface: scene.surfaces[surface].name.clone(),
+            laser,
+            contrast: (1.0 + variance).sqrt(),
+        })
+        .collect())
+}
+
+/// The excess of the squared contrast from which speckle of speckle is worth a note.
+const CASCADE: f64 = 0.05;
+
+impl<'a> Survey<'a> {
+    /// Follows light from the lasers, connects what it meets with points that the camera sees, and returns the multiple
+    /// light found there, if any.
+    pub(crate) fn map(&self) -> Option<MultipleMap> {
+        let camera = self.change.camera();
+        let tracer = self.light_tracer();
+        let lit = self.way_points(&tracer);
+        let lattice = Lattice::over([camera.width(), camera.height()], self.cells);
+        let lasers = (0..self.scene.lasers.len()).into_par_iter();
+        let ways: Vec<Way> = lasers
+            .map(|laser| self.better_way(laser, &lit[laser], lattice))
+            .collect();
+        let cells = (0..lattice.columns * lattice.rows).into_par_iter();
+        let sums: Vec<CellSums> = cells
+            .map(|cell| {
+                let Some(seen) = self.seen(lattice, cell) else {
+                    return CellSums::new();
+                };
+                let lasers = ways.iter().zip(&lit).enumerate();
+                lasers
+                    .map(|(laser, (&way, groups))| {
+                        let sums = self.sums(laser, way, groups, (lattice, cell, &seen));
+                        ((laser, seen.point.surface), sums)
+                    })
+                    .collect()
+            })
+            .collect();
+        MultipleMap::new(lattice, &sums)
+    }
+
+    /// Chooses the way in which the light of a laser is found by more paths, in one of `PROBE`² cells.
+    fn better_way(&self, laser: usize, groups: &[Vec<Vec<WayPoint<'_>>>], lattice: Lattice) -> Way {
+        let probed = |cell: &usize| {
+            let place = [cell % lattice.columns, cell / lattice.columns];
+            place.map(|i| i % PROBE) == [PROBE / 2; 2]
+        };
+        let mut found = [0.0; 2];
+        for cell in (0..lattice.columns * lattice.rows).filter(probed) {
+            let Some(seen) = self.seen(lattice, cell) else {
+                continue;
+            };
+            for (found, way) in found.iter_mut().zip([Way::FromLaser, Way::FromCamera]) {
+                let sums = self.sums(laser, way, groups, (lattice, cell, &seen));
+                *found += sums.effective_paths();
+            }
+        }
+        if found[1] > found[0] {
+            Way::FromCamera
+        } else {
+            Way::FromLaser
+        }
+    }
+
+    fn light_tracer(&self) -> LightTracer<'a> {
+        let camera = self.change.camera();
+        LightTracer {
+            scene: self.scene,
+            camera,
+            intersector: self.intersector,
+            speckle: None,
+            frame: self.frame,
+            // The surface that the camera sees is one more.
+            max_depth: self.max_depth.map(|depth| depth.saturating_sub(1)),
+            selection: LightSelection::All,
+            area: Crop {
+                x: 0,
+                y: 0,
+                width: camera.width(),
+                height: camera.height(),
+            },
+        }
+    }
+
+    fn way_points<'t>(&self, tracer: &'t LightTracer<'t>) -> WayPoints<'t> {
+        let groups = |laser: usize| {
+            let job = LightJob {
+                laser,
+                paths: PATHS as u64,
+                seed: self.seed ^ SEED,
+            };
+            let groups = (0..GROUPS).into_par_iter();
+            groups
+                .map(|group| tracer.way_points(&job, group as u64, self.change))
+                .collect()
+        };
+        (0..self.scene.lasers.len()).map(groups).collect()
+    }
+
+    /// Sums over pairs of paths to the point of one cell that the camera sees.
+    fn sums(
+        &self,
+        laser: usize,
+        way: Way,
+        groups: &[Vec<Vec<WayPoint<'_>>>],
+        (lattice, cell, seen): (Lattice, usize, &SeenPoint<'_>),
+    ) -> MultipleSums {
+        let number = 2 * (cell % lattice.columns + 3 * (cell / lattice.columns));
+        let paths = [0, 1].map(|i| match way {
+            Way::FromLaser => self.multiple(laser, seen, &groups[(number + i) % GROUPS]),
+            Way::FromCamera => {
+                let first = (2 * cell + i) * PATHS + 1;
+                let keys = first..first + PATHS;
+                let paths = keys.flat_map(|key| self.multiple_from_camera(laser, seen, key as u64));
+                paths.collect()
+            }
+        });
+        let line = self.scene.lasers[laser].spectral_line();
+        let place = (seen.point, self.single(laser, &seen.vertex));
+        let [first, second] = &paths;
+        MultipleSums::of_groups(line, place, [first, second], PATHS)
+    }
+
+    /// The rough surface that the camera sees at some point of a cell.
+    fn seen(&self, lattice: Lattice, cell: usize) -> Option<SeenPoint<'a>> {
+        let camera = self.change.camera();
+        let corner = DVec2::new(
+            (cell % lattice.columns) as f64,
+            (cell / lattice.columns) as f64,
+        );
+        let size = DVec2::new(camera.width() as f64, camera.height() as f64);
+        // The same point in every frame.
+        let within = point_in_square(pixel_key(self.seed ^ SEED, [0, cell as u64, 0]));
+        let pixel = (lattice.side as f64 * (corner + DVec2::from_array(within))).min(size);
+        let ray = camera.ray(pixel);
+        let hit = self.intersector.intersect(&ray)?;
+        let material = &self.scene.surfaces.get(hit.surface)?.material;
+        let vertex = Vertex::new(&ray, &hit, material)?;
+        let distance = (camera.position() - hit.position).length();
+        (!vertex.is_specular()).then_some(SeenPoint {
+            point: SpecklePoint {
+                pixel,
+                position: hit.position,
+                normal: vertex.seen_normal(),
+                surface: hit.surface,
+                wave: 0.5,
+            },
+            vertex,
+            to_pupil: -ray.direction,
+            sin_aperture: (0.5 * camera.pupil_diameter() / distance).min(1.0),
+        })
+    }
+
+    /// The radiance at a vertex of the light of a laser that has met its surface only.
+    fn single(&self, laser: usize, vertex: &Vertex<'_>) -> f64 {
+        let laser = self.change.laser(laser);
+        let Some(light) = laser.next_event(vertex.position) else {
+            return 0.0;
+        };
+        let reflected = vertex.reflected_from(light.wi, laser.wavelength());
+        let radiance = light.e_perp * reflected;
+        if radiance > 0.0 && self.is_free(vertex.segment_to(light.point)) {
+            radiance
+        } else {
+            0.0
+        }
+    }
+
+    fn polarisation_of(&self, surface: usize) -> f64 {
+        self.scene.surfaces[surface].speckle.polarisation
+    }
+
+    /// The light of a group of paths from a laser that arrives over the rough surfaces they have met.
+    fn multiple(
+        &self,
+        laser: usize,
+        seen: &SeenPoint<'_>,
+        group: &[Vec<WayPoint<'_>>],
+    ) -> Vec<MultiplePath> {
+        let (position, surface) = (seen.point.position, seen.point.surface);
+        let origin = self.change.origin(surface, position);
+        let [now, before] = self
+            .change
+            .paths_to(laser, surface, position)
+            .unwrap_or_default();
+        let wavelength = self.change.laser(laser).wavelength();
+        let arriving = group.iter().flatten().filter_map(|lit| {
+            let (irradiance, wi) = lit.irradiance_at(position, wavelength)?;
+            let radiance = irradiance * seen.vertex.reflected_from(wi, wavelength);
+            (radiance > 0.0).then_some((lit, wi, radiance))
+        });
+        let arriving: Vec<_> = arriving.collect();
+        let ways = arriving.iter().map(|(lit, ..)| lit.segment_to(position));
+        let mut free = vec![false; arriving.len()];
+        self.intersector
+            .visible_batch(&ways.collect::<Vec<_>>(), &mut free);
+        let paths = arriving.into_iter().zip(free).filter(|(_, free)| *free);
+        let paths = paths.map(|((lit, wi, radiance), _)| {
+            let way = lit.way_to(position, origin);
+            MultiplePath {
+                radiance,
+                delay: way.length - now,
+                added: way.change - (now - before),
+                polarisation: way.polarisation * self.polarisation_of(surface),
+                pupil: seen.pupil_of(wi),
+            }
+        });
+        paths.collect()
+    }
+
+    fn is_free(&self, segment: Segment) -> bool {
+        let mut free = [false];
+        self.intersector.visible_batch(&[segment], &mut free);
+        free[0]
+    }
+}
+
+/// The sums of a cell.
+type CellSums = BTreeMap<LightKey, MultipleSums>;
+
+/// A point that the camera sees.
+struct SeenPoint<'a> {
+    point: SpecklePoint,
+    vertex: Vertex<'a>,
+    /// The unit direction to the pupil, and the sine of the half-angle that it fills.
+    to_pupil: DVec3,
+    sin_aperture: f64,
+}
+
+impl SeenPoint<'_> {
+    /// Where in the pupil a change of the unit direction from which light arrives moves the field, in pupil diameters:
+    /// its part across the line of sight, the other being along the normal.
+    fn pupil_of(&self, direction: DVec3) -> DVec3 {
+        let normal = self.point.normal;
+        let along = direction.dot(self.to_pupil) / normal.dot(self.to_pupil);
+        (direction - along * normal) / (2.0 * self.sin_aperture)
+    }
+}
+
+#[cfg(test)]
+mod tests;

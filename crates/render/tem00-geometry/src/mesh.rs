@@ -1,0 +1,319 @@
+mod error;
+
+use glam::DVec3;
+
+pub use self::error::MeshError;
+
+/// A surface made of flat triangles.
+///
+/// Corners run counter-clockwise seen from the side to which the normal points. Light meets the
+/// flat triangles; where the mesh has vertex normals, it is scattered as by the curved surface that
+/// they belong to (see [`Hit::shading_normal`](crate::Hit::shading_normal)).
+///
+/// # Examples
+///
+/// ```
+/// use glam::DVec3;
+/// use tem00_geometry::TriangleMesh;
+///
+/// let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let corner = TriangleMesh::new(vertices, vec![[0, 1, 2], [0, 2, 3], [0, 3, 1]])?;
+///
+/// assert_eq!(corner.triangles().len(), 3);
+/// assert_eq!(corner.bounds(), (DVec3::ZERO, DVec3::ONE));
+/// # Ok::<(), tem00_geometry::MeshError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct TriangleMesh {
+    vertices: Vec<DVec3>,
+    normals: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    dropped: usize,
+    bounds: (DVec3, DVec3),
+}
+
+impl TriangleMesh {
+    /// Creates a mesh from its vertices, in metres, and the vertex indices of its triangles.
+    ///
+    /// Triangles without area reflect no light and have no normal. Files from scanners and
+    /// modellers are full of them, so they are left out and counted in
+    /// [`dropped_triangles`](Self::dropped_triangles).
+    ///
+    /// # Errors
+    ///
+    /// Returns an error that names the first vertex that is not finite or the first triangle with
+    /// an index beyond the vertices, or if no triangle with an area is left.
+    pub fn new(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+        Self::with_normals(vertices, Vec::new(), triangles)
+    }
+
+    /// Creates a mesh with a normal for each vertex, or with none if `normals` is empty.
+    ///
+    /// The normals may be of any length. A vertex with a normal of length zero takes no part in the
+    /// interpolation.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error as [`new`](Self::new) does, or if there are not as many normals as vertices,
+    /// or one is not finite.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use tem00_geometry::{MeshError, TriangleMesh};
+    ///
+    /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    /// let result = TriangleMesh::with_normals(corners, vec![DVec3::Z], vec![[0, 1, 2]]);
+    /// assert_eq!(result, Err(MeshError::Normals { normals: 1, vertices: 3 }));
+    /// ```
+    pub fn with_normals(
+        vertices: Vec<DVec3>,
+        mut normals: Vec<DVec3>,
+        mut triangles: Vec<[u32; 3]>,
+    ) -> Result<Self, MeshError> {
+        check_vertices(&vertices)?;
+        check_normals(&normals, vertices.len())?;
+        check_indices(&triangles, vertices.len())?;
+        for normal in &mut normals {
+            *normal = unit(*normal).unwrap_or(DVec3::ZERO);
+        }
+        let given = triangles.len();
+        triangles.retain(|corners| normal(&corners.map(|i| vertices[i as usize])).is_some());
+        if triangles.is_empty() {
+            return Err(MeshError::Empty { degenerate: given });
+        }
+        Ok(Self {
+            bounds: bounds(&vertices, &triangles),
+            dropped: given - triangles.len(),
+            vertices,
+            normals,
+            triangles,
+        })
+    }
+
+    /// Returns the vertices, in metres.
+    pub fn vertices(&self) -> &[DVec3] {
+        &self.vertices
+    }
+
+    /// Returns the normals of the vertices, of unit length or zero; empty if there are none.
+    pub fn normals(&self) -> &[DVec3] {
+        &self.normals
+    }
+
+    /// Returns the vertex indices of the triangles.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Returns the number of triangles that were left out because they have no area.
+    pub const fn dropped_triangles(&self) -> usize {
+        self.dropped
+    }
+
+    /// Returns the lowest and the highest corner of the axis-parallel box around the triangles, in
+    /// metres.
+    pub const fn bounds(&self) -> (DVec3, DVec3) {
+        self.bounds
+    }
+
+    /// Returns the mesh moved by `displacement`, in metres.
+    #[must_use]
+    pub fn translated(&self, displacement: DVec3) -> Self {
+        let (low, high) = self.bounds;
+        Self {
+            vertices: self.vertices.iter().map(|v| v + displacement).collect(),
+            bounds: (low + displacement, high + displacement),
+            ..self.clone()
+        }
+    }
+
+    /// Returns the corners of a triangle, in metres.
+    #[inline(always)]
+    pub(crate) fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        let [a, b, c] = self.triangles[triangle].map(|index| index as usize);
+        [self.vertices[a], self.vertices[b], self.vertices[c]]
+    }
+
+    /// Returns the sum of the normals of a triangle's corners, each times its weight, or `None` if
+    /// the mesh has no normals.
+    pub(crate) fn interpolated_normal(&self, triangle: usize, weights: DVec3) -> Option<DVec3> {
+        if self.normals.is_empty() {
+            return None;
+        }
+        let [a, b, c] = self.triangles[triangle].map(|index| self.normals[index as usize]);
+        Some(weights.x * a + weights.y * b + weights.z * c)
+    }
+}
+
+/// Returns the unit normal of a triangle, or `None` if it has no area.
+pub(crate) fn normal([a, b, c]: &[DVec3; 3]) -> Option<DVec3> {
+    // Scaled by its longest extent, a triangle of any size has a cross product without underflow.
+    let (u, v) = (b - a, c - a);
+    let scale = u.abs().max(v.abs()).max_element();
+    (u / scale).cross(v / scale).try_normalize()
+}
+
+/// Returns the normal with which a triangle scatters light: the interpolated one on the side of the
+/// triangle's own.
+pub(crate) fn shading_normal(normal: DVec3, interpolated: Option<DVec3>) -> DVec3 {
+    let interpolated = interpolated.unwrap_or(normal);
+    let cosine = interpolated.dot(normal);
+    if cosine == 0.0 {
+        return normal;
+    }
+    interpolated * 1.0_f64.copysign(cosine)
+}
+
+/// Returns `vector` at unit length, or `None` if it has no direction, whatever its size.
+fn unit(vector: DVec3) -> Option<DVec3> {
+    (vector / vector.abs().max_element()).try_normalize()
+}
+
+fn check_vertices(vertices: &[DVec3]) -> Result<(), MeshError> {
+    match vertices.iter().position(|vertex| !vertex.is_finite()) {
+        Some(index) => Err(MeshError::Vertex {
+            index,
+            value: vertices[index],
+        }),
+        None => Ok(()),
+    }
+}
+
+fn check_normals(normals: &[DVec3], vertices: usize) -> Result<(), MeshError> {
+    if !normals.is_empty() && normals.len() != vertices {
+        return Err(MeshError::Normals {
+            normals: normals.len(),
+            vertices,
+        });
+    }
+    match normals.iter().position(|normal| !normal.is_finite()) {
+        Some(index) => Err(MeshError::Normal {
+            index,
+            value: normals[index],
+        }),
+        None => Ok(()),
+    }
+}
+
+fn check_indices(triangles: &[[u32; 3]], vertices: usize) -> Result<(), MeshError> {
+    for (triangle, corners) in triangles.iter().enumerate() {
+        for &index in corners {
+            if index as usize >= vertices {
+                return Err(MeshError::Index {
+                    triangle,
+                    index,
+                    vertices,
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn bounds(vertices: &[DVec3], triangles: &[[u32; 3]]) -> (DVec3, DVec3) {
+    let used = triangles.iter().flatten().map(|&i| vertices[i as usize]);
+    used.fold(
+        (DVec3::INFINITY, DVec3::NEG_INFINITY),
+        |(low, high), vertex| (low.min(vertex), high.max(vertex)),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn first_bad_vertex_is_named() {
+        let vertices = vec![DVec3::ZERO, DVec3::X.with_y(f64::NAN), DVec3::NAN];
+        let error = TriangleMesh::new(vertices, vec![[0, 1, 2]]).unwrap_err();
+        assert!(
+            matches!(error, MeshError::Vertex { index: 1, .. }),
+            "{error:?}"
+        );
+        let text = error.to_string();
+        assert_eq!(
+            text, "vertex 1 (from 0) must be finite, got [1, NaN, 0]",
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn indices_beyond_the_vertices_are_refused() {
+        let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+        let error = TriangleMesh::new(vertices, vec![[0, 1, 2], [0, 3, 1]]).unwrap_err();
+        let expected = MeshError::Index {
+            triangle: 1,
+            index: 3,
+            vertices: 3,
+        };
+        assert_eq!(error, expected, "{error}");
+    }
+
+    #[test]
+    fn a_mesh_without_triangles_is_refused() {
+        let error = TriangleMesh::new(vec![DVec3::ZERO], vec![]).unwrap_err();
+        assert_eq!(error, MeshError::Empty { degenerate: 0 }, "{error}");
+
+        let line = vec![DVec3::ZERO, DVec3::X, 2.0 * DVec3::X];
+        let error = TriangleMesh::new(line, vec![[0, 1, 2], [0, 0, 1]]).unwrap_err();
+        assert_eq!(error, MeshError::Empty { degenerate: 2 }, "{error}");
+    }
+
+    #[test]
+    fn triangles_without_area_are_left_out_and_counted() {
+        let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, 2.0 * DVec3::X];
+        let mesh = TriangleMesh::new(vertices, vec![[0, 1, 3], [0, 1, 2], [1, 1, 2]]).unwrap();
+        assert_eq!(
+            mesh.triangles(),
+            [[0, 1, 2]],
+            "only one triangle has an area"
+        );
+        assert_eq!(mesh.dropped_triangles(), 2, "two have none");
+        // Vertex 3 belongs to no triangle that is left.
+        assert_eq!(
+            mesh.bounds(),
+            (DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0)),
+            "bounds"
+        );
+    }
+
+    #[test]
+    fn a_triangle_has_a_normal_whatever_its_size() {
+        for size in [1e-200, 1e-9, 1.0, 1e9, 1e200] {
+            let normal = normal(&[DVec3::ZERO, size * DVec3::X, size * DVec3::Y]);
+            assert_eq!(normal, Some(DVec3::Z), "size {size:e}");
+        }
+    }
+
+    #[test]
+    fn bad_vertex_normals_are_refused() {
+        let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+        let normals = vec![DVec3::Z, DVec3::Z, DVec3::INFINITY];
+        let error = TriangleMesh::with_normals(corners.clone(), normals, vec![[0, 1, 2]]);
+        assert_eq!(
+            error.unwrap_err().to_string(),
+            "normal of vertex 2 (from 0) must be finite, got [inf, inf, inf]",
+            "not finite"
+        );
+        let error = TriangleMesh::with_normals(corners, vec![DVec3::Z], vec![[0, 1, 2]]);
+        assert_eq!(
+            error.unwrap_err().to_string(),
+            "there must be a normal for each of the 3 vertices, got 1",
+            "too few"
+        );
+    }
+
+    #[test]
+    fn vertex_normals_are_brought_to_unit_length() {
+        let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+        let normals = vec![3e-200 * DVec3::Z, 1e200 * DVec3::X, DVec3::ZERO];
+        let mesh = TriangleMesh::with_normals(corners, normals, vec![[0, 1, 2]]).unwrap();
+        assert_eq!(
+            mesh.normals(),
+            [DVec3::Z, DVec3::X, DVec3::ZERO],
+            "unit or zero"
+        );
+    }
+}

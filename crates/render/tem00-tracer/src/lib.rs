@@ -11,7 +11,7 @@
 //! # Main types
 //!
 //! [`Scene`] describes what is rendered; `tem00-scene` reads one from a file. [`ReferenceSpeckle`] holds its speckle, and
-//! a [`Frame`] of layers.
+//! [`render_reference`] renders a [`Frame`] of layers.
 //!
 //! # Scope and non-goals
 //!
@@ -31,6 +31,7 @@ mod local_frame;
 mod material;
 mod metal;
 mod options;
+mod reference;
 mod render_error;
 mod scene;
 
@@ -44,6 +45,7 @@ pub use local_frame::LocalFrame;
 pub use material::{BsdfSample, Material, OpticalRoughness, OpticalRoughnessQuery};
 pub use metal::Metal;
 pub use options::{Crop, LaserEvents, LightEvents, Method, RenderOptions, Sampling};
+pub use reference::{ReferenceSpeckle, render_reference};
 pub use render_error::RenderError;
 pub use scene::{Scene, SpeckleSettings, Surface, SurfaceSpeckle};
 

@@ -18,7 +18,7 @@ const LATTICES: usize = 8;
 /// Of four samples one in four pairs is a sample with itself:
 ///
 /// ```
-/// use tem00_tracer::mean_over_sample_displacements;
+/// use tem00_engine::mean_over_sample_displacements;
 ///
 /// let together = |[x, y]: [f64; 2]| if x.hypot(y) < 1e-9 { 1.0 } else { 0.0 };
 /// assert!((mean_over_sample_displacements(4, together) - 0.25).abs() < 1e-12);

@@ -17,9 +17,10 @@ use std::{
 
 use png::{BitDepth, ColorType, Encoder};
 use tem00::{
+    calibration::{BoardSettings, find_corners},
     scan::BoardPlan,
     scene::parse_scene,
-    triangulation::{BoardSettings, RawFrame, Sensor, SensorDescription, find_corners},
+    triangulation::{RawFrame, Sensor, SensorDescription},
 };
 
 const SCENE: &str = r#"

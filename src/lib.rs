@@ -43,7 +43,11 @@
 )]
 #![cfg_attr(
     feature = "triangulation",
-    doc = "| [`triangulation`] | `tem00-triangulation` | sensor, line detectors, calibration, profiles and their uncertainty (feature `triangulation`) |"
+    doc = "| [`triangulation`] | `tem00-triangulation` | sensor, line detectors, profiles and their uncertainty (feature `triangulation`) |"
+)]
+#![cfg_attr(
+    feature = "triangulation",
+    doc = "| [`calibration`] | `tem00-calibration` | camera and laser plane from images of boards, with their covariance (feature `triangulation`) |"
 )]
 #![cfg_attr(
     feature = "triangulation",
@@ -65,6 +69,8 @@ pub use tem00_shading::{
 };
 
 pub use tem00_beam as beam;
+#[cfg(feature = "triangulation")]
+pub use tem00_calibration as calibration;
 pub use tem00_camera as camera;
 pub use tem00_coherence as coherence;
 #[cfg(any(feature = "tracer", feature = "triangulation"))]

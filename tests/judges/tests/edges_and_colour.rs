@@ -10,12 +10,13 @@ use core::f64::consts::PI;
 use std::{path::Path, sync::atomic::AtomicBool};
 
 use tem00::{
+    calibration::CalibrationSettings,
     geometry::{Rectangle, Shape},
     numerics::Grid,
     scan::{Measurement, MeasurementScene, ScanSettings},
     scene::parse_scene,
     tracer::{Material, Scene, Surface, Trajectory},
-    triangulation::{CalibrationSettings, DVec2, DVec3, DetectorSettings, SensorDescription},
+    triangulation::{DVec2, DVec3, DetectorSettings, SensorDescription},
 };
 
 /// The angle between the axis of the camera and the plane of the laser, in radians.

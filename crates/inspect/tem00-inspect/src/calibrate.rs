@@ -9,6 +9,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use tem00_calibration::{BoardView, Calibration, CameraModel, Checkerboard, calibrate};
 use tem00_report::{
     atomic::probe_writable,
     failure::Failure,
@@ -17,9 +18,7 @@ use tem00_report::{
     progress::Progress,
     report::Report,
 };
-use tem00_triangulation::{
-    BoardView, Calibration, CameraModel, Checkerboard, LineDetector, TriangulationError, calibrate,
-};
+use tem00_triangulation::{LineDetector, TriangulationError};
 
 use self::left_out::Found;
 use crate::{args::CalibrateArgs, calibration_file::write_calibration};

@@ -3,13 +3,11 @@
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use tem00_calibration::{Calibration, CalibrationCovariance, CalibrationQuality, PARAMETERS};
 use tem00_camera::{Camera, CameraDescription};
 use tem00_config::{MAX_TEXT_BYTES, read_input, without_byte_order_mark};
 use tem00_report::{atomic::write_atomically, failure::Failure};
-use tem00_triangulation::{
-    Calibration, CalibrationCovariance, CalibrationQuality, LaserPlane, PARAMETERS,
-    TriangulationError,
-};
+use tem00_triangulation::{LaserPlane, TriangulationError};
 
 /// The format of the file, with its version.
 const FORMAT: &str = "tem00 calibration 1";
@@ -148,7 +146,7 @@ impl CovarianceRecord {
 }
 
 fn names() -> Vec<String> {
-    let name = |parameter: &tem00_triangulation::Parameter| parameter.name.to_owned();
+    let name = |parameter: &tem00_calibration::Parameter| parameter.name.to_owned();
     PARAMETERS.iter().map(name).collect()
 }
 

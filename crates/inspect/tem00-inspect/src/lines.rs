@@ -11,6 +11,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use tem00_calibration::Calibration;
 use tem00_numerics::Grid;
 use tem00_report::{
     atomic::write_atomically,
@@ -21,7 +22,7 @@ use tem00_report::{
     output,
     progress::Progress,
 };
-use tem00_triangulation::{Calibration, LineDetector, LinePoint};
+use tem00_triangulation::{LineDetector, LinePoint};
 
 use crate::{args::LinesArgs, calibration_file::read_calibration, saturated_points::PointCounts};
 

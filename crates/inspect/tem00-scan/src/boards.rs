@@ -5,15 +5,14 @@ pub use self::render::calibrate_scene;
 use std::sync::Arc;
 
 use glam::{DMat3, DVec2, DVec3};
+use tem00_calibration::{BoardSettings, Checkerboard};
 use tem00_camera::Camera;
 use tem00_geometry::{MeshInstance, Shape, TriangleMesh};
 use tem00_tracer::{
     Laser, Light, Material, Relief, RigidMotion, Scene, Surface, SurfaceSpeckle, TracerError,
     Trajectory,
 };
-use tem00_triangulation::{
-    BoardSettings, Checkerboard, LaserPlane, TriangulationError, Triangulator,
-};
+use tem00_triangulation::{LaserPlane, TriangulationError, Triangulator};
 
 use crate::{ScanError, laser_plane::plane_of};
 

@@ -1,12 +1,13 @@
 use std::borrow::Cow;
 
 use glam::{DMat3, DVec2, DVec3};
+use tem00_calibration::Calibration;
 use tem00_engine::{ReferencePoint, SpeckleChange};
 use tem00_numerics::{Grid, cast::to_f32};
 use tem00_tracer::RigidMotion;
 use tem00_triangulation::{
-    Calibration, ColumnLight, LineDetector, LinePoint, PositionNoise, ProfilePoint, RawFrame,
-    Sensor, Validity, speckle_covariance,
+    ColumnLight, LineDetector, LinePoint, PositionNoise, ProfilePoint, RawFrame, Sensor, Validity,
+    speckle_covariance,
 };
 
 use crate::{

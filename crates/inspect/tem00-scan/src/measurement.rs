@@ -2,12 +2,13 @@ use core::sync::atomic::AtomicBool;
 
 use glam::DMat3;
 use glam::{DVec2, DVec3};
+use tem00_calibration::Calibration;
 use tem00_camera::Camera;
 use tem00_engine::{ReferencePoint, SpeckleChange, SpeckleModel, render_frame};
 use tem00_numerics::seed::{Purpose, derived};
 use tem00_tracer::{BeamShape, Filter, Frame, Laser, Method, Scene, SurfaceSpeckle};
 use tem00_triangulation::{
-    Calibration, DetectorSettings, LineDetector, Sensor, SensorDescription, TriangulationError,
+    DetectorSettings, LineDetector, Sensor, SensorDescription, TriangulationError,
 };
 
 use crate::{ScanError, laser_plane::plane_of};

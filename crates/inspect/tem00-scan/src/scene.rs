@@ -1,12 +1,10 @@
 use std::path::Path;
 
+use tem00_calibration::{CalibrationSettings, read_calibration};
 use tem00_config::{ConfigError, Document, Problem, Reading};
 use tem00_scene::SceneFile;
 use tem00_tracer::Scene;
-use tem00_triangulation::{
-    CalibrationSettings, DetectorSettings, SensorDescription, read_calibration, read_detector,
-    read_sensor,
-};
+use tem00_triangulation::{DetectorSettings, SensorDescription, read_detector, read_sensor};
 
 use crate::{ScanSettings, section::read_scan};
 

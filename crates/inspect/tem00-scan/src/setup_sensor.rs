@@ -4,6 +4,7 @@ use core::{fmt, sync::atomic::AtomicBool};
 use std::path::Path;
 
 use glam::DVec2;
+use tem00_calibration::CalibrationSettings;
 use tem00_camera::{Camera, CameraDescription};
 use tem00_engine::render_frame;
 use tem00_geometry::{Rectangle, Shape as Surface, Sphere, TriangleMesh};
@@ -15,7 +16,7 @@ use tem00_numerics::{
 use tem00_scene::parse_scene;
 use tem00_topography::{Artefact, Axis, DVec3, Field, Groove, ProfileSensor, Shape, SurfacePoint};
 use tem00_tracer::{Filter, Keyframe, RenderOptions, Scene, TracerError, Trajectory};
-use tem00_triangulation::{CalibrationSettings, LineImage, Setup};
+use tem00_triangulation::{LineImage, Setup};
 
 use crate::{
     Averaging, Exposure, MeasuredFrame, Measurement, MeasurementScene, ScanError, ScanSettings,

@@ -4,11 +4,12 @@
 
 use std::{f64::consts::PI, path::Path, sync::atomic::AtomicBool};
 
+use tem00_calibration::CalibrationSettings;
 use tem00_engine::{SpeckleModel, SpecklePlan, render_frame};
 use tem00_scan::{Measurement, MeasurementScene, ScanSettings};
 use tem00_scene::parse_scene;
 use tem00_tracer::{Crop, RenderOptions};
-use tem00_triangulation::{Budget, CalibrationSettings, DVec2, DVec3, Setup, parse_setup};
+use tem00_triangulation::{Budget, DVec2, DVec3, Setup, parse_setup};
 
 fn setup(scheimpflug: bool, plane: &str) -> Setup {
     let text = format!(

@@ -1,6 +1,5 @@
 //! Sections of scene files and set-up files.
 
-mod calibration;
 mod design;
 mod detector;
 mod keys;
@@ -9,9 +8,6 @@ mod setup;
 mod setup_text;
 mod uncertainty;
 
-pub use self::calibration::{
-    BoardSettings, CalibrationMethod, CalibrationSettings, read_calibration,
-};
 pub use self::design::read_design;
 pub use self::detector::read_detector;
 pub use self::sensor::read_sensor;

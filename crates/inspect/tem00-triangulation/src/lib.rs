@@ -10,7 +10,6 @@
 //! - Uncertainties are standard uncertainties unless called expanded.
 
 mod budget;
-mod calibration;
 mod design;
 mod detector;
 mod dorsch;
@@ -27,10 +26,6 @@ pub use budget::{
     Budget, BudgetTerm, ErrorDistribution, Evaluation, MonteCarloEstimate, Simulation,
     SimulationOptions, UncertaintySource, simulate,
 };
-pub use calibration::{
-    BoardView, Calibration, CalibrationCovariance, CalibrationQuality, CameraModel, Checkerboard,
-    PARAMETERS, Parameter, calibrate, find_corners,
-};
 pub use design::{
     Candidate, Constraint, DesignFigure, DesignFigures, DesignOutcome, DesignParameter,
     DesignQuestion, DesignSearch, Exclusion, Neighbours, Objective, Spacing, Sweep, neighbours,
@@ -40,9 +35,8 @@ pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, Line
 pub use dorsch::Dorsch;
 pub use error::TriangulationError;
 pub use file::{
-    BoardSettings, CalibrationMethod, CalibrationSettings, parse_setup, parse_setup_with,
-    read_calibration, read_design, read_detector, read_sensor, read_setup, read_setup_with,
-    read_uncertainty,
+    parse_setup, parse_setup_with, read_design, read_detector, read_sensor, read_setup,
+    read_setup_with, read_uncertainty,
 };
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
 pub use line_image::{LineImage, LineImageData};

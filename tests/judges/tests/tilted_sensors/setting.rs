@@ -1,6 +1,7 @@
 use std::{path::Path, sync::atomic::AtomicBool};
 
 use tem00::{
+    calibration::CalibrationSettings,
     camera::{Camera, CameraDescription, RadialDistortion, SensorTilt},
     engine::{SpeckleModel, SpecklePlan, render_frame},
     geometry::{Rectangle, Shape},
@@ -8,7 +9,7 @@ use tem00::{
     scan::{MeasuredFrame, Measurement, MeasurementScene, ScanSettings},
     scene::parse_scene,
     tracer::{RenderOptions, Trajectory},
-    triangulation::{CalibrationSettings, DVec2, DVec3, DetectorSettings, SensorDescription},
+    triangulation::{DVec2, DVec3, DetectorSettings, SensorDescription},
 };
 
 /// Columns and rows of the images.

@@ -5,8 +5,9 @@ use std::f64::consts::PI;
 use tem00::{
     DVec2,
     beam::{DVec3, GaussianBeam, LocatedBeam},
+    geometry::{Shape, TriangleMesh},
     optics::{AbcdMatrix, ThickLens},
-    geometry::{Shape, TriangleMesh}, tracer::{Frame, Material, Method, Scene},
+    tracer::{Frame, Material, Method, Scene},
 };
 
 use super::comparison::{Series, assert_mean, paint, sharp_scene};

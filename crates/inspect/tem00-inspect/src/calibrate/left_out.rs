@@ -2,8 +2,9 @@
 
 use std::{collections::BTreeMap, path::Path};
 
+use tem00_calibration::CalibrationQuality;
 use tem00_report::output::name;
-use tem00_triangulation::{CalibrationQuality, LinePoint, Validity};
+use tem00_triangulation::{LinePoint, Validity};
 
 use crate::{
     lines::notes::{SATURATED, reason},

@@ -1,11 +1,12 @@
 //! The results of a calibration as a table.
 
+use tem00_calibration::{Calibration, PARAMETERS};
 use tem00_camera::RadialDistortion;
 use tem00_report::{
     digits::number,
     report::{Column, Table},
 };
-use tem00_triangulation::{Calibration, DVec2, DVec3, PARAMETERS};
+use tem00_triangulation::{DVec2, DVec3};
 
 use super::left_out::Found;
 

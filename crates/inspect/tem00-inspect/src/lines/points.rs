@@ -3,7 +3,8 @@
 use std::io::{self, Write};
 
 use glam::{DVec2, DVec3};
-use tem00_triangulation::{Calibration, LinePoint, Validity};
+use tem00_calibration::Calibration;
+use tem00_triangulation::{LinePoint, Validity};
 
 use super::summary::LineSummary;
 

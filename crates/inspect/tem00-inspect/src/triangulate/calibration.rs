@@ -5,9 +5,9 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
+use tem00_calibration::{CalibrationMethod, CalibrationSettings};
 use tem00_report::{failure::Failure, interrupt, progress::Progress};
 use tem00_scan::{BoardPlan, Measurement, ScanError};
-use tem00_triangulation::{CalibrationMethod, CalibrationSettings};
 
 use super::{files::Files, job::measurement_failure};
 

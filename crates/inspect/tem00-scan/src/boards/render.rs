@@ -1,11 +1,10 @@
 use std::sync::atomic::AtomicBool;
 
+use tem00_calibration::{BoardSettings, BoardView, Calibration, CameraModel, calibrate};
 use tem00_engine::{SpeckleModel, SpecklePlan, render_frame};
 use tem00_numerics::Grid;
 use tem00_tracer::{Filter, RenderOptions, Scene};
-use tem00_triangulation::{
-    BoardSettings, BoardView, Calibration, CameraModel, LineDetector, RawFrame, Sensor, calibrate,
-};
+use tem00_triangulation::{LineDetector, RawFrame, Sensor};
 
 use super::BoardPlan;
 use crate::Exposure;

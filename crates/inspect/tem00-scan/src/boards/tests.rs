@@ -1,10 +1,9 @@
 use std::{path::Path, sync::atomic::AtomicBool};
 
+use tem00_calibration::find_corners;
 use tem00_camera::{CameraDescription, RadialDistortion};
 use tem00_scene::parse_scene;
-use tem00_triangulation::{
-    DetectorSettings, LineDetector, Sensor, SensorDescription, find_corners,
-};
+use tem00_triangulation::{DetectorSettings, LineDetector, Sensor, SensorDescription};
 
 use super::*;
 use crate::laser_plane::plane_of;

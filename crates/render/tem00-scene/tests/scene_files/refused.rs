@@ -324,10 +324,7 @@ fn tables_of_a_profile_must_be_tables_of_power() {
             "{ angles = [0, 1], powers = [\"x\", 1] }",
             &["element 1 of `powers`"],
         ),
-        (
-            "{ angles = [0, 1], powers = [1] }",
-            &["[2, 1]"],
-        ),
+        ("{ angles = [0, 1], powers = [1] }", &["[2, 1]"]),
         (
             "{ angles = [0, 1, 0.5], powers = [1, 1, 1] }",
             &["angles", "at index 2"],

@@ -80,7 +80,11 @@ fn a_tilted_mirror_focuses_rays_as_reflection_says() {
     let h = 1e-5;
     // A surface point x = h / cos φ in the plane of incidence belongs to a ray at height h.
     for (element, height, point) in [
-        (tangential, h, tem00_beam::DVec3::new(h / angle.cos(), 0.0, 0.0)),
+        (
+            tangential,
+            h,
+            tem00_beam::DVec3::new(h / angle.cos(), 0.0, 0.0),
+        ),
         (sagittal, h, tem00_beam::DVec3::new(0.0, h, 0.0)),
     ] {
         let normal = (tem00_beam::DVec3::NEG_Z - curvature * point).normalize();

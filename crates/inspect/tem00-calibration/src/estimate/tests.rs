@@ -4,7 +4,7 @@ use rand_distr::{Distribution, Normal};
 use tem00_camera::{CameraDescription, RadialDistortion, SensorTilt};
 
 use super::*;
-use crate::Triangulator;
+use tem00_triangulation::Triangulator;
 
 const PITCH: f64 = 8e-6;
 

@@ -1,7 +1,7 @@
 use glam::DVec3;
 use nalgebra::{Matrix3, SymmetricEigen};
 
-use crate::TriangulationError;
+use tem00_triangulation::TriangulationError;
 
 /// Largest distance of a point from the plane, in robust standard deviations.
 const OUTLIER: f64 = 4.0;

@@ -4,7 +4,7 @@ use tem00_camera::Camera;
 use tem00_decorrelation::RigidMotion;
 use tem00_numerics::Grid;
 
-use super::{
+use crate::{
     Calibration, CalibrationCovariance, CalibrationQuality, CameraModel, Checkerboard, PARAMETERS,
     corners::find_corners,
     covariance::COUNT,
@@ -14,7 +14,7 @@ use super::{
     plane_fit::{FittedPlane, correlation_factor, without_outliers},
     start::{starts, tilted},
 };
-use crate::{LaserPlane, LinePoint, TriangulationError, Validity};
+use tem00_triangulation::{LaserPlane, LinePoint, TriangulationError, Validity};
 
 /// The minimum number of boards.
 const MIN_BOARDS: usize = 3;

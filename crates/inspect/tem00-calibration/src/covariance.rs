@@ -2,7 +2,7 @@ use glam::DVec3;
 use nalgebra::{SMatrix, SymmetricEigen};
 use tem00_decorrelation::RigidMotion;
 
-use crate::TriangulationError;
+use tem00_triangulation::TriangulationError;
 
 /// The number of parameters.
 pub(super) const COUNT: usize = PARAMETERS.len();

@@ -1,6 +1,6 @@
 use glam::DVec3;
 
-use crate::TriangulationError;
+use tem00_triangulation::TriangulationError;
 
 /// The maximum number of corners along a side of a board.
 const MOST: usize = 50;

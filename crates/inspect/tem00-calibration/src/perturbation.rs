@@ -2,8 +2,8 @@ use glam::{DMat3, DVec2, DVec3};
 use nalgebra::{SMatrix, Vector3};
 use tem00_camera::{Camera, CameraDescription, SensorTilt};
 
-use super::covariance::{COUNT, CalibrationCovariance};
-use crate::{TriangulationError, Triangulator};
+use crate::covariance::{COUNT, CalibrationCovariance};
+use tem00_triangulation::{TriangulationError, Triangulator};
 
 /// The number of parameters within the camera, which come first.
 pub(super) const INTRINSICS: usize = 8;

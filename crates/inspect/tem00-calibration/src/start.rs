@@ -1,12 +1,12 @@
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use nalgebra::{DMatrix, DVector, Matrix3};
 
-use super::{
+use crate::{
     CameraModel,
     homography::homography,
     model::{Pose, State},
 };
-use crate::TriangulationError;
+use tem00_triangulation::TriangulationError;
 
 /// Returns states to start from, none of which needs to be near: a pinhole without distortion by two
 /// conditions on the map of each board to its image, once with the principal point and once in the

@@ -1,4 +1,4 @@
-use crate::TriangulationError;
+use tem00_triangulation::TriangulationError;
 
 /// Known parameters of a camera before its calibration, and the choice of those that are sought.
 #[derive(Clone, Copy, Debug, PartialEq)]

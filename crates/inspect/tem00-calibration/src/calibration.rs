@@ -1,36 +1,15 @@
-mod board;
-mod camera_model;
-mod corners;
-mod covariance;
-mod estimate;
-mod flat_field;
-mod homography;
-mod lattice;
-mod least_squares;
-mod model;
-mod perturbation;
-mod plane_fit;
-mod ring;
-mod start;
-
 use glam::{DMat3, DVec2, DVec3};
 use nalgebra::SMatrix;
 use tem00_camera::Camera;
 use tem00_decorrelation::RigidMotion;
 
-use self::{covariance::COUNT, perturbation::Perturbations};
-use crate::{LaserPlane, TriangulationError, Triangulator};
-
-pub use self::board::Checkerboard;
-pub use self::camera_model::CameraModel;
-pub use self::corners::find_corners;
-pub use self::covariance::{CalibrationCovariance, PARAMETERS, Parameter};
-pub use self::estimate::{BoardView, calibrate};
+use crate::{CalibrationCovariance, covariance::COUNT, perturbation::Perturbations};
+use tem00_triangulation::{LaserPlane, TriangulationError, Triangulator};
 
 /// A calibrated set-up: its camera and its laser plane, and how well they are known.
 ///
 /// A calibration is [exact](Self::exact), as a simulation knows its own scene, or estimated from images
-/// of a checkerboard and of the laser line on it, with the covariance of its [`PARAMETERS`].
+/// of a checkerboard and of the laser line on it, with the covariance of its [`PARAMETERS`](crate::PARAMETERS).
 ///
 /// The errors of a calibration are common to all points that are measured with it: they do not average
 /// out, but a difference of heights near each other hardly feels them, see

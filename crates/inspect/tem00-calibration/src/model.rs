@@ -2,7 +2,7 @@ use glam::{DMat3, DVec2, DVec3};
 use nalgebra::DVector;
 use tem00_camera::{Camera, CameraDescription, RadialDistortion};
 
-use super::{
+use crate::{
     CameraModel,
     least_squares::Residuals,
     perturbation::{INTRINSICS, focal_length, tilt_of},
@@ -34,7 +34,7 @@ impl Pose {
 /// The camera in its own axes, by its parameters, and the boards before it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct State {
-    /// The first of the [`PARAMETERS`](super::PARAMETERS).
+    /// The first of the [`PARAMETERS`](crate::PARAMETERS).
     pub intrinsics: [f64; INTRINSICS],
     pub poses: Vec<Pose>,
 }

@@ -1,7 +1,7 @@
 use nalgebra::{DMatrix, DVector};
 use tem00_numerics::NormalEquations;
 
-use crate::TriangulationError;
+use tem00_triangulation::TriangulationError;
 
 /// Residuals that depend on a state, which changes by small steps.
 ///

@@ -1,6 +1,7 @@
 use tem00_camera::{CameraDescription, RadialDistortion, SensorTilt};
 
 use super::*;
+use crate::PARAMETERS;
 
 fn camera() -> Camera {
     Camera::new(CameraDescription {

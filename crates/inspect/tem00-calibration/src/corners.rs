@@ -1,8 +1,8 @@
 use glam::{DMat2, DVec2};
 use tem00_numerics::Grid;
 
-use super::{Checkerboard, flat_field::flattened, lattice::ordered, ring::corner_candidates};
-use crate::TriangulationError;
+use crate::{Checkerboard, flat_field::flattened, lattice::ordered, ring::corner_candidates};
+use tem00_triangulation::TriangulationError;
 
 /// The standard deviation of the Gaussian that smooths a corner at first, in sides of a square: the next
 /// edges are more than five of them away.

@@ -29,6 +29,7 @@ mod scene;
 mod section;
 mod sensor_speckle;
 mod settings;
+mod setup_scene;
 mod setup_sensor;
 mod speckle_by_waves;
 mod speckle_table;
@@ -53,5 +54,6 @@ pub use self::{
     scene::MeasurementScene,
     sensor_speckle::SensorSpeckle,
     settings::{Averaging, RawFormat, ScanSettings},
+    setup_scene::setup_scene,
     setup_sensor::SetupSensor,
 };

@@ -1,7 +1,6 @@
 //! A set-up that measures artefacts.
 
 use core::{fmt, sync::atomic::AtomicBool};
-use std::path::Path;
 
 use glam::DVec2;
 use tem00_calibration::CalibrationSettings;
@@ -13,7 +12,6 @@ use tem00_numerics::{
     cast::to_f32,
     seed::{Purpose, derived},
 };
-use tem00_scene::parse_scene;
 use tem00_topography::{Artefact, Axis, DVec3, Field, Groove, ProfileSensor, Shape, SurfacePoint};
 use tem00_tracer::{Filter, Keyframe, RenderOptions, Scene, TracerError, Trajectory};
 use tem00_triangulation::{LineImage, Setup};
@@ -21,6 +19,7 @@ use tem00_triangulation::{LineImage, Setup};
 use crate::{
     Averaging, Exposure, MeasuredFrame, Measurement, MeasurementScene, ScanError, ScanSettings,
     average::{SpeckleCorrelation, averaged_profile, brightest_points},
+    setup_scene,
 };
 
 /// The depth of grooves, as a part of the height that moves the line by its own thickness.
@@ -87,8 +86,7 @@ impl<'a> SetupSensor<'a> {
         artefact: &Artefact,
         frames: &[&[DVec3]],
     ) -> Result<MeasurementScene, ScanError> {
-        let scene = parse_scene(&self.setup.scene(0.0), Path::new("."));
-        let mut scene = scene.map_err(|error| ScanError::Scene(error.to_string()))?;
+        let mut scene = setup_scene(self.setup, 0.0)?;
         let places: Vec<DVec3> = frames.iter().map(|same| same[0]).collect();
         scene.camera = self.camera(artefact, &places)?;
         let surface = &mut scene.surfaces[0];

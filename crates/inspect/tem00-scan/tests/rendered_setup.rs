@@ -2,12 +2,11 @@
 
 #![expect(clippy::expect_used, reason = "a test fails by panicking")]
 
-use std::{f64::consts::PI, path::Path, sync::atomic::AtomicBool};
+use std::{f64::consts::PI, sync::atomic::AtomicBool};
 
 use tem00_calibration::CalibrationSettings;
 use tem00_engine::{SpeckleModel, SpecklePlan, render_frame};
-use tem00_scan::{Measurement, MeasurementScene, ScanSettings};
-use tem00_scene::parse_scene;
+use tem00_scan::{Measurement, MeasurementScene, ScanSettings, setup_scene};
 use tem00_tracer::{Crop, RenderOptions};
 use tem00_triangulation::{Budget, DVec2, DVec3, Setup, parse_setup};
 
@@ -34,7 +33,7 @@ fn setup(scheimpflug: bool, plane: &str) -> Setup {
 fn rendered(setup: &Setup, height: f64) -> [f64; 3] {
     const COLUMNS: usize = 24;
     let line = setup.line_at(height).expect("the line is seen");
-    let scene = parse_scene(&setup.scene(height), Path::new(".")).expect("a scene");
+    let scene = setup_scene(setup, height).expect("a scene");
     let top = (line.position - 30.0).max(0.0).floor();
     let crop = Crop {
         x: 320 - COLUMNS / 2,
@@ -76,7 +75,7 @@ fn rendered(setup: &Setup, height: f64) -> [f64; 3] {
 #[test]
 fn the_scene_of_a_setup_has_its_camera() {
     for setup in [setup(false, ""), setup(true, "")] {
-        let scene = parse_scene(&setup.scene(1e-3), Path::new(".")).expect("a scene");
+        let scene = setup_scene(&setup, 1e-3).expect("a scene");
         let point = DVec3::new(1e-3, 0.0, 2e-3);
         let cameras = [setup.camera(), &scene.camera];
         let [ours, theirs] = cameras.map(|camera| camera.project(point).expect("it is seen"));
@@ -141,7 +140,7 @@ fn a_frame_out_of_focus_says_how_much_more_speckle_noise_a_camera_sees() {
     )
     .expect("a set-up");
     for (height, expected) in [(0.0, 1.0..1.1), (5.6e-3, 1.25..1.4)] {
-        let mut scene = parse_scene(&setup.scene(height), Path::new(".")).expect("a scene");
+        let mut scene = setup_scene(&setup, height).expect("a scene");
         scene.render.samples_per_pixel = 16;
         let measurement = Measurement::new(MeasurementScene {
             sensor: setup.description().sensor,

@@ -12,7 +12,6 @@ pub use self::design::read_design;
 pub use self::detector::read_detector;
 pub use self::sensor::read_sensor;
 pub use self::setup::{parse_setup, parse_setup_with, read_setup, read_setup_with};
-pub(crate) use self::setup_text::{light_keys, relief_keys};
 pub use self::uncertainty::read_uncertainty;
 
 #[cfg(test)]

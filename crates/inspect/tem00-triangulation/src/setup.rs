@@ -6,7 +6,6 @@ mod light_level;
 mod line_profile;
 mod quantity;
 mod range;
-mod scene;
 
 use glam::{DVec2, DVec3};
 use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};

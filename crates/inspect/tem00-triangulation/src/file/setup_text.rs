@@ -44,20 +44,6 @@ impl SetupDescription {
     }
 }
 
-/// Returns the keys of the light of a laser, as set-up files and scene files have them.
-pub(crate) fn light_keys(light: &LaserLight) -> String {
-    let mut text = Sections(String::new());
-    text.light(light);
-    text.0
-}
-
-/// Returns the keys of a relief.
-pub(crate) fn relief_keys(relief: Relief) -> String {
-    let mut text = Sections(String::new());
-    text.relief(relief);
-    text.0
-}
-
 /// Text that grows section by section.
 struct Sections(String);
 

@@ -89,13 +89,17 @@ impl SetupDescription {
     }
 
     /// Returns the point of the laser plane at a height, in metres, before the middle of the line.
-    pub(crate) fn laser_point_at(&self, height: f64) -> DVec3 {
+    pub fn laser_point_at(&self, height: f64) -> DVec3 {
         let beside = height * libm::tan(self.laser.tilt);
         DVec3::new(0.0, self.laser_offset() + beside, height)
     }
 
     /// Returns the laser line across, a Gaussian beam whose waist on the reference plane is as wide as the line is thick.
-    pub(crate) fn line_beam(&self) -> Result<GaussianBeam, TriangulationError> {
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the line is finer than a beam can be.
+    pub fn line_beam(&self) -> Result<GaussianBeam, TriangulationError> {
         let laser = &self.laser;
         let beam = GaussianBeam::from_waist(laser.light.wavelength, 0.5 * laser.line_thickness);
         beam.map_err(|_| TriangulationError::OutOfRange {

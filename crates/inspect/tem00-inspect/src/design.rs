@@ -4,7 +4,6 @@ mod files;
 mod plots;
 mod report;
 mod search;
-mod units;
 mod words;
 
 use std::io::Write;

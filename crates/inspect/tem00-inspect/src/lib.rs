@@ -15,6 +15,7 @@ mod saturated_points;
 mod source_colours;
 mod sweep;
 mod triangulate;
+mod units;
 
 use std::{ffi::OsString, io::Write, path::Path};
 

@@ -4,7 +4,6 @@ mod constraint;
 mod figures;
 mod front;
 mod outcome;
-mod parameter;
 mod sensitivity;
 mod sweep;
 #[cfg(test)]
@@ -19,7 +18,6 @@ pub use self::{
     figures::DesignFigures,
     front::pareto_front,
     outcome::{Candidate, DesignOutcome, Exclusion},
-    parameter::DesignParameter,
     sensitivity::{Neighbours, neighbours},
     sweep::{Spacing, Sweep},
 };
@@ -144,9 +142,8 @@ impl DesignSearch {
         let mut description = self.question.base.clone();
         for sweep in self.question.sweeps.iter().rev() {
             let values = sweep.values();
-            description = sweep
-                .parameter()
-                .set(&description, values[rest % values.len()]);
+            let value = values[rest % values.len()];
+            sweep.parameter().set(&mut description, value);
             rest /= values.len();
         }
         description
@@ -216,7 +213,7 @@ fn check_sweeps(sweeps: &[Sweep]) -> Result<(), TriangulationError> {
             .any(|other| other.parameter() == parameter)
         {
             return Err(TriangulationError::OutOfRange {
-                parameter: parameter.name(),
+                parameter: parameter.key(),
                 value: 2.0,
                 allowed: "varied once",
             });

@@ -2,7 +2,6 @@
 
 mod design;
 mod detector;
-mod keys;
 mod sensor;
 mod setup;
 mod setup_text;

@@ -27,9 +27,8 @@ pub use budget::{
     SimulationOptions, UncertaintySource, simulate,
 };
 pub use design::{
-    Candidate, Constraint, DesignFigure, DesignFigures, DesignOutcome, DesignParameter,
-    DesignQuestion, DesignSearch, Exclusion, Neighbours, Objective, Spacing, Sweep, neighbours,
-    pareto_front,
+    Candidate, Constraint, DesignFigure, DesignFigures, DesignOutcome, DesignQuestion,
+    DesignSearch, Exclusion, Neighbours, Objective, Spacing, Sweep, neighbours, pareto_front,
 };
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use dorsch::Dorsch;
@@ -46,8 +45,8 @@ pub use position_noise::{
 };
 pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
 pub use setup::{
-    Averages, BandwidthEffect, HeightRange, ImagedLine, LaserLineData, LightLevel, Setup,
-    SetupCamera, SetupDescription, SetupEnvironment, SetupQuantity, SetupSurface,
+    Averages, BandwidthEffect, HeightRange, ImagedLine, LaserLineData, LightLevel, QuantityUnit,
+    Setup, SetupCamera, SetupDescription, SetupEnvironment, SetupQuantity, SetupSurface,
 };
 
 /// The light of a laser and the relief of a surface.

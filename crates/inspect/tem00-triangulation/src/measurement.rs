@@ -10,9 +10,13 @@ use tem00_uncertainty::{
 
 pub use self::virtual_experiment::VirtualExperiment;
 use crate::{
-    Budget, BudgetTerm, ErrorDistribution, Setup, SetupDescription, SetupQuantity,
+    Budget, BudgetTerm, ErrorDistribution, QuantityUnit, Setup, SetupDescription, SetupQuantity,
     TriangulationError, Triangulator, UncertaintySource,
-    setup::{camera, within},
+    setup::{
+        camera,
+        unit::{LINE_PIXELS, MICROMETRES},
+        within,
+    },
 };
 
 /// What is uncertain of a set-up, and the height that is measured with it.
@@ -43,6 +47,15 @@ pub enum MeasurementInput {
 }
 
 impl MeasurementInput {
+    /// Returns the unit that it is usually read in.
+    pub fn unit(self) -> &'static QuantityUnit {
+        match self {
+            Self::Quantity(quantity) => quantity.unit(),
+            Self::Term(UncertaintySource::Calibration) => &MICROMETRES,
+            Self::Term(_) => &LINE_PIXELS,
+        }
+    }
+
     /// Returns a measure that lowers its contribution.
     pub const fn remedy(self) -> &'static str {
         use SetupQuantity::{

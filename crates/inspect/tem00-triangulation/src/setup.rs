@@ -6,6 +6,8 @@ mod light_level;
 mod line_profile;
 mod quantity;
 mod range;
+mod row;
+pub(crate) mod unit;
 
 use glam::{DVec2, DVec3};
 use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
@@ -26,6 +28,7 @@ pub use self::{
     light_level::LightLevel,
     quantity::SetupQuantity,
     range::HeightRange,
+    unit::QuantityUnit,
 };
 
 /// The speckle sizes, in pixels, whose patterns and covariances can be computed in reasonable time.

@@ -4,12 +4,12 @@
 #![expect(clippy::expect_used, reason = "a test fails by panicking")]
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::{env, fs};
 
 use tem00_triangulation::{
-    Budget, LightLevel, LineImage, LineMethod, parse_setup, parse_setup_with, read_design,
-    read_setup,
+    Budget, LightLevel, LineImage, LineMethod, SetupQuantity, parse_setup, parse_setup_with,
+    read_design, read_setup,
 };
 
 fn repository() -> PathBuf {
@@ -155,6 +155,29 @@ fn documented(page: &str, heading: &str) -> BTreeSet<String> {
             .all(|byte| byte == b'_' || byte.is_ascii_lowercase())
     });
     keys.map(str::to_owned).collect()
+}
+
+/// Set `TEM00_WRITE_PAGES` to write the rows into the page.
+#[test]
+fn the_page_has_the_rows_of_the_quantities() {
+    let mut page = documentation();
+    for quantity in SetupQuantity::ALL {
+        let [section, key] = quantity.path();
+        let rows = under(&page, section).to_owned();
+        let found = rows
+            .lines()
+            .find(|line| line.starts_with(&format!("| `{key}` |")));
+        let found = found.unwrap_or_else(|| panic!("{quantity} has no row"));
+        page = page.replace(&rows, &rows.replace(found, &quantity.documentation()));
+    }
+    if env::var_os("TEM00_WRITE_PAGES").is_some() {
+        fs::write(repository().join("docs/setup_file.md"), &page).expect("the page is written");
+    }
+    assert_eq!(
+        documentation(),
+        page,
+        "the page is made anew with TEM00_WRITE_PAGES"
+    );
 }
 
 #[test]

@@ -2,16 +2,14 @@
 
 use serde_json::json;
 use tem00_report::report::{
-    Cell, Column, Section, Table, Unit,
-    units::{
-        DEGREES, MICROMETRES, MILLIMETRES, MILLIRADIANS, MILLISECONDS, MILLIWATTS, NANOMETRES,
-        NUMBER, PERCENT, PIXELS,
-    },
+    Cell, Column, Section, Table,
+    units::{MICROMETRES, MILLIMETRES, NUMBER, PERCENT},
 };
-use tem00_triangulation::{Budget, MeasurementInput, SetupQuantity, UncertaintySource};
+use tem00_triangulation::{Budget, MeasurementInput};
 use tem00_uncertainty::Input;
 
 use super::measured::{Measured, Quoted};
+use crate::units::shown;
 
 /// Returns the result in sentences.
 pub(super) fn verdicts(measured: &Measured) -> Vec<String> {
@@ -171,28 +169,6 @@ pub(super) fn source(input: MeasurementInput) -> String {
     }
 }
 
-/// Returns the unit in which people read an input, and its symbol.
-fn unit(input: MeasurementInput) -> (Unit, &'static str) {
-    match input {
-        MeasurementInput::Term(UncertaintySource::Calibration) => (MICROMETRES, "µm"),
-        MeasurementInput::Term(_) | MeasurementInput::Quantity(SetupQuantity::PrincipalRow) => {
-            (PIXELS, "px")
-        }
-        MeasurementInput::Quantity(quantity) => match quantity.unit() {
-            "deg" => (DEGREES, "°"),
-            "mrad" => (MILLIRADIANS, "mrad"),
-            "mW" => (MILLIWATTS, "mW"),
-            "ms" => (MILLISECONDS, "ms"),
-            "nm" => (NANOMETRES, "nm"),
-            "um" => (MICROMETRES, "µm"),
-            "mm" => (MILLIMETRES, "mm"),
-            "K" => (NUMBER, "K"),
-            "1/K" => (NUMBER, "K⁻¹"),
-            _ => (NUMBER, "1"),
-        },
-    }
-}
-
 fn inputs(measured: &Measured) -> Table {
     let mut columns = vec![
         Column::new("input", "input"),
@@ -221,7 +197,7 @@ fn inputs(measured: &Measured) -> Table {
 }
 
 fn cells(measured: &Measured, index: usize, input: MeasurementInput, known: &Input) -> Vec<Cell> {
-    let (unit, symbol) = unit(input);
+    let (unit, divisor) = (shown(input.unit()), input.unit().divisor);
     let contribution = &measured.first_order.contributions()[index];
     let per_unit = MICROMETRES.text(contribution.sensitivity / unit.of(1.0));
     let mut cells = vec![
@@ -230,7 +206,7 @@ fn cells(measured: &Measured, index: usize, input: MeasurementInput, known: &Inp
         unit.quantity(known.uncertainty()),
         known.distribution().name().into(),
         NUMBER.with_digits(3).cell(known.degrees_of_freedom()),
-        Cell::new(contribution.sensitivity, format!("{per_unit}/{symbol}")),
+        Cell::new(contribution.sensitivity, format!("{per_unit}/{divisor}")),
         MICROMETRES.cell(contribution.uncertainty),
         PERCENT.with_digits(3).cell(contribution.variance_fraction),
     ];

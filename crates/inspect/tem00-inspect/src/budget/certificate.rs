@@ -3,7 +3,7 @@
 mod data;
 mod element;
 
-use tem00_triangulation::{MeasurementInput, Setup, SetupQuantity, UncertaintySource};
+use tem00_triangulation::{MeasurementInput, Setup, SetupQuantity};
 use tem00_uncertainty::{CoverageProbability, Distribution, Input};
 
 pub(super) use self::data::CertificateData;
@@ -177,7 +177,7 @@ fn influence(measured: &Measured, setup: &Setup) -> Option<Element> {
             words("dcc:name", quantity),
             None,
             exact,
-            unit(change).0,
+            change.unit().d_si,
             None,
         ),
     };
@@ -284,12 +284,13 @@ fn height(measured: &Measured) -> Element {
 }
 
 fn input(of: MeasurementInput, known: &Input) -> Element {
-    let (unit, counted) = unit(of);
+    let unit = of.unit();
     let freedom = known.degrees_of_freedom();
     let freedom = freedom
         .is_finite()
         .then(|| format!("{freedom} degrees of freedom"));
-    let notes: Vec<String> = counted
+    let notes: Vec<String> = unit
+        .counted
         .map(str::to_owned)
         .into_iter()
         .chain(freedom)
@@ -302,42 +303,7 @@ fn input(of: MeasurementInput, known: &Input) -> Element {
         words("dcc:name", source(of)),
         (!notes.is_empty()).then(|| notes.join(", ")),
         known.estimate(),
-        unit,
+        unit.d_si,
         Some(Element::new("si:standardMU", uncertainty)),
     )
-}
-
-/// Returns the unit of an input as the D-SI writes it, and what is counted where that is a number.
-fn unit(input: MeasurementInput) -> (&'static str, Option<&'static str>) {
-    let quantity = match input {
-        MeasurementInput::Term(UncertaintySource::Calibration) => return ("\\metre", None),
-        MeasurementInput::Term(_) => {
-            return (
-                "\\one",
-                Some("error of the position of the line, in pixels"),
-            );
-        }
-        MeasurementInput::Quantity(quantity) => quantity,
-    };
-    let counted = match quantity {
-        SetupQuantity::PrincipalRow => Some("in pixels"),
-        SetupQuantity::FullWell | SetupQuantity::DarkNoise | SetupQuantity::Dsnu => {
-            Some("in electrons")
-        }
-        SetupQuantity::DarkCurrent => Some("electrons per second"),
-        SetupQuantity::BlackLevel => Some("in grey values"),
-        SetupQuantity::Gain => Some("grey values per electron"),
-        _ => None,
-    };
-    let unit = match quantity.unit() {
-        "deg" | "mrad" => "\\radian",
-        "mW" => "\\watt",
-        "ms" => "\\second",
-        "nm" | "um" | "mm" => "\\metre",
-        "K" => "\\kelvin",
-        "1/K" => "\\kelvin\\tothe{-1}",
-        _ if quantity == SetupQuantity::DarkCurrent => "\\second\\tothe{-1}",
-        _ => "\\one",
-    };
-    (unit, counted)
 }

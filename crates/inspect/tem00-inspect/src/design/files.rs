@@ -8,7 +8,8 @@ use std::{
 use tem00_report::{atomic::write_atomically, failure::Failure, report::Report};
 use tem00_triangulation::{Candidate, DesignFigure, Neighbours};
 
-use super::{plots, report, search::Design, units};
+use super::{plots, report, search::Design};
+use crate::units;
 
 /// Writes all files into the folder, and returns the report and the names of those that one opens first.
 pub(super) fn write(
@@ -52,7 +53,7 @@ fn best(design: &Design<'_>) -> Result<Option<String>, Failure> {
         .display()
         .to_string()
         .replace(char::is_control, " ");
-    let expanded = units::of_figure(DesignFigure::ExpandedUncertainty);
+    let expanded = units::shown(DesignFigure::ExpandedUncertainty.unit());
     let text = Design::setup_of(winner)?.description().to_toml();
     Ok(Some(format!(
         "# The best of the {} set-ups that `tem00-inspect design {file}` tried: number {}.\n\
@@ -78,15 +79,20 @@ fn write_csv(design: &Design<'_>, out: &mut impl Write) -> io::Result<()> {
     };
     write!(out, "number")?;
     for parameter in sweeps() {
-        write!(out, ",{parameter}{}", units::si_of_parameter(parameter))?;
+        write!(
+            out,
+            ",{}{}",
+            parameter.key(),
+            units::si_suffix(parameter.unit())
+        )?;
     }
     // What is varied may be a figure as well, and has its column already.
     let figures: Vec<_> = DesignFigure::ALL
         .into_iter()
-        .filter(|figure| sweeps().all(|parameter| parameter.name() != figure.name()))
+        .filter(|figure| sweeps().all(|parameter| parameter.key() != figure.name()))
         .collect();
     for figure in &figures {
-        write!(out, ",{figure}{}", units::si_of_figure(*figure))?;
+        write!(out, ",{figure}{}", units::si_suffix(figure.unit()))?;
     }
     writeln!(
         out,

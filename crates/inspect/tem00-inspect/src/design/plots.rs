@@ -9,12 +9,13 @@ use tem00_report::{
     report::units::MICROMETRES,
 };
 use tem00_triangulation::{
-    Candidate, DesignFigure, DesignFigures, DesignParameter, Neighbours, Spacing, Sweep,
+    Candidate, DesignFigure, DesignFigures, Neighbours, SetupQuantity, Spacing, Sweep,
     UncertaintySource,
 };
 
-use super::{search::Design, units};
+use super::search::Design;
 use crate::source_colours;
+use crate::units;
 
 /// The most dots in a diagram.
 const MAX_DOTS: usize = 4_000;
@@ -41,7 +42,7 @@ pub(super) fn all(design: &Design<'_>, near: &[Neighbours]) -> Vec<Named> {
 /// Uncertainty against depth of field.
 fn trade_off(design: &Design<'_>) -> Named {
     let (objective, depth) = (design.objective(), DesignFigure::DepthOfField);
-    let [x, y] = [depth, objective].map(units::of_figure);
+    let [x, y] = [depth, objective].map(|figure| units::shown(figure.unit()));
     let place = |figures: &DesignFigures| {
         (
             x.of(depth.value_in(figures)),
@@ -57,8 +58,8 @@ fn trade_off(design: &Design<'_>) -> Named {
     };
     let front = design.outcome.front(depth);
     let labels = [
-        units::label(x, depth.name()),
-        units::label(y, objective.name()),
+        units::label(depth.unit(), depth.name()),
+        units::label(objective.unit(), objective.name()),
     ];
     let chart = Chart::new("What depth of field costs", [&labels[0], &labels[1]])
         .dots("break a constraint", dots(false))
@@ -86,8 +87,8 @@ fn trade_off(design: &Design<'_>) -> Named {
 /// The uncertainty over one parameter, by source, the others as in the set-up that is shown.
 fn over(design: &Design<'_>, sweep: &Sweep) -> Named {
     let parameter = sweep.parameter();
-    let unit = units::of_parameter(parameter);
-    let label = units::label(unit, parameter.name());
+    let unit = units::shown(parameter.unit());
+    let label = units::label(parameter.unit(), parameter.key());
     let slice = slice(design, parameter);
     let curve = |value: &dyn Fn(&DesignFigures) -> f64| -> Vec<(f64, f64)> {
         let height = |figures: &DesignFigures| MICROMETRES.of(value(figures));
@@ -97,7 +98,7 @@ fn over(design: &Design<'_>, sweep: &Sweep) -> Named {
         slice.iter().map(point).collect()
     };
     let mut chart = Chart::new(
-        &format!("Uncertainty over {}", units::words(parameter.name())),
+        &format!("Uncertainty over {}", units::words(parameter.key())),
         [&label, "standard uncertainty (µm)"],
     )
     .line("combined", curve(&|figures| figures.uncertainty))
@@ -113,11 +114,11 @@ fn over(design: &Design<'_>, sweep: &Sweep) -> Named {
         chart
     };
     Named {
-        name: format!("over_{}", parameter.name()),
+        name: format!("over_{}", parameter.key()),
         caption: format!(
             "The standard uncertainty of a height over {}, all else as in the set-up shown, and what \
              the sources contribute.",
-            units::words(parameter.name())
+            units::words(parameter.key())
         ),
         drawing: chart.log_y().draw(),
     }
@@ -127,14 +128,15 @@ fn over(design: &Design<'_>, sweep: &Sweep) -> Named {
 /// are not possible have no figures.
 fn slice<'a>(
     design: &'a Design<'_>,
-    parameter: DesignParameter,
+    parameter: SetupQuantity,
 ) -> Vec<(f64, Option<&'a DesignFigures>)> {
     let Some(shown) = design.shown() else {
         return Vec::new();
     };
     let same = |candidate: &&Candidate| {
-        let value = parameter.value_in(&shown.description);
-        parameter.set(&candidate.description, value) == shown.description
+        let mut same = candidate.description.clone();
+        parameter.set(&mut same, parameter.value_in(&shown.description));
+        same == shown.description
     };
     let candidates = design.outcome.candidates().iter().filter(same);
     let mut slice: Vec<_> = candidates
@@ -203,7 +205,7 @@ fn sensitivity(design: &Design<'_>, near: &[Neighbours]) -> Named {
     );
     for neighbour in near {
         let changes = [&neighbour.less, &neighbour.more].map(|figures| change(figures.as_ref()));
-        bars = bars.group(&units::words(neighbour.parameter.name()), &changes);
+        bars = bars.group(&units::words(neighbour.parameter.key()), &changes);
     }
     Named {
         name: "sensitivity".into(),

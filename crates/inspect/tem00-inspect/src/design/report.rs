@@ -10,8 +10,9 @@ use tem00_report::{
 };
 use tem00_triangulation::{BandwidthEffect, Candidate, DesignFigure, DesignFigures, Neighbours};
 
-use super::{search::Design, units, words};
+use super::{search::Design, words};
 use crate::bandwidth::bandwidth;
+use crate::units;
 
 /// The figures of a listing; programs get all.
 const LISTED: [DesignFigure; 6] = [
@@ -124,7 +125,7 @@ fn figures(design: &Design<'_>) -> Vec<DesignFigure> {
         .filter(|figure| !LISTED.contains(figure));
     let is_varied = |figure: &DesignFigure| {
         let mut sweeps = design.search.question().sweeps.iter();
-        sweeps.any(|sweep| sweep.parameter().name() == figure.name())
+        sweeps.any(|sweep| sweep.parameter().key() == figure.name())
     };
     LISTED
         .into_iter()
@@ -137,11 +138,11 @@ fn columns(design: &Design<'_>, figures: &[DesignFigure], listed: &[&Candidate])
     let sweeps = design.search.question().sweeps.iter();
     let varied = sweeps.map(|sweep| {
         let parameter = sweep.parameter();
-        let label = units::label(units::of_parameter(parameter), parameter.name());
-        Column::new(parameter.name(), label)
+        let label = units::label(parameter.unit(), parameter.key());
+        Column::new(parameter.key(), label)
     });
     let figures = figures.iter().map(|&figure| {
-        let label = units::label(units::of_figure(figure), figure.name());
+        let label = units::label(figure.unit(), figure.name());
         if LISTED.contains(&figure) {
             Column::new(figure.name(), label)
         } else {
@@ -178,7 +179,7 @@ fn cells(design: &Design<'_>, figures: &[DesignFigure], candidate: &Candidate) -
     let sweeps = design.search.question().sweeps.iter();
     let varied = sweeps.map(|sweep| {
         let parameter = sweep.parameter();
-        units::of_parameter(parameter).cell(parameter.value_in(&candidate.description))
+        units::shown(parameter.unit()).cell(parameter.value_in(&candidate.description))
     });
     let mut cells: Vec<_> = [candidate.index.into()].into_iter().chain(varied).collect();
     let found = match &candidate.figures {
@@ -191,7 +192,7 @@ fn cells(design: &Design<'_>, figures: &[DesignFigure], candidate: &Candidate) -
     cells.extend(
         figures
             .iter()
-            .map(|figure| units::of_figure(*figure).cell(figure.value_in(found))),
+            .map(|figure| units::shown(figure.unit()).cell(figure.value_in(found))),
     );
     let contributions: Map<String, Value> = found
         .contributions
@@ -242,7 +243,7 @@ fn sources(figures: &DesignFigures) -> Table {
 fn sensitivities(design: &Design<'_>, near: &[Neighbours]) -> Table {
     let figures = [design.objective(), DesignFigure::DepthOfField];
     let columns = figures.into_iter().flat_map(|figure| {
-        let label = units::label(units::of_figure(figure), figure.name());
+        let label = units::label(figure.unit(), figure.name());
         let name = figure.name();
         [("less", "10 % less"), ("more", "10 % more")]
             .map(|(key, words)| Column::new(format!("{name}_{key}"), format!("{label}, {words}")))
@@ -251,12 +252,13 @@ fn sensitivities(design: &Design<'_>, near: &[Neighbours]) -> Table {
     let columns: Vec<_> = first.into_iter().chain(columns).collect();
     let mut table = Table::new("What 10 % of a parameter changes", columns).under("sensitivities");
     for neighbour in near {
-        let name = neighbour.parameter.name();
+        let name = neighbour.parameter.key();
         let mut cells = vec![Cell::new(name, units::words(name))];
         for figure in figures {
             for side in [&neighbour.less, &neighbour.more] {
-                let cell =
-                    |found: &DesignFigures| units::of_figure(figure).cell(figure.value_in(found));
+                let cell = |found: &DesignFigures| {
+                    units::shown(figure.unit()).cell(figure.value_in(found))
+                };
                 cells.push(Cell::or_dash(side.as_ref().map(cell)));
             }
         }
@@ -269,17 +271,17 @@ fn sensitivities(design: &Design<'_>, near: &[Neighbours]) -> Table {
 fn search(section: &mut Section, design: &Design<'_>) {
     let sweeps = design.search.question().sweeps.iter();
     let texts = sweeps.clone().map(|sweep| {
-        let unit = units::of_parameter(sweep.parameter());
+        let unit = units::shown(sweep.parameter().unit());
         let values = sweep
             .values()
             .iter()
             .map(|&value| unit.cell(value).text().to_owned());
-        let label = units::label(unit, sweep.parameter().name());
+        let label = units::label(sweep.parameter().unit(), sweep.parameter().key());
         format!("{label}: {}", values.collect::<Vec<_>>().join(", "))
     });
     let text = texts.collect::<Vec<_>>().join("; ");
     let varied: Map<String, Value> = sweeps
-        .map(|sweep| (sweep.parameter().name().to_owned(), json!(sweep.values())))
+        .map(|sweep| (sweep.parameter().key().to_owned(), json!(sweep.values())))
         .collect();
     let columns = [
         Column::new("figure", "figure"),
@@ -298,7 +300,7 @@ fn search(section: &mut Section, design: &Design<'_>) {
             } else {
                 Cell::new("at_most", "at most")
             },
-            units::of_figure(figure).quantity(exclusion.constraint.bound),
+            units::shown(figure.unit()).quantity(exclusion.constraint.bound),
             exclusion.excluded.into(),
             exclusion.alone.into(),
         ]);

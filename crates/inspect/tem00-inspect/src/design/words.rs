@@ -3,7 +3,8 @@
 use tem00_report::failure::Failure;
 use tem00_triangulation::{Budget, Exclusion};
 
-use super::{search::Design, units};
+use super::search::Design;
+use crate::units;
 
 /// Returns what the search comes to, in a sentence.
 pub(super) fn verdict(design: &Design<'_>) -> String {
@@ -14,7 +15,7 @@ pub(super) fn verdict(design: &Design<'_>) -> String {
     match design.winner().and_then(|candidate| candidate.allowed()) {
         Some(figures) => {
             let objective = design.objective();
-            let value = units::of_figure(objective).text(objective.value_in(figures));
+            let value = units::shown(objective.unit()).text(objective.value_in(figures));
             let name = units::words(objective.name());
             let dominant = figures.dominant.name();
             let thin = if figures.speckles < Budget::LEAST_SPECKLES {
@@ -41,7 +42,7 @@ pub(super) fn hindrances(design: &Design<'_>) -> Vec<String> {
 
 fn line(exclusion: Exclusion) -> String {
     let figure = exclusion.constraint.figure;
-    let bound = units::of_figure(figure).text(exclusion.constraint.bound);
+    let bound = units::shown(figure.unit()).text(exclusion.constraint.bound);
     let sign = if figure.is_gain() { "≥" } else { "≤" };
     let name = units::words(figure.name());
     format!(

@@ -1,9 +1,13 @@
 use core::fmt;
 
-use tem00_config::{DURATION, Dimension, LENGTH, NUMBER, POWER};
-
 use super::DesignFigures;
-use crate::setup::{MAX_GRAIN_SATURATION, MIN_SIGNAL};
+use crate::{
+    QuantityUnit,
+    setup::{
+        MAX_GRAIN_SATURATION, MIN_SIGNAL,
+        unit::{MICROMETRES, MILLIMETRES, MILLISECONDS, MILLIWATTS, PERCENT, PLAIN},
+    },
+};
 
 /// A figure of merit of a set-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -31,6 +35,48 @@ pub enum DesignFigure {
     Signal,
 }
 
+/// Declaration of a figure.
+struct Row {
+    name: &'static str,
+    value: fn(&DesignFigures) -> f64,
+    /// True if more of it is better.
+    is_gain: bool,
+    unit: &'static QuantityUnit,
+}
+
+const fn row(
+    name: &'static str,
+    value: fn(&DesignFigures) -> f64,
+    is_gain: bool,
+    unit: &'static QuantityUnit,
+) -> Row {
+    Row {
+        name,
+        value,
+        is_gain,
+        unit,
+    }
+}
+
+/// The figures, in their order.
+const ROWS: [Row; DesignFigure::ALL.len()] = [
+    row("uncertainty", |f| f.uncertainty, false, &MICROMETRES),
+    row(
+        "expanded_uncertainty",
+        |f| f.expanded_uncertainty,
+        false,
+        &MICROMETRES,
+    ),
+    row("range", |f| f.range, true, &MILLIMETRES),
+    row("depth_of_field", |f| f.depth_of_field, true, &MILLIMETRES),
+    row("field_width", |f| f.field_width, true, &MILLIMETRES),
+    row("power", |f| f.power, false, &MILLIWATTS),
+    row("exposure", |f| f.exposure, false, &MILLISECONDS),
+    row("saturation", |f| f.saturation, false, &PERCENT),
+    row("grain_saturation", |f| f.grain_saturation, false, &PERCENT),
+    row("signal", |f| f.signal, true, &PLAIN),
+];
+
 impl DesignFigure {
     /// All of them.
     pub const ALL: [Self; 10] = [
@@ -46,54 +92,35 @@ impl DesignFigure {
         Self::Signal,
     ];
 
+    /// The names of all of them.
+    pub(crate) const NAMES: [&str; Self::ALL.len()] = {
+        let mut names = [""; Self::ALL.len()];
+        let mut index = 0;
+        while index < names.len() {
+            names[index] = ROWS[index].name;
+            index += 1;
+        }
+        names
+    };
+
     /// Returns the name, as set-up files have it.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Uncertainty => "uncertainty",
-            Self::ExpandedUncertainty => "expanded_uncertainty",
-            Self::Range => "range",
-            Self::DepthOfField => "depth_of_field",
-            Self::FieldWidth => "field_width",
-            Self::Power => "power",
-            Self::Exposure => "exposure",
-            Self::Saturation => "saturation",
-            Self::GrainSaturation => "grain_saturation",
-            Self::Signal => "signal",
-        }
+        ROWS[self as usize].name
     }
 
     /// Returns the value of a set-up, in SI units.
-    pub const fn value_in(self, figures: &DesignFigures) -> f64 {
-        match self {
-            Self::Uncertainty => figures.uncertainty,
-            Self::ExpandedUncertainty => figures.expanded_uncertainty,
-            Self::Range => figures.range,
-            Self::DepthOfField => figures.depth_of_field,
-            Self::FieldWidth => figures.field_width,
-            Self::Power => figures.power,
-            Self::Exposure => figures.exposure,
-            Self::Saturation => figures.saturation,
-            Self::GrainSaturation => figures.grain_saturation,
-            Self::Signal => figures.signal,
-        }
+    pub fn value_in(self, figures: &DesignFigures) -> f64 {
+        (ROWS[self as usize].value)(figures)
     }
 
     /// Returns true if more of it is better: such a figure is bounded from below, others from above.
     pub const fn is_gain(self) -> bool {
-        matches!(
-            self,
-            Self::Range | Self::DepthOfField | Self::FieldWidth | Self::Signal
-        )
+        ROWS[self as usize].is_gain
     }
 
-    /// Returns its kind of quantity.
-    pub(crate) const fn dimension(self) -> &'static Dimension {
-        match self {
-            Self::Power => &POWER,
-            Self::Exposure => &DURATION,
-            Self::Saturation | Self::GrainSaturation | Self::Signal => &NUMBER,
-            _ => &LENGTH,
-        }
+    /// Returns the unit that it is usually read and written in.
+    pub const fn unit(self) -> &'static QuantityUnit {
+        ROWS[self as usize].unit
     }
 }
 

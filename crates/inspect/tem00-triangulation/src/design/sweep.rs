@@ -1,10 +1,9 @@
-use super::DesignParameter;
-use crate::TriangulationError;
+use crate::{SetupQuantity, TriangulationError};
 
 /// The values that a search tries of one parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
-    parameter: DesignParameter,
+    parameter: SetupQuantity,
     values: Vec<f64>,
 }
 
@@ -24,7 +23,7 @@ impl Sweep {
     /// # Errors
     ///
     /// Returns an error if there is no value, or one is not positive and finite.
-    pub fn list(parameter: DesignParameter, values: Vec<f64>) -> Result<Self, TriangulationError> {
+    pub fn list(parameter: SetupQuantity, values: Vec<f64>) -> Result<Self, TriangulationError> {
         if values.is_empty() {
             return Err(TriangulationError::TooFew {
                 what: "values of a parameter that is varied",
@@ -33,7 +32,7 @@ impl Sweep {
             });
         }
         for &value in &values {
-            check(parameter.name(), value)?;
+            check(parameter.key(), value)?;
         }
         Ok(Self { parameter, values })
     }
@@ -52,13 +51,13 @@ impl Sweep {
     ///
     /// Returns an error if an end is not positive and finite, or if there are less than two steps.
     pub fn between(
-        parameter: DesignParameter,
+        parameter: SetupQuantity,
         (from, to): (f64, f64),
         steps: u32,
         spacing: Spacing,
     ) -> Result<Self, TriangulationError> {
-        check(parameter.name(), from)?;
-        check(parameter.name(), to)?;
+        check(parameter.key(), from)?;
+        check(parameter.key(), to)?;
         if steps < 2 {
             return Err(TriangulationError::OutOfRange {
                 parameter: "steps",
@@ -80,7 +79,7 @@ impl Sweep {
     }
 
     /// Returns the varied parameter.
-    pub const fn parameter(&self) -> DesignParameter {
+    pub const fn parameter(&self) -> SetupQuantity {
         self.parameter
     }
 
@@ -91,14 +90,14 @@ impl Sweep {
 }
 
 /// Rounds the values between the ends to a hundredth of the step to the nearer neighbour.
-fn rounded(parameter: DesignParameter, exact: &[f64]) -> Vec<f64> {
+fn rounded(parameter: SetupQuantity, exact: &[f64]) -> Vec<f64> {
     let mut values = exact.to_vec();
     for (value, around) in values[1..].iter_mut().zip(exact.windows(3)) {
         let step = (around[1] - around[0])
             .abs()
             .min((around[2] - around[1]).abs());
-        let dimension = parameter.dimension();
-        *value = dimension.rounded(around[1], 0.01 * step, parameter.unit());
+        let unit = parameter.unit();
+        *value = unit.dimension.rounded(around[1], 0.01 * step, unit.symbol);
     }
     values
 }
@@ -123,7 +122,7 @@ mod tests {
     #[test]
     fn ends_are_exact_and_steps_even() {
         let sweep = |spacing| {
-            Sweep::between(DesignParameter::FNumber, (2.8, 22.4), 4, spacing)
+            Sweep::between(SetupQuantity::FNumber, (2.8, 22.4), 4, spacing)
                 .unwrap()
                 .values
         };
@@ -137,7 +136,7 @@ mod tests {
         assert_eq!(log, [2.8, 5.6, 11.2, 22.4]);
         for steps in [2_u32, 3, 50, 1000] {
             let values = Sweep::between(
-                DesignParameter::Exposure,
+                SetupQuantity::Exposure,
                 (1e-3, 1.1e-3),
                 steps,
                 Spacing::Linear,
@@ -153,15 +152,15 @@ mod tests {
     #[test]
     fn values_that_are_no_sizes_are_refused() {
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            let error = Sweep::list(DesignParameter::Angle, vec![0.5, bad]).unwrap_err();
+            let error = Sweep::list(SetupQuantity::Angle, vec![0.5, bad]).unwrap_err();
             assert!(error.to_string().contains("angle"), "{error}");
         }
-        let none = Sweep::list(DesignParameter::Angle, Vec::new());
+        let none = Sweep::list(SetupQuantity::Angle, Vec::new());
         assert!(
             matches!(none, Err(TriangulationError::TooFew { .. })),
             "{none:?}"
         );
-        let one = Sweep::between(DesignParameter::Angle, (0.1, 0.2), 1, Spacing::Linear);
+        let one = Sweep::between(SetupQuantity::Angle, (0.1, 0.2), 1, Spacing::Linear);
         assert!(
             one.unwrap_err().to_string().contains("steps"),
             "one step has one end"

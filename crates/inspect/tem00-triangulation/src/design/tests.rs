@@ -3,7 +3,7 @@ use rayon::ThreadPoolBuilder;
 use tem00_statistics::speckle_length;
 
 use super::*;
-use crate::{LineMethod, UncertaintySource, parse_setup};
+use crate::{LineMethod, SetupQuantity, UncertaintySource, parse_setup};
 
 /// A line of 0.4 mm, much wider than a speckle, seen by a lens of 25 mm with the magnification 1/11.
 fn base() -> SetupDescription {
@@ -33,7 +33,7 @@ fn base() -> SetupDescription {
     setup.expect("a set-up").description().clone()
 }
 
-fn list(parameter: DesignParameter, values: &[f64]) -> Sweep {
+fn list(parameter: SetupQuantity, values: &[f64]) -> Sweep {
     Sweep::list(parameter, values.to_vec()).expect("sizes")
 }
 
@@ -77,8 +77,8 @@ fn every_combination_is_tried_once_and_in_order() {
     let angles = [0.4, 0.6];
     let numbers = [5.6, 8.0, 11.0];
     let sweeps = vec![
-        list(DesignParameter::Angle, &angles),
-        list(DesignParameter::FNumber, &numbers),
+        list(SetupQuantity::Angle, &angles),
+        list(SetupQuantity::FNumber, &numbers),
     ];
     let found = outcome(question(sweeps, &[]));
     let tried = found.candidates().iter().map(|candidate| {
@@ -105,8 +105,8 @@ fn every_combination_is_tried_once_and_in_order() {
 #[test]
 fn the_best_are_the_least_uncertain_that_keep_every_constraint() {
     let sweeps = vec![
-        list(DesignParameter::FNumber, &[4.0, 8.0, 16.0]),
-        list(DesignParameter::Angle, &[0.3, 0.5, 0.7]),
+        list(SetupQuantity::FNumber, &[4.0, 8.0, 16.0]),
+        list(SetupQuantity::Angle, &[0.3, 0.5, 0.7]),
     ];
     let (depth, range) = (50e-3, 3e-3);
     let constraints = [
@@ -154,9 +154,9 @@ fn clipped_columns(description: &SetupDescription) -> f64 {
 fn a_search_allows_only_what_a_budget_finds_in_good_light() {
     // On metal, f-number by exposure: from too dark to saturated.
     let sweeps = vec![
-        list(DesignParameter::FNumber, &[4.0, 8.0, 11.0, 16.0]),
+        list(SetupQuantity::FNumber, &[4.0, 8.0, 11.0, 16.0]),
         list(
-            DesignParameter::Exposure,
+            SetupQuantity::Exposure,
             &[1e-6, 1e-5, 3e-5, 5e-5, 1e-4, 2e-4, 5e-4, 2e-3],
         ),
     ];
@@ -196,7 +196,7 @@ fn a_search_allows_only_what_a_budget_finds_in_good_light() {
 fn of_equals_the_one_with_more_room_for_bright_grains_is_best() {
     // Speckle alone: light hardly counts, and the most would win by a hair.
     let exposures = [40e-6, 20e-6, 10e-6];
-    let mut asked = question(vec![list(DesignParameter::Exposure, &exposures)], &[]);
+    let mut asked = question(vec![list(SetupQuantity::Exposure, &exposures)], &[]);
     asked.base.sensor.dark_noise = 0.0;
     asked.base.sensor.dsnu = 0.0;
     asked.base.calibration_uncertainty = 1e-3;
@@ -210,7 +210,7 @@ fn of_equals_the_one_with_more_room_for_bright_grains_is_best() {
 
 #[test]
 fn an_exposure_that_is_chosen_follows_what_is_varied() {
-    let mut asked = question(vec![list(DesignParameter::FNumber, &[4.0, 8.0, 16.0])], &[]);
+    let mut asked = question(vec![list(SetupQuantity::FNumber, &[4.0, 8.0, 16.0])], &[]);
     asked.base.auto_exposure = true;
     asked.constraints = Constraint::LIGHT.to_vec();
     let found = outcome(asked);
@@ -233,17 +233,15 @@ fn an_exposure_that_is_chosen_follows_what_is_varied() {
         "{}",
         exposure(2)
     );
-    let fixed = DesignParameter::Exposure.set(&found.candidates()[0].description, 1e-5);
+    let mut fixed = found.candidates()[0].description.clone();
+    SetupQuantity::Exposure.set(&mut fixed, 1e-5);
     assert_relative_eq!(figures(&fixed).exposure, 1e-5);
 }
 
 #[test]
 fn a_smaller_pupil_has_more_depth_of_field_and_more_speckle() {
     let numbers = [4.0, 5.6, 8.0, 11.0, 16.0];
-    let found = outcome(question(
-        vec![list(DesignParameter::FNumber, &numbers)],
-        &[],
-    ));
+    let found = outcome(question(vec![list(SetupQuantity::FNumber, &numbers)], &[]));
     let figures: Vec<_> = found
         .candidates()
         .iter()
@@ -263,7 +261,8 @@ fn a_smaller_pupil_has_more_depth_of_field_and_more_speckle() {
 /// Returns how a source goes with the f-number between two of them.
 fn growth(base: &SetupDescription, numbers: [f64; 2], source: UncertaintySource) -> f64 {
     let terms = numbers.map(|number| {
-        let changed = DesignParameter::FNumber.set(base, number);
+        let mut changed = base.clone();
+        SetupQuantity::FNumber.set(&mut changed, number);
         contribution(&figures(&changed), source)
     });
     exponent(numbers, terms)
@@ -323,7 +322,7 @@ fn speckle_and_shot_noise_grow_as_the_f_number_for_coarse_pixels() {
 
 #[test]
 fn without_light_the_widest_pupil_is_best_and_shot_or_dark_noise_dominates() {
-    let mut question = question(vec![list(DesignParameter::FNumber, &[4.0, 8.0, 16.0])], &[]);
+    let mut question = question(vec![list(SetupQuantity::FNumber, &[4.0, 8.0, 16.0])], &[]);
     question.base.laser.power = 1e-6;
     question.base.sensor.exposure_time = 1e-3;
     question.base.detector.min_peak = 0.0;
@@ -366,7 +365,7 @@ fn depth_of_field_is_that_of_the_lens_or_of_the_fine_line() {
 
 #[test]
 fn where_nothing_is_allowed_the_constraint_and_the_nearest_set_up_are_told() {
-    let sweeps = vec![list(DesignParameter::FNumber, &[4.0, 8.0, 16.0])];
+    let sweeps = vec![list(SetupQuantity::FNumber, &[4.0, 8.0, 16.0])];
     let constraints = [
         (DesignFigure::FieldWidth, 10.0),
         (DesignFigure::DepthOfField, 0.06),
@@ -392,7 +391,7 @@ fn where_nothing_is_allowed_the_constraint_and_the_nearest_set_up_are_told() {
 #[test]
 fn set_ups_that_cannot_be_are_told_and_left_out() {
     // A lens nearer than its focal length has no image.
-    let sweeps = vec![list(DesignParameter::Distance, &[0.02, 0.3])];
+    let sweeps = vec![list(SetupQuantity::Distance, &[0.02, 0.3])];
     let found = outcome(question(sweeps, &[]));
     let why = found.candidates()[0].figures.as_ref().unwrap_err();
     assert!(why.to_string().contains("distance"), "{why}");
@@ -404,8 +403,8 @@ fn set_ups_that_cannot_be_are_told_and_left_out() {
 #[test]
 fn the_outcome_is_the_same_for_any_number_of_threads() {
     let sweeps = vec![
-        list(DesignParameter::FNumber, &[4.0, 8.0, 16.0]),
-        list(DesignParameter::Angle, &[0.3, 0.5]),
+        list(SetupQuantity::FNumber, &[4.0, 8.0, 16.0]),
+        list(SetupQuantity::Angle, &[0.3, 0.5]),
     ];
     let asked = question(sweeps, &[(DesignFigure::DepthOfField, 0.06)]);
     let with = |threads: usize| {
@@ -422,10 +421,10 @@ fn the_outcome_is_the_same_for_any_number_of_threads() {
 fn searches_that_ask_for_too_much_or_nothing_are_refused() {
     let sweep = |steps| {
         let ends = (4.0, 16.0);
-        Sweep::between(DesignParameter::FNumber, ends, steps, Spacing::Linear).expect("valid")
+        Sweep::between(SetupQuantity::FNumber, ends, steps, Spacing::Linear).expect("valid")
     };
     let angles = |steps| {
-        Sweep::between(DesignParameter::Angle, (0.3, 0.9), steps, Spacing::Linear).expect("valid")
+        Sweep::between(SetupQuantity::Angle, (0.3, 0.9), steps, Spacing::Linear).expect("valid")
     };
     let message = |sweeps, constraints: &[(DesignFigure, f64)]| {
         let search = DesignSearch::new(question(sweeps, constraints));
@@ -448,13 +447,16 @@ fn searches_that_ask_for_too_much_or_nothing_are_refused() {
     // The number itself must not overflow.
     let ten_thousand =
         |parameter| Sweep::between(parameter, (0.3, 0.9), 10_000, Spacing::Linear).expect("valid");
-    let all = DesignParameter::ALL.map(ten_thousand).to_vec();
+    let all = SetupQuantity::varied()
+        .into_iter()
+        .map(ten_thousand)
+        .collect();
     assert!(message(all, &[]).contains("max_setups"), "10³⁶ set-ups");
 }
 
 #[test]
 fn a_search_that_is_cancelled_ends() {
-    let search = DesignSearch::new(question(vec![list(DesignParameter::FNumber, &[8.0])], &[]));
+    let search = DesignSearch::new(question(vec![list(SetupQuantity::FNumber, &[8.0])], &[]));
     let ended = search.expect("valid").run(|_| (), &AtomicBool::new(true));
     assert_eq!(ended, Err(TriangulationError::Cancelled));
 }
@@ -464,13 +466,13 @@ fn neighbours_differ_in_one_parameter() {
     let description = base();
     let near = neighbours(&description, 0.1);
     // All but the linewidth and the extent of its laser, which has none.
-    assert_eq!(near.len(), DesignParameter::ALL.len() - 2);
+    assert_eq!(near.len(), SetupQuantity::varied().len() - 2);
     let mut wide = description.clone();
     wide.laser.light.linewidth = 5e-9;
     let near_wide = neighbours(&wide, 0.1);
     let linewidth = near_wide
         .iter()
-        .find(|near| near.parameter == DesignParameter::Linewidth)
+        .find(|near| near.parameter == SetupQuantity::Linewidth)
         .expect("it has one");
     let [less, more] = [&linewidth.less, &linewidth.more].map(|near| {
         let near = near.as_ref().expect("possible");
@@ -479,7 +481,7 @@ fn neighbours_differ_in_one_parameter() {
     assert!(more < less, "{more:e} m with more, {less:e} m with less");
     let power = near
         .iter()
-        .find(|near| near.parameter == DesignParameter::Power)
+        .find(|near| near.parameter == SetupQuantity::Power)
         .expect("all parameters are there");
     let more = power.more.as_ref().expect("possible");
     let shot = |figures: &DesignFigures| contribution(figures, UncertaintySource::ShotNoise);

@@ -1,37 +1,21 @@
+use std::sync::LazyLock;
+
 use tem00_config::{Dimension, Document, Problem, Section, Value};
 
 use crate::{
-    Constraint, DesignFigure, DesignParameter, DesignQuestion, DesignSearch, Objective,
-    SetupDescription, Spacing, Sweep, TriangulationError,
+    Constraint, DesignFigure, DesignQuestion, DesignSearch, Objective, SetupDescription,
+    SetupQuantity, Spacing, Sweep, TriangulationError,
 };
 
 const KEYS: &[&str] = &["objective", "max_setups", "vary", "require"];
-const VARY: &[&str] = &[
-    "f_number",
-    "angle",
-    "line_thickness",
-    "wavelength",
-    "linewidth",
-    "source_half_angle",
-    "power",
-    "exposure",
-    "pixel_pitch",
-    "focal_length",
-    "distance",
-];
+static VARY: LazyLock<Vec<&str>> = LazyLock::new(|| {
+    SetupQuantity::varied()
+        .into_iter()
+        .map(SetupQuantity::key)
+        .collect()
+});
 const RANGE: &[&str] = &["from", "to", "steps", "scale"];
-const REQUIRE: &[&str] = &[
-    "range",
-    "depth_of_field",
-    "field_width",
-    "power",
-    "exposure",
-    "saturation",
-    "grain_saturation",
-    "signal",
-    "uncertainty",
-    "expanded_uncertainty",
-];
+const REQUIRE: &[&str] = &DesignFigure::NAMES;
 
 /// The maximum number of set-ups that are tried if the file does not say.
 const MAX_SETUPS: u64 = 20_000;
@@ -84,24 +68,24 @@ pub fn read_design(
 }
 
 fn sweeps(section: &Section<'_>) -> Result<Vec<Sweep>, Problem> {
-    let Some(vary) = section.table("vary", VARY)? else {
+    let Some(vary) = section.table("vary", &VARY)? else {
         let message = "[design] needs the section [design.vary], with what is varied";
         return Err(section.problem(message));
     };
-    let given = DesignParameter::ALL.into_iter();
+    let given = SetupQuantity::varied().into_iter();
     given
-        .filter_map(|parameter| Some((parameter, vary.optional(parameter.name())?)))
+        .filter_map(|parameter| Some((parameter, vary.optional(parameter.key())?)))
         .map(|(parameter, value)| sweep(&vary, parameter, &value))
         .collect()
 }
 
 fn sweep(
     vary: &Section<'_>,
-    parameter: DesignParameter,
+    parameter: SetupQuantity,
     value: &Value<'_>,
 ) -> Result<Sweep, Problem> {
-    let dimension = parameter.dimension();
-    let name = parameter.name();
+    let dimension = parameter.unit().dimension;
+    let name = parameter.key();
     if let Some(range) = value
         .is_table()
         .then(|| vary.table(name, RANGE))
@@ -122,14 +106,14 @@ fn sweep(
 
 const ALLOWED: &str = "a list of values, or a range such as { from = 4, to = 16, steps = 5 }";
 
-fn between(range: &Section<'_>, parameter: DesignParameter) -> Result<Sweep, Problem> {
+fn between(range: &Section<'_>, parameter: SetupQuantity) -> Result<Sweep, Problem> {
     let end = |key, dimension: &Dimension| {
         let example = if key == "from" { "4" } else { "16" };
         range.required(key, example)?.positive(dimension)
     };
     let ends = (
-        end("from", parameter.dimension())?,
-        end("to", parameter.dimension())?,
+        end("from", parameter.unit().dimension)?,
+        end("to", parameter.unit().dimension)?,
     );
     let steps = range.required("steps", "5")?.integer(2..=10_000)?;
     let scales = [("linear", Spacing::Linear), ("log", Spacing::Logarithmic)];
@@ -153,7 +137,7 @@ fn constraints(section: &Section<'_>) -> Result<Vec<Constraint>, Problem> {
         match given(figure) {
             Some(value) => constraints.push(Constraint {
                 figure,
-                bound: value.positive(figure.dimension())?,
+                bound: value.positive(figure.unit().dimension)?,
             }),
             None => constraints.extend(usual(figure)),
         }

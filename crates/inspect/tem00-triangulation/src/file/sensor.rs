@@ -1,25 +1,9 @@
 #[cfg(test)]
 mod tests;
 
-use tem00_config::{DURATION, Document, NUMBER, Problem, Section, Value};
+use tem00_config::{DURATION, Document, Problem, Section, Value};
 
-use crate::{Sensor, SensorDescription, TriangulationError};
-
-/// The keys of the section `[sensor]`.
-pub(super) const KEYS: &[&str] = &[
-    "quantum_efficiency",
-    "exposure",
-    "bit_depth",
-    "gain",
-    "black_level",
-    "full_well",
-    "dark_noise",
-    "dark_current",
-    "prnu",
-    "dsnu",
-    "fill_factor",
-    "serial_number",
-];
+use crate::{Sensor, SensorDescription, SetupDescription, SetupQuantity};
 
 /// Reads the section `[sensor]` of a file; the pixel pitch, in metres, stands in `[camera]`.
 ///
@@ -49,11 +33,13 @@ pub(super) fn read_sensor_or_auto<'a>(
     document: &Document<'a>,
     pixel_pitch: f64,
 ) -> Result<(SensorDescription, Option<Value<'a>>), Problem> {
-    let section = document.table("sensor", KEYS)?.ok_or_else(|| {
-        Problem::new("the file needs a sensor: a section [sensor]").with_help(
-            "for example `quantum_efficiency = 0.6` and `exposure = \"2 ms\"` below `[sensor]`",
-        )
-    })?;
+    let section = document
+        .table("sensor", SetupQuantity::keys_of_section("sensor"))?
+        .ok_or_else(|| {
+            Problem::new("the file needs a sensor: a section [sensor]").with_help(
+                "for example `quantum_efficiency = 0.6` and `exposure = \"2 ms\"` below `[sensor]`",
+            )
+        })?;
     let exposure = section.required("exposure", "\"2 ms\"")?;
     let auto = exposure.string().is_ok_and(|text| text == "auto");
     let mut description = description(&section, pixel_pitch)?;
@@ -62,50 +48,27 @@ pub(super) fn read_sensor_or_auto<'a>(
     }
     match Sensor::new(description) {
         Ok(_) => Ok((description, auto.then_some(exposure))),
-        Err(error) => Err(section.problem_with(key_of(&error), &error)),
+        Err(error) => Err(section.problem_with(error.parameter().unwrap_or_default(), &error)),
     }
 }
 
 fn description(section: &Section<'_>, pixel_pitch: f64) -> Result<SensorDescription, Problem> {
     let bit_depth = section.or("bit_depth", 12, |value| value.integer(8..=16))?;
     // From 8 to 16.
-    let bit_depth = u32::try_from(bit_depth).unwrap_or(0);
-    let typical = SensorDescription::typical(bit_depth);
-    let number = |key, default| section.or(key, default, |value| value.quantity(&NUMBER));
-    let quantum_efficiency = section.required("quantum_efficiency", "0.6")?;
-    let (full_well, black_level) = (
-        number("full_well", typical.full_well)?,
-        number("black_level", typical.black_level)?,
-    );
-    Ok(SensorDescription {
-        quantum_efficiency: quantum_efficiency.quantity(&NUMBER)?,
-        exposure_time: typical.exposure_time,
-        full_well,
-        black_level,
-        gain: number(
-            "gain",
-            SensorDescription::filling_gain(bit_depth, black_level, full_well),
-        )?,
-        dark_noise: number("dark_noise", typical.dark_noise)?,
-        dark_current: number("dark_current", typical.dark_current)?,
-        prnu: number("prnu", typical.prnu)?,
-        dsnu: number("dsnu", typical.dsnu)?,
-        bit_depth,
-        pixel_pitch,
-        fill_factor: number("fill_factor", typical.fill_factor)?,
-        serial_number: section.or("serial_number", 0, |value| {
-            value.integer(0..=u64::from(u32::MAX))
-        })?,
-    })
-}
-
-/// The key that an error is about.
-fn key_of(error: &TriangulationError) -> &'static str {
-    match error {
-        TriangulationError::OutOfRange { parameter, .. } if *parameter == "exposure_time" => {
-            "exposure"
-        }
-        TriangulationError::OutOfRange { parameter, .. } => parameter,
-        _ => "",
+    let typical = SensorDescription::typical(u32::try_from(bit_depth).unwrap_or(0));
+    let mut setup = SetupDescription {
+        sensor: SensorDescription {
+            pixel_pitch,
+            serial_number: section.or("serial_number", 0, |value| {
+                value.integer(0..=u64::from(u32::MAX))
+            })?,
+            ..typical
+        },
+        ..SetupDescription::default()
+    };
+    SetupQuantity::read_all(("sensor", section), &mut setup)?;
+    if !section.has("gain") {
+        setup.sensor.gain = setup.sensor.filling_gain();
     }
+    Ok(setup.sensor)
 }

@@ -1,19 +1,12 @@
 use std::path::Path;
 
 use tem00_config::{
-    ANGLE, ConfigError, Document, FileAccess, Format, LENGTH, NUMBER, POWER, Problem, Reading,
-    Section, Value, parse_document, read_document, read_laser_light, read_relief,
+    ConfigError, Document, FileAccess, Format, LENGTH, Problem, Reading, Section, Value,
+    parse_document, read_document, read_laser_light, read_relief,
 };
 
-use super::{
-    keys::{CAMERA, ENVIRONMENT, LASER, SURFACE, UNCERTAIN},
-    read_detector, read_uncertainty,
-    sensor::read_sensor_or_auto,
-};
-use crate::{
-    Averages, LaserLineData, Setup, SetupCamera, SetupDescription, SetupEnvironment, SetupSurface,
-    TriangulationError,
-};
+use super::{read_detector, read_uncertainty, sensor::read_sensor_or_auto};
+use crate::{Averages, Setup, SetupDescription, SetupQuantity, TriangulationError};
 
 /// Set-up files.
 ///
@@ -37,7 +30,7 @@ const SETUP: Format = Format {
         "include",
         "title",
     ],
-    uncertain: UNCERTAIN,
+    uncertain: SetupQuantity::KEYS,
     help: "examples/setups/ has some, and docs/setup_file.md tells how to write them",
 };
 const CALIBRATION: &[&str] = &["uncertainty"];
@@ -138,42 +131,43 @@ fn with_further<T>(
 }
 
 fn setup(document: &Document<'_>) -> Result<Setup, Problem> {
-    let laser = needed(document, "laser", LASER, "wavelength = \"650 nm\"")?;
-    let camera = needed(document, "camera", CAMERA, "focal_length = \"25 mm\"")?;
-    let surface = needed(document, "surface", SURFACE, "reflectance = 0.5")?;
+    let laser = needed(document, "laser", "wavelength = \"650 nm\"")?;
+    let camera = needed(document, "camera", "focal_length = \"25 mm\"")?;
+    let surface = needed(document, "surface", "reflectance = 0.5")?;
+    let environment = optional(document, "environment")?;
     let calibration = document.table("calibration", CALIBRATION)?;
-    let environment = document.table("environment", ENVIRONMENT)?;
     let average = document.table("average", AVERAGE)?;
-    let pitch = camera
-        .required("pixel_pitch", "\"3.45 um\"")?
-        .positive(&LENGTH)?;
-    let sections = [&laser, &camera, &surface];
-    let (sensor, auto) = read_sensor_or_auto(document, pitch)?;
-    let description = SetupDescription {
-        laser: read_laser(&laser)?,
-        camera: read_camera(&camera)?,
-        sensor,
-        auto_exposure: auto.is_some(),
-        surface: read_surface(&surface)?,
+    let mut description = SetupDescription {
         detector: read_detector(document)?,
-        calibration_uncertainty: match &calibration {
-            Some(section) => section.or("uncertainty", 0.0, |value| {
-                value.within(&LENGTH, 0.0..=1.0, "a length from 0 to 1 m")
-            })?,
-            None => 0.0,
-        },
-        environment: match &environment {
-            Some(section) => read_environment(section)?,
-            None => SetupEnvironment::default(),
-        },
-        average: match &average {
-            Some(section) => read_average(section)?,
-            None => Averages::default(),
-        },
+        ..SetupDescription::default()
     };
+    let d = &mut description;
+    SetupQuantity::read_all(("camera", &camera), d)?;
+    let (sensor, auto) = read_sensor_or_auto(document, d.sensor.pixel_pitch)?;
+    (d.sensor, d.auto_exposure) = (sensor, auto.is_some());
+    d.laser.light = read_laser_light(&laser, &(100e-9..=100e-6, "from 100 nm to 100 µm"))?;
+    SetupQuantity::read_all(("laser", &laser), d)?;
+    let resolution = camera.required("resolution", "[640, 480]")?;
+    let [width, height] = resolution.elements("two numbers of pixels, such as [640, 480]")?;
+    d.camera.resolution = [pixels(&width)?, pixels(&height)?];
+    d.camera.scheimpflug = camera.or("scheimpflug", false, Value::boolean)?;
+    SetupQuantity::read_all(("surface", &surface), d)?;
+    d.surface.patterns = surface.or("patterns", 1, |value| count(value, 64))?;
+    d.surface.relief = read_relief(&surface, None)?;
+    if let Some(section) = &environment {
+        SetupQuantity::read_all(("environment", section), d)?;
+    }
+    if let Some(section) = &calibration {
+        d.calibration_uncertainty = section.or("uncertainty", 0.0, |value| {
+            value.within(&LENGTH, 0.0..=1.0, "a length from 0 to 1 m")
+        })?;
+    }
+    if let Some(section) = &average {
+        d.average = read_average(section)?;
+    }
     let optional = [calibration.as_ref(), environment.as_ref(), average.as_ref()];
-    let all = sections.into_iter().chain(optional.into_iter().flatten());
-    let all: Vec<_> = all.collect();
+    let needed = [&laser, &camera, &surface].into_iter();
+    let all: Vec<_> = needed.chain(optional.into_iter().flatten()).collect();
     // Whoever mends the first wants to know of the others.
     let mut wrong = description.violations().into_iter();
     if let Some(first) = wrong.next() {
@@ -189,69 +183,27 @@ fn setup(document: &Document<'_>) -> Result<Setup, Problem> {
     Setup::new(description).map_err(|error| rejected(&error, &all))
 }
 
+fn optional<'a>(
+    document: &Document<'a>,
+    key: &'static str,
+) -> Result<Option<Section<'a>>, Problem> {
+    document.table(key, SetupQuantity::keys_of_section(key))
+}
+
 fn needed<'a>(
     document: &Document<'a>,
     key: &'static str,
-    keys: &'static [&'static str],
     example: &str,
 ) -> Result<Section<'a>, Problem> {
-    document.table(key, keys)?.ok_or_else(|| {
+    optional(document, key)?.ok_or_else(|| {
         let help = format!("for example `{example}` below the line `[{key}]`");
         Problem::new(format!("the set-up needs a section [{key}]")).with_help(help)
-    })
-}
-
-fn read_laser(section: &Section<'_>) -> Result<LaserLineData, Problem> {
-    let length = |key, example| section.required(key, example)?.positive(&LENGTH);
-    Ok(LaserLineData {
-        light: read_laser_light(section, &(100e-9..=100e-6, "from 100 nm to 100 µm"))?,
-        power: section.required("power", "\"5 mW\"")?.positive(&POWER)?,
-        line_thickness: length("line_thickness", "\"0.2 mm\"")?,
-        line_length: length("line_length", "\"50 mm\"")?,
-        offset: section.or("offset", 0.0, |value| value.quantity(&LENGTH))?,
-        tilt: section.or("tilt", 0.0, |value| value.quantity(&ANGLE))?,
-    })
-}
-
-fn read_camera(section: &Section<'_>) -> Result<SetupCamera, Problem> {
-    let length = |key, example| section.required(key, example)?.positive(&LENGTH);
-    let resolution = section.required("resolution", "[640, 480]")?;
-    let [width, height] = resolution.elements("two numbers of pixels, such as [640, 480]")?;
-    Ok(SetupCamera {
-        focal_length: length("focal_length", "\"25 mm\"")?,
-        f_number: section.required("f_number", "8")?.positive(&NUMBER)?,
-        resolution: [pixels(&width)?, pixels(&height)?],
-        distance: length("distance", "\"300 mm\"")?,
-        angle: section.required("angle", "\"30 deg\"")?.positive(&ANGLE)?,
-        principal_row: section.or("principal_row", None, |value| {
-            value.quantity(&NUMBER).map(Some)
-        })?,
-        scheimpflug: section.or("scheimpflug", false, Value::boolean)?,
     })
 }
 
 fn pixels(value: &Value<'_>) -> Result<usize, Problem> {
     let pixels = value.integer(1..=1 << 20)?;
     usize::try_from(pixels).map_err(|_| value.must_be("a number of pixels that can be counted"))
-}
-
-fn read_surface(section: &Section<'_>) -> Result<SetupSurface, Problem> {
-    let fraction = |value: &Value<'_>| value.within(&NUMBER, 0.0..=1.0, "from 0 to 1");
-    Ok(SetupSurface {
-        reflectance: fraction(&section.required("reflectance", "0.5")?)?,
-        patterns: section.or("patterns", 1, |value| count(value, 64))?,
-        polarisation: section.or("polarisation", 1.0, fraction)?,
-        relief: read_relief(section, None)?,
-    })
-}
-
-fn read_environment(section: &Section<'_>) -> Result<SetupEnvironment, Problem> {
-    let number = |key| section.or(key, 0.0, |value| value.quantity(&NUMBER));
-    Ok(SetupEnvironment {
-        temperature_change: number("temperature_change")?,
-        base_expansion: number("base_expansion")?,
-        mount_expansion: number("mount_expansion")?,
-    })
 }
 
 fn read_average(section: &Section<'_>) -> Result<Averages, Problem> {

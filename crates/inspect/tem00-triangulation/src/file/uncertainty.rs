@@ -1,7 +1,6 @@
 use tem00_config::{Document, LENGTH, NUMBER, Problem, Section, Value, nearest};
 use tem00_uncertainty::{Correlation, Distribution, Input, Inputs, UncertaintyError};
 
-use super::keys::section_keys;
 use crate::{HeightRange, Setup, SetupQuantity, SetupUncertainty, TriangulationError};
 
 const BUDGET: &[&str] = &["height"];
@@ -32,7 +31,7 @@ pub fn read_uncertainty(
     setup: &Setup,
 ) -> Result<SetupUncertainty, Problem> {
     let mut quantities = Vec::new();
-    for quantity in SetupQuantity::ALL {
+    for &quantity in SetupQuantity::ALL {
         quantities.extend(read_quantity(document, setup, quantity)?);
     }
     let budget = document.table("budget", BUDGET)?;
@@ -59,7 +58,7 @@ fn read_quantity(
     quantity: SetupQuantity,
 ) -> Result<Option<(SetupQuantity, Input)>, Problem> {
     let [section, key] = quantity.path();
-    let Some(section) = document.table(section, section_keys(section))? else {
+    let Some(section) = document.table(section, SetupQuantity::keys_of_section(section))? else {
         return Ok(None);
     };
     let Some(table) = section.uncertain(key)? else {
@@ -67,7 +66,7 @@ fn read_quantity(
     };
     table.required("value", "the best estimate")?;
     let uncertainty = table.required("uncertainty", "a standard uncertainty")?;
-    let uncertainty = uncertainty.within(quantity.dimension(), 0.0.., "at least 0")?;
+    let uncertainty = uncertainty.within(quantity.unit().dimension, 0.0.., "at least 0")?;
     let shapes = Distribution::ALL.map(|shape| (shape.name(), shape));
     let shape = table.or("distribution", Distribution::Normal, |value| {
         value.one_of(&shapes)

@@ -1,4 +1,4 @@
-use crate::TriangulationError;
+use crate::{SetupDescription, SetupQuantity, TriangulationError, setup::within};
 
 /// Data sheet of a sensor after EMVA 1288 (linear model), and the settings that it is used with.
 ///
@@ -49,9 +49,9 @@ impl SensorDescription {
     /// [`Sensor::new`](crate::Sensor::new), not here.
     pub fn typical(bit_depth: u32) -> Self {
         let (black_level, full_well) = (f64::from(bit_depth).exp2() / 64.0, 10_500.0);
-        Self {
+        let typical = Self {
             quantum_efficiency: 0.5,
-            gain: Self::filling_gain(bit_depth, black_level, full_well),
+            gain: 0.0,
             dark_noise: 2.3,
             dark_current: 3.0,
             full_well,
@@ -63,16 +63,20 @@ impl SensorDescription {
             fill_factor: 1.0,
             exposure_time: 1e-3,
             serial_number: 0,
+        };
+        Self {
+            gain: typical.filling_gain(),
+            ..typical
         }
     }
 
     /// Returns the gain, in DN per electron, with which a full well is the largest grey value.
-    pub(crate) fn filling_gain(bit_depth: u32, black_level: f64, full_well: f64) -> f64 {
-        (f64::from(bit_depth).exp2() - 1.0 - black_level) / full_well
+    pub(crate) fn filling_gain(&self) -> f64 {
+        (self.largest_value() - self.black_level) / self.full_well
     }
 
     /// Returns the largest grey value, `2^bits − 1`, in DN.
-    pub(super) fn largest_value(&self) -> f64 {
+    pub(crate) fn largest_value(&self) -> f64 {
         f64::from(self.bit_depth).exp2() - 1.0
     }
 
@@ -85,80 +89,18 @@ impl SensorDescription {
                 allowed: "8, 10, 12, 14 or 16",
             });
         }
-        let outside = self.ranges().into_iter().find(|range| !range.holds);
-        outside.map_or(Ok(()), |range| {
-            Err(TriangulationError::OutOfRange {
-                parameter: range.parameter,
-                value: range.value,
-                allowed: range.allowed,
-            })
-        })
-    }
-
-    fn ranges(&self) -> [Range; 11] {
-        let positive = |parameter, value: f64, most, allowed| Range {
-            parameter,
-            value,
-            holds: value > 0.0 && value <= most,
-            allowed,
+        let setup = SetupDescription {
+            sensor: *self,
+            ..SetupDescription::default()
         };
-        let not_negative = |parameter, value: f64, most, allowed| Range {
-            parameter,
-            value,
-            holds: (0.0..=most).contains(&value),
-            allowed,
-        };
-        const FRACTION: &str = "above 0 and at most 1";
-        [
-            positive("quantum_efficiency", self.quantum_efficiency, 1.0, FRACTION),
-            Range {
-                parameter: "black_level",
-                value: self.black_level,
-                holds: (0.0..self.largest_value()).contains(&self.black_level),
-                allowed: "at least 0 and below the largest grey value, in DN",
-            },
-            Range {
-                parameter: "full_well",
-                value: self.full_well,
-                holds: (1.0..=1e9).contains(&self.full_well),
-                allowed: "from 1 to 1e9, in electrons",
-            },
-            // After the two that a gain follows from if it is not told.
-            positive(
-                "gain",
-                self.gain,
-                1e6,
-                "above 0 and at most 1e6, in DN per electron",
-            ),
-            not_negative(
-                "dark_noise",
-                self.dark_noise,
-                1e6,
-                "from 0 to 1e6, in electrons",
-            ),
-            not_negative(
-                "dark_current",
-                self.dark_current,
-                1e12,
-                "from 0 to 1e12, in electrons per second",
-            ),
-            // Ten standard deviations below its mean, which no pixel is, the response is still not negative.
-            not_negative("prnu", self.prnu, 0.1, "from 0 to 0.1, as a fraction"),
-            not_negative("dsnu", self.dsnu, 1e6, "from 0 to 1e6, in electrons"),
-            positive(
-                "pixel_pitch",
-                self.pixel_pitch,
-                1.0,
-                "above 0 and at most 1, in metres",
-            ),
-            positive("fill_factor", self.fill_factor, 1.0, FRACTION),
-            positive(
-                "exposure_time",
-                self.exposure_time,
-                1e6,
-                "above 0 and at most 1e6, in seconds",
-            ),
-        ]
+        SetupQuantity::of_section("sensor").try_for_each(|quantity| quantity.check(&setup))?;
+        let pitch = (f64::MIN_POSITIVE, 1.0);
+        within(
+            "pixel_pitch",
+            self.pixel_pitch,
+            pitch,
+            "above 0 and at most 1, in metres",
+        )
     }
 }
 
@@ -167,12 +109,4 @@ impl Default for SensorDescription {
     fn default() -> Self {
         Self::typical(12)
     }
-}
-
-/// A quantity and whether it is in its range.
-struct Range {
-    parameter: &'static str,
-    value: f64,
-    holds: bool,
-    allowed: &'static str,
 }

@@ -2,7 +2,7 @@ use glam::DVec3;
 use tem00_beam::GaussianBeam;
 use tem00_coherence::{LaserLight, Relief};
 
-use crate::{DetectorSettings, LaserPlane, SensorDescription, TriangulationError};
+use crate::{DetectorSettings, LaserPlane, SensorDescription, SetupQuantity, TriangulationError};
 
 /// Description of a triangulation set-up by its data sheets.
 ///
@@ -29,6 +29,43 @@ pub struct SetupDescription {
     pub environment: SetupEnvironment,
     /// The averaging of heights.
     pub average: Averages,
+}
+
+impl Default for SetupDescription {
+    /// A typical set-up: 650 nm and 5 mW in a line of 0.2 mm, and a lens of 25 mm at f/8 that sees it from 300 mm at 30°.
+    fn default() -> Self {
+        Self {
+            laser: LaserLineData {
+                light: LaserLight::monochromatic(650e-9),
+                power: 5e-3,
+                line_thickness: 0.2e-3,
+                line_length: 50e-3,
+                offset: 0.0,
+                tilt: 0.0,
+            },
+            camera: SetupCamera {
+                focal_length: 25e-3,
+                f_number: 8.0,
+                resolution: [640, 480],
+                distance: 0.3,
+                angle: 30_f64.to_radians(),
+                principal_row: None,
+                scheimpflug: false,
+            },
+            sensor: SensorDescription::default(),
+            auto_exposure: false,
+            surface: SetupSurface {
+                reflectance: 0.5,
+                patterns: 1,
+                polarisation: 1.0,
+                relief: Relief::default(),
+            },
+            detector: DetectorSettings::default(),
+            calibration_uncertainty: 0.0,
+            environment: SetupEnvironment::default(),
+            average: Averages::default(),
+        }
+    }
 }
 
 /// A laser line on the part: of uniform power along the line, of Gaussian profile across it.
@@ -142,6 +179,13 @@ pub struct SetupCamera {
     pub scheimpflug: bool,
 }
 
+impl SetupCamera {
+    /// Returns the row in the middle of the image.
+    pub(super) fn middle_row(&self) -> f64 {
+        0.5 * self.resolution[1] as f64
+    }
+}
+
 /// A surface that scatters evenly and coherently.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetupSurface {
@@ -199,152 +243,54 @@ impl SetupSurface {
 }
 
 impl SetupDescription {
-    /// Returns everything that is wrong number by number, in the order of the sections.
+    /// Returns everything that is wrong number by number, in the order of the sections, or else what is wrong with
+    /// the light.
     pub(crate) fn violations(&self) -> Vec<TriangulationError> {
-        let mut found = Violations(Vec::new());
-        self.check_laser(&mut found);
-        self.check_camera(&mut found);
-        self.check_surface(&mut found);
-        self.check_environment(&mut found);
-        let uncertainty = self.calibration_uncertainty;
+        let quantities = SetupQuantity::ALL.iter();
+        let checks = quantities.map(|quantity| quantity.check(self));
+        let average = &self.average;
+        let counts = [
+            (
+                "patterns",
+                self.surface.patterns,
+                64,
+                "from 1 to 64 independent patterns",
+            ),
+            ("columns", average.columns, 10_000, TO_AVERAGE),
+            ("frames", average.frames, 10_000, TO_AVERAGE),
+        ];
+        let counts = counts.into_iter().map(|(parameter, count, most, allowed)| {
+            within(parameter, f64::from(count), (1.0, f64::from(most)), allowed)
+        });
         let allowed = "from 0 to 1 m, the standard uncertainty of the calibration";
-        found.within("uncertainty", uncertainty, (0.0, 1.0), allowed);
-        let Averages {
-            columns, frames, ..
-        } = self.average;
-        for (parameter, count) in [("columns", columns), ("frames", frames)] {
-            let allowed = "a number from 1 to 10000 to average over";
-            found.within(parameter, f64::from(count), (1.0, 1e4), allowed);
-        }
-        let [width, _] = self.camera.resolution;
+        let calibration = within(
+            "uncertainty",
+            self.calibration_uncertainty,
+            (0.0, 1.0),
+            allowed,
+        );
+        let columns = (0.0, self.camera.resolution[0] as f64);
         let allowed = "at most the number of columns of the image";
-        found.within("columns", f64::from(columns), (0.0, width as f64), allowed);
-        found.0
+        let of_image = within("columns", f64::from(average.columns), columns, allowed);
+        let all = checks.chain([calibration]).chain(counts).chain([of_image]);
+        let found: Vec<_> = all.filter_map(Result::err).collect();
+        if !found.is_empty() {
+            return found;
+        }
+        let light = &self.laser.light;
+        let line = light.line().err().map(Into::into);
+        let extent = light.extent().err().map(Into::into);
+        let beam = self.line_beam().err();
+        line.into_iter().chain(extent).chain(beam).collect()
     }
 
     /// Checks what can be checked number by number.
     pub(super) fn check(&self) -> Result<(), TriangulationError> {
-        match self.violations().into_iter().next() {
-            Some(error) => Err(error),
-            None => Ok(()),
-        }
-    }
-
-    fn check_laser(&self, found: &mut Violations) {
-        let LaserLineData {
-            ref light,
-            power,
-            line_thickness,
-            line_length,
-            offset,
-            tilt,
-        } = self.laser;
-        let allowed = "from 100 nm to 100 µm (in metres)";
-        if found.within("wavelength", light.wavelength, (100e-9, 100e-6), allowed) {
-            found.add(light.line().map_err(Into::into));
-            found.add(light.extent().map_err(Into::into));
-        }
-        let allowed = "positive, at most 1000 W (in watts)";
-        found.within("power", power, (f64::MIN_POSITIVE, 1e3), allowed);
-        let allowed = "from 1 µm to 1 m (in metres)";
-        if found.within("line_thickness", line_thickness, (1e-6, 1.0), allowed) {
-            found.add(self.line_beam());
-        }
-        let allowed = "from the thickness of the line to 100 m (in metres)";
-        found.within("line_length", line_length, (line_thickness, 100.0), allowed);
-        found.within(
-            "offset",
-            offset,
-            (-1.0, 1.0),
-            "from -1 m to 1 m (in metres)",
-        );
-        let allowed = "from -45° to 45° (in radians)";
-        found.within("tilt", tilt, (-0.786, 0.786), allowed);
-        let pitch = self.sensor.pixel_pitch;
-        let allowed = "from 0.1 µm to 1 mm (in metres)";
-        found.within("pixel_pitch", pitch, (0.1e-6, 1e-3), allowed);
-    }
-
-    fn check_camera(&self, found: &mut Violations) {
-        let SetupCamera {
-            focal_length,
-            f_number,
-            distance,
-            angle,
-            principal_row,
-            resolution: [_, rows],
-            ..
-        } = self.camera;
-        if let Some(row) = principal_row {
-            let allowed = "a row of the image, from 0 to their number";
-            found.within("principal_row", row, (0.0, rows as f64), allowed);
-        }
-        let allowed = "from 0.1 mm to 100 m (in metres)";
-        found.within("focal_length", focal_length, (1e-4, 100.0), allowed);
-        found.within("f_number", f_number, (0.5, 1e3), "from 0.5 to 1000");
-        let allowed = "from 1.001 focal lengths to 1000 m (in metres)";
-        found.within("distance", distance, (1.001 * focal_length, 1e3), allowed);
-        let degree = core::f64::consts::PI / 180.0;
-        // A hair more than that, for what rounding does to the ends.
-        let range = (0.999_999 * degree, 89.000_001 * degree);
-        found.within("angle", angle, range, "from 1° to 89° (in radians)");
-    }
-
-    fn check_environment(&self, found: &mut Violations) {
-        let SetupEnvironment {
-            temperature_change,
-            base_expansion,
-            mount_expansion,
-        } = self.environment;
-        let (change, allowed) = ("temperature_change", "from -200 to 200 K");
-        found.within(change, temperature_change, (-200.0, 200.0), allowed);
-        let allowed = "from -0.001 to 0.001 per kelvin";
-        found.within("base_expansion", base_expansion, (-1e-3, 1e-3), allowed);
-        found.within("mount_expansion", mount_expansion, (-1e-3, 1e-3), allowed);
-    }
-
-    fn check_surface(&self, found: &mut Violations) {
-        let SetupSurface {
-            reflectance,
-            patterns,
-            polarisation,
-            relief,
-        } = self.surface;
-        let allowed = "from 0 to 1 m, of the relief finer than a resolution cell";
-        found.within("rms_height", relief.rms_height, (0.0, 1.0), allowed);
-        let length = relief.correlation_length;
-        found.within("correlation_length", length, (0.0, 1.0), "from 0 to 1 m");
-        let (range, allowed) = ((f64::MIN_POSITIVE, 1.0), "positive, at most 1");
-        found.within("reflectance", reflectance, range, allowed);
-        let allowed = "from 1 to 64 independent patterns";
-        found.within("patterns", f64::from(patterns), (1.0, 64.0), allowed);
-        found.within("polarisation", polarisation, (0.0, 1.0), "from 0 to 1");
+        self.violations().into_iter().next().map_or(Ok(()), Err)
     }
 }
 
-/// What is wrong with a description.
-struct Violations(Vec<TriangulationError>);
-
-impl Violations {
-    /// Keeps the error of a check.
-    fn add<T>(&mut self, checked: Result<T, TriangulationError>) {
-        self.0.extend(checked.err());
-    }
-
-    /// Checks that a quantity lies in a closed range, and returns whether it does.
-    fn within(
-        &mut self,
-        parameter: &'static str,
-        value: f64,
-        range: (f64, f64),
-        allowed: &'static str,
-    ) -> bool {
-        let checked = within(parameter, value, range, allowed);
-        let is_within = checked.is_ok();
-        self.add(checked);
-        is_within
-    }
-}
+const TO_AVERAGE: &str = "a number from 1 to 10000 to average over";
 
 /// Checks that a quantity lies in a closed range.
 pub(crate) fn within(

@@ -1,234 +1,343 @@
 use core::fmt;
 
-use tem00_config::{ANGLE, DURATION, Dimension, LENGTH, NUMBER, POWER};
+use tem00_config::{Problem, Section};
 
-use super::SetupDescription;
+use super::{
+    QuantityUnit, SetupDescription,
+    row::Row,
+    unit::{
+        DEGREES, ELECTRONS, ELECTRONS_PER_SECOND, GREY_PER_ELECTRON, GREY_VALUES, KELVINS,
+        MICROMETRES, MILLIMETRES, MILLIRADIANS, MILLISECONDS, MILLIWATTS, NANOMETRES, PER_KELVIN,
+        PIXELS, PLAIN, RELIEF,
+    },
+    within,
+};
+use crate::{SensorDescription, Spectrum, TriangulationError};
 
-/// Physical quantity of a set-up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum SetupQuantity {
-    /// The vacuum wavelength of the laser, in metres.
-    Wavelength,
-    /// The linewidth of the laser, in metres.
-    Linewidth,
-    /// The half-angle of the source as the part sees it, in radians.
-    SourceHalfAngle,
-    /// The power in the line, in watts.
-    Power,
-    /// The full 1/e² thickness of the line on the part, in metres.
-    LineThickness,
-    /// The length of the line on the part, in metres.
-    LineLength,
-    /// The distance of the laser plane from the optical axis on the reference plane, in metres.
-    LaserOffset,
-    /// The angle of the laser plane from the upright, in radians.
-    LaserTilt,
-    /// The focal length of the lens, in metres.
-    FocalLength,
-    /// The f-number of the lens.
-    FNumber,
-    /// The distance of the pixels' centres, in metres.
-    PixelPitch,
-    /// The distance from the entrance pupil to the line, in metres.
-    Distance,
-    /// The angle between optical axis and the upright, in radians.
-    Angle,
-    /// The row of the image that the optical axis meets, in pixels.
-    PrincipalRow,
-    /// The electrons per photon.
-    QuantumEfficiency,
-    /// The exposure time, in seconds.
-    Exposure,
-    /// The electrons at saturation.
-    FullWell,
-    /// The grey value without light.
-    BlackLevel,
-    /// The grey values per electron.
-    Gain,
-    /// The temporal noise without light, in electrons.
-    DarkNoise,
-    /// The dark current, in electrons per second.
-    DarkCurrent,
-    /// The standard deviation of the pixels' responses.
-    Prnu,
-    /// The standard deviation of the pixels' dark signals, in electrons.
-    Dsnu,
-    /// The part of the pixel over which it integrates.
-    FillFactor,
-    /// The reflectance of the surface.
-    Reflectance,
-    /// The degree of polarisation of the scattered light.
-    Polarisation,
-    /// The standard deviation of the relief's heights, in metres.
-    RmsHeight,
-    /// The correlation length of the relief, in metres.
-    CorrelationLength,
-    /// The change of temperature since the calibration, in kelvins.
-    TemperatureChange,
-    /// The linear expansion of the base of camera and laser, per kelvin.
-    BaseExpansion,
-    /// The linear expansion of the mount of lens and sensor, per kelvin.
-    MountExpansion,
+/// The functions that read and change a field of a description.
+macro_rules! field {
+    ($($field:ident).+) => { (|d| d.$($field).+, |d| &mut d.$($field).+) };
+}
+
+/// Declares the sections of a set-up file, with the keys of no quantity in brackets, and their
+/// quantities.
+macro_rules! quantities {
+    ($($section:ident [$($other:ident),*] {
+        $($(#[doc = $page:literal])+ $name:ident: $key:ident = $row:expr;)+
+    })+) => {
+        /// Quantity of a set-up: one number of a data sheet.
+        ///
+        /// Each is declared in one row of a table, which readers, writers, searches, budgets and
+        /// certificates go through.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[non_exhaustive]
+        pub enum SetupQuantity {
+            $($($(#[doc = $page])+ $name,)+)+
+        }
+
+        impl SetupQuantity {
+            /// All of them, in the order of a set-up file.
+            pub const ALL: &[Self] = &[$($(Self::$name),+),+];
+            /// The keys of all of them.
+            pub(crate) const KEYS: &[&str] = &[$($(stringify!($key)),+),+];
+            /// The sections that hold quantities, and all of their keys.
+            const SECTIONS: &[(&str, &[&str])] = &[
+                $((stringify!($section), &[$(stringify!($key),)+ $(stringify!($other)),*])),+
+            ];
+        }
+
+        static ROWS: &[Row] = &[$($({
+            const ROW: Row = $row;
+            ROW.at(stringify!($section), stringify!($key), concat!($($page),+))
+        }),+),+];
+    };
+}
+
+quantities! {
+    laser [spectrum, lines] {
+        /// length from 100 nm to 100 µm, in vacuum; not stated beside a list of `spectrum`, from
+        /// which it follows
+        Wavelength: wavelength = Row::new(field!(laser.light.wavelength), &NANOMETRES)
+            .within(|_| (100e-9, 100e-6), "from 100 nm to 100 µm (in metres)")
+            .or("required").read_with_others().varied(3)
+            .written_if(|d| !matches!(d.laser.light.spectrum, Spectrum::Peaks(_)));
+        /// length, at most a tenth of the wavelength: the full width at half maximum of the
+        /// spectrum
+        Linewidth: linewidth = Row::new(field!(laser.light.linewidth), &NANOMETRES)
+            .or("`0`: light of one wavelength").read_with_others().varied(4)
+            .written_if(|d| d.laser.light.linewidth > 0.0).note("full width at half maximum");
+        /// angle from 0 to 0.3 rad: the half-angle of the disc from which light reaches the part,
+        /// seen from there; the light of its parts does not interfere
+        SourceHalfAngle: source_half_angle =
+            Row::new(field!(laser.light.source_half_angle), &MILLIRADIANS)
+            .or("`0`: a point").read_with_others().varied(5)
+            .written_if(|d| d.laser.light.source_half_angle > 0.0);
+        /// power in the line, positive, at most 1 kW
+        Power: power = Row::new(field!(laser.power), &MILLIWATTS).required("\"5 mW\"").varied(6)
+            .within(|_| (f64::MIN_POSITIVE, 1e3), "positive, at most 1000 W (in watts)");
+        /// full 1/e² thickness of the line on the part, from 1 µm to 1 m
+        LineThickness: line_thickness = Row::new(field!(laser.line_thickness), &MILLIMETRES)
+            .within(|_| (1e-6, 1.0), "from 1 µm to 1 m (in metres)")
+            .required("\"0.2 mm\"").note("between the points of 1/e², on the part").varied(2);
+        /// length of the line on the part, from `line_thickness` to 100 m: the power is spread
+        /// evenly along it
+        LineLength: line_length = Row::new(field!(laser.line_length), &MILLIMETRES)
+            .within(
+                |d| (d.laser.line_thickness, 100.0),
+                "from the thickness of the line to 100 m (in metres)",
+            )
+            .required("\"50 mm\"");
+        /// length from -1 m to 1 m: how far, along y, the plane of the laser stands beside the
+        /// point that the optical axis meets on the reference plane
+        LaserOffset: offset = Row::new(field!(laser.offset), &MILLIMETRES)
+            .within(|_| (-1.0, 1.0), "from -1 m to 1 m (in metres)")
+            .written_if(|d| d.laser.offset != 0.0)
+            .note("of the plane of the laser from the optical axis");
+        /// angle from -45° to 45°: of the plane of the laser from the upright; positive if it leans
+        /// to +y, away from the camera. The angle between the optical axis and the plane of the
+        /// laser is then θ + `tilt`, and a pixel sees $\cos(\mathtt{tilt})\sin\theta/\sin(\theta +
+        /// \mathtt{tilt})$ times the height
+        LaserTilt: tilt = Row::new(field!(laser.tilt), &DEGREES)
+            .within(|_| (-0.786, 0.786), "from -45° to 45° (in radians)")
+            .written_if(|d| d.laser.tilt != 0.0)
+            .note("of the plane of the laser, away from the camera");
+    }
+    camera [resolution, scheimpflug] {
+        /// length from 0.1 mm to 100 m
+        FocalLength: focal_length = Row::new(field!(camera.focal_length), &MILLIMETRES)
+            .within(|_| (1e-4, 100.0), "from 0.1 mm to 100 m (in metres)")
+            .required("\"25 mm\"").varied(9);
+        /// number from 0.5 to 1000
+        FNumber: f_number = Row::new(field!(camera.f_number), &PLAIN)
+            .within(|_| (0.5, 1e3), "from 0.5 to 1000").required("8").varied(0);
+        /// length from 0.1 µm to 1 mm
+        PixelPitch: pixel_pitch = Row::new(field!(sensor.pixel_pitch), &MICROMETRES)
+            .within(|_| (0.1e-6, 1e-3), "from 0.1 µm to 1 mm (in metres)")
+            .required("\"3.45 um\"").varied(8);
+        /// length from the lens (its entrance pupil) to the line on the part, from 1.001 focal
+        /// lengths to 1 km
+        Distance: distance = Row::new(field!(camera.distance), &MILLIMETRES)
+            .within(
+                |d| (1.001 * d.camera.focal_length, 1e3),
+                "from 1.001 focal lengths to 1000 m (in metres)",
+            )
+            .required("\"300 mm\"").note("from the lens to the line").varied(10);
+        /// angle θ from 1° to 89°, from the upright; to the plane of the laser if that has no
+        /// `tilt`
+        Angle: angle = Row::new(field!(camera.angle), &DEGREES)
+            // A hair more than that, for what rounding does to the ends.
+            .within(
+                |_| (0.999_999_f64.to_radians(), 89.000_001_f64.to_radians()),
+                "from 1° to 89° (in radians)",
+            )
+            .required("\"30 deg\"").note("between the optical axis and the upright").varied(1);
+        /// number from 0 to the number of rows: the row that the optical axis meets, in pixels
+        PrincipalRow: principal_row = Row::new(
+                (
+                    |d| d.camera.principal_row.unwrap_or_else(|| d.camera.middle_row()),
+                    |d| {
+                        let middle = d.camera.middle_row();
+                        d.camera.principal_row.get_or_insert(middle)
+                    },
+                ),
+                &PIXELS,
+            )
+            .within(
+                |d| (0.0, d.camera.resolution[1] as f64),
+                "a row of the image, from 0 to their number",
+            )
+            .or("the middle").written_if(|d| d.camera.principal_row.is_some())
+            .note("that the optical axis meets");
+    }
+    sensor [bit_depth, serial_number] {
+        /// number above 0, at most 1: electrons per photon on the whole pixel, at the wavelength of
+        /// the laser
+        QuantumEfficiency: quantum_efficiency = Row::new(field!(sensor.quantum_efficiency), &PLAIN)
+            .within(|_| (f64::MIN_POSITIVE, 1.0), "above 0 and at most 1")
+            .required("0.6").note("at the wavelength of the laser");
+        /// duration, positive; in set-up files also `"auto"`, see below
+        Exposure: exposure = Row::new(field!(sensor.exposure_time), &MILLISECONDS)
+            .within(|_| (f64::MIN_POSITIVE, 1e6), "above 0 and at most 1e6, in seconds")
+            .or("required").read_with_others().written_if(|_| false).varied(7);
+        /// electrons at saturation, from 1 to 1e9
+        FullWell: full_well = Row::new(field!(sensor.full_well), &ELECTRONS)
+            .within(|_| (1.0, 1e9), "from 1 to 1e9, in electrons")
+            .or("`10500`").note("electrons");
+        /// grey value without light, in DN
+        BlackLevel: black_level = Row::new(field!(sensor.black_level), &GREY_VALUES)
+            .within(
+                |d| (0.0, d.sensor.largest_value().next_down()),
+                "at least 0 and below the largest grey value, in DN",
+            )
+            .or("1/64 of the range").written_if(|d| {
+                let typical = SensorDescription::typical(d.sensor.bit_depth).black_level;
+                d.sensor.black_level.to_bits() != typical.to_bits()
+            });
+        // After the two that a gain follows from if it is not told.
+        /// grey values per electron
+        Gain: gain = Row::new(field!(sensor.gain), &GREY_PER_ELECTRON)
+            .within(|_| (f64::MIN_POSITIVE, 1e6), "above 0 and at most 1e6, in DN per electron")
+            .or("such that the full well is the largest grey value")
+            .written_if(|d| d.sensor.gain.to_bits() != d.sensor.filling_gain().to_bits());
+        /// electrons, from 0: temporal noise without light
+        DarkNoise: dark_noise = Row::new(field!(sensor.dark_noise), &ELECTRONS)
+            .within(|_| (0.0, 1e6), "from 0 to 1e6, in electrons").or("`2.3`").note("electrons");
+        /// electrons per second, from 0
+        DarkCurrent: dark_current = Row::new(field!(sensor.dark_current), &ELECTRONS_PER_SECOND)
+            .within(|_| (0.0, 1e12), "from 0 to 1e12, in electrons per second")
+            .or("`3`").note("electrons per second");
+        // Ten standard deviations below its mean, which no pixel is, the response is still not negative.
+        /// from 0 to 0.1: standard deviation of the pixels' responses as a fraction
+        Prnu: prnu = Row::new(field!(sensor.prnu), &PLAIN)
+            .within(|_| (0.0, 0.1), "from 0 to 0.1, as a fraction").or("`0.005`");
+        /// electrons, from 0: standard deviation of the pixels' dark signals
+        Dsnu: dsnu = Row::new(field!(sensor.dsnu), &ELECTRONS)
+            .within(|_| (0.0, 1e6), "from 0 to 1e6, in electrons").or("`1`").note("electrons");
+        /// above 0, at most 1: the part of the pixel, a square about its middle, over which it
+        /// integrates; 1 behind microlenses
+        FillFactor: fill_factor = Row::new(field!(sensor.fill_factor), &PLAIN)
+            .within(|_| (f64::MIN_POSITIVE, 1.0), "above 0 and at most 1").or("`1`")
+            .written_if(|d| d.sensor.fill_factor != 1.0);
+    }
+    surface [patterns] {
+        /// number above 0, at most 1: of a Lambertian surface, at the wavelength of the laser. For
+        /// metal take the radiance towards the camera by that of white paper
+        Reflectance: reflectance = Row::new(field!(surface.reflectance), &PLAIN)
+            .within(|_| (f64::MIN_POSITIVE, 1.0), "positive, at most 1").required("0.5");
+        /// from 0 to 1: degree of polarisation of the scattered light; 1 for bare metal, 0 for
+        /// paper
+        Polarisation: polarisation = Row::new(field!(surface.polarisation), &PLAIN)
+            .within(|_| (0.0, 1.0), "from 0 to 1").or("`1`");
+        /// length, positive: standard deviation of the height of the relief finer than a resolution
+        /// cell, the size of a speckle on the part. It spreads the paths of light that has a
+        /// `linewidth`. The roughness of a drawing, over 0.8 mm, is larger: what is longer than a
+        /// cell tilts it, and spreads no paths
+        RmsHeight: rms_height = Row::new(field!(surface.relief.rms_height), &RELIEF)
+            .within(|_| (0.0, 1.0), "from 0 to 1 m, of the relief finer than a resolution cell")
+            .or("not known: no spread").read_with_others()
+            .written_if(|d| d.surface.relief.rms_height > 0.0)
+            .note("of the relief finer than a resolution cell");
+        /// length at which the correlation exp(−d²/ℓ²) of these heights falls to 1/e
+        CorrelationLength: correlation_length =
+            Row::new(field!(surface.relief.correlation_length), &MICROMETRES)
+            .within(|_| (0.0, 1.0), "from 0 to 1 m")
+            .or("`0`: far below a resolution cell").read_with_others()
+            .written_if(|d| d.surface.relief.correlation_length > 0.0);
+    }
+    environment [] {
+        /// number of kelvins from -200 to 200: the temperature less that at which the other values
+        /// hold
+        TemperatureChange: temperature_change =
+            Row::new(field!(environment.temperature_change), &KELVINS)
+            .within(|_| (-200.0, 200.0), "from -200 to 200 K").note("kelvins since the calibration");
+        /// number from -0.001 to 0.001, per kelvin: of the base between camera and laser; it moves
+        /// the laser plane away by that part of $L \sin\theta$
+        BaseExpansion: base_expansion = Row::new(field!(environment.base_expansion), &PER_KELVIN)
+            .within(|_| (-1e-3, 1e-3), "from -0.001 to 0.001 per kelvin").note("per kelvin");
+        /// number from -0.001 to 0.001, per kelvin: of the mount between lens and sensor; it
+        /// lengthens the image distance
+        MountExpansion: mount_expansion =
+            Row::new(field!(environment.mount_expansion), &PER_KELVIN)
+            .within(|_| (-1e-3, 1e-3), "from -0.001 to 0.001 per kelvin");
+    }
 }
 
 impl SetupQuantity {
-    /// All of them, in the order of a set-up file.
-    pub const ALL: [Self; 31] = [
-        Self::Wavelength,
-        Self::Linewidth,
-        Self::SourceHalfAngle,
-        Self::Power,
-        Self::LineThickness,
-        Self::LineLength,
-        Self::LaserOffset,
-        Self::LaserTilt,
-        Self::FocalLength,
-        Self::FNumber,
-        Self::PixelPitch,
-        Self::Distance,
-        Self::Angle,
-        Self::PrincipalRow,
-        Self::QuantumEfficiency,
-        Self::Exposure,
-        Self::FullWell,
-        Self::BlackLevel,
-        Self::Gain,
-        Self::DarkNoise,
-        Self::DarkCurrent,
-        Self::Prnu,
-        Self::Dsnu,
-        Self::FillFactor,
-        Self::Reflectance,
-        Self::Polarisation,
-        Self::RmsHeight,
-        Self::CorrelationLength,
-        Self::TemperatureChange,
-        Self::BaseExpansion,
-        Self::MountExpansion,
-    ];
+    /// Returns the quantities of a section of a set-up file, in its order.
+    pub(crate) fn of_section(section: &str) -> impl Iterator<Item = Self> {
+        let all = Self::ALL.iter().copied();
+        all.filter(move |quantity| quantity.row().section == section)
+    }
+
+    /// Returns all keys of a section of a set-up file that holds quantities.
+    pub(crate) fn keys_of_section(section: &str) -> &'static [&'static str] {
+        let found = Self::SECTIONS.iter().find(|(name, _)| *name == section);
+        found.map_or(&[], |(_, keys)| keys)
+    }
+
+    /// Returns the quantities that a search may vary, in the order in which it varies them.
+    pub fn varied() -> Vec<Self> {
+        let mut varied = Self::ALL.to_vec();
+        varied.retain(|quantity| quantity.row().design.is_some());
+        varied.sort_by_key(|quantity| quantity.row().design);
+        varied
+    }
+
+    fn row(self) -> &'static Row {
+        &ROWS[self as usize]
+    }
 
     /// Returns the section of a set-up file and the key in it.
-    pub const fn path(self) -> [&'static str; 2] {
-        match self {
-            Self::Wavelength => ["laser", "wavelength"],
-            Self::Linewidth => ["laser", "linewidth"],
-            Self::SourceHalfAngle => ["laser", "source_half_angle"],
-            Self::Power => ["laser", "power"],
-            Self::LineThickness => ["laser", "line_thickness"],
-            Self::LineLength => ["laser", "line_length"],
-            Self::LaserOffset => ["laser", "offset"],
-            Self::LaserTilt => ["laser", "tilt"],
-            Self::FocalLength => ["camera", "focal_length"],
-            Self::FNumber => ["camera", "f_number"],
-            Self::PixelPitch => ["camera", "pixel_pitch"],
-            Self::Distance => ["camera", "distance"],
-            Self::Angle => ["camera", "angle"],
-            Self::PrincipalRow => ["camera", "principal_row"],
-            Self::QuantumEfficiency => ["sensor", "quantum_efficiency"],
-            Self::Exposure => ["sensor", "exposure"],
-            Self::FullWell => ["sensor", "full_well"],
-            Self::BlackLevel => ["sensor", "black_level"],
-            Self::Gain => ["sensor", "gain"],
-            Self::DarkNoise => ["sensor", "dark_noise"],
-            Self::DarkCurrent => ["sensor", "dark_current"],
-            Self::Prnu => ["sensor", "prnu"],
-            Self::Dsnu => ["sensor", "dsnu"],
-            Self::FillFactor => ["sensor", "fill_factor"],
-            Self::Reflectance => ["surface", "reflectance"],
-            Self::Polarisation => ["surface", "polarisation"],
-            Self::RmsHeight => ["surface", "rms_height"],
-            Self::CorrelationLength => ["surface", "correlation_length"],
-            Self::TemperatureChange => ["environment", "temperature_change"],
-            Self::BaseExpansion => ["environment", "base_expansion"],
-            Self::MountExpansion => ["environment", "mount_expansion"],
-        }
+    pub fn path(self) -> [&'static str; 2] {
+        [self.row().section, self.row().key]
+    }
+
+    /// Returns the key in its section of a set-up file.
+    pub fn key(self) -> &'static str {
+        self.row().key
+    }
+
+    /// Returns the unit that it is usually read and written in.
+    pub fn unit(self) -> &'static QuantityUnit {
+        self.row().unit
+    }
+
+    /// Returns the comment beside the key in a written set-up; `None` if the set-up needs no such
+    /// key.
+    pub(crate) fn note_in(self, description: &SetupDescription) -> Option<&'static str> {
+        (self.row().is_written)(description).then_some(self.row().note)
+    }
+
+    /// Returns the row of the key in the page of set-up files.
+    pub fn documentation(self) -> String {
+        let Row {
+            key, page, default, ..
+        } = self.row();
+        format!("| `{key}` |{page} | {default} |")
     }
 
     /// Returns the value in a set-up, in SI units.
     pub fn value_in(self, description: &SetupDescription) -> f64 {
-        let mut description = description.clone();
-        *self.field(&mut description)
+        (self.row().get)(description)
     }
 
-    /// Changes the value in a set-up, in SI units, whether or not it is possible then. An exposure that is
-    /// set is no longer chosen by the light.
+    /// Changes the value in a set-up, in SI units, whether or not it is possible then. An exposure
+    /// that is set is no longer chosen by the light.
     pub fn set(self, description: &mut SetupDescription, value: f64) {
         description.auto_exposure &= self != Self::Exposure;
-        *self.field(description) = value;
+        *(self.row().field)(description) = value;
     }
 
-    /// Returns the symbol of the unit that it is usually written in.
-    pub const fn unit(self) -> &'static str {
-        match self {
-            Self::Angle | Self::LaserTilt => "deg",
-            Self::SourceHalfAngle => "mrad",
-            Self::Power => "mW",
-            Self::Exposure => "ms",
-            Self::Wavelength | Self::Linewidth | Self::RmsHeight => "nm",
-            Self::PixelPitch | Self::CorrelationLength => "um",
-            Self::LineThickness
-            | Self::LineLength
-            | Self::LaserOffset
-            | Self::FocalLength
-            | Self::Distance => "mm",
-            Self::TemperatureChange => "K",
-            Self::BaseExpansion | Self::MountExpansion => "1/K",
-            _ => "",
-        }
+    /// Checks that the value in a set-up is in its range.
+    pub(crate) fn check(self, description: &SetupDescription) -> Result<(), TriangulationError> {
+        let row = self.row();
+        within(
+            row.key,
+            self.value_in(description),
+            (row.range)(description),
+            row.allowed,
+        )
     }
 
-    /// Returns its kind of quantity.
-    pub(crate) const fn dimension(self) -> &'static Dimension {
-        match self.unit().as_bytes() {
-            b"deg" | b"mrad" => &ANGLE,
-            b"mW" => &POWER,
-            b"ms" => &DURATION,
-            b"" | b"K" | b"1/K" => &NUMBER,
-            _ => &LENGTH,
-        }
-    }
-
-    fn field(self, description: &mut SetupDescription) -> &mut f64 {
-        let (laser, camera) = (&mut description.laser, &mut description.camera);
-        let (sensor, surface) = (&mut description.sensor, &mut description.surface);
-        let environment = &mut description.environment;
-        match self {
-            Self::Wavelength => &mut laser.light.wavelength,
-            Self::Linewidth => &mut laser.light.linewidth,
-            Self::SourceHalfAngle => &mut laser.light.source_half_angle,
-            Self::Power => &mut laser.power,
-            Self::LineThickness => &mut laser.line_thickness,
-            Self::LineLength => &mut laser.line_length,
-            Self::LaserOffset => &mut laser.offset,
-            Self::LaserTilt => &mut laser.tilt,
-            Self::FocalLength => &mut camera.focal_length,
-            Self::FNumber => &mut camera.f_number,
-            Self::PixelPitch => &mut sensor.pixel_pitch,
-            Self::Distance => &mut camera.distance,
-            Self::Angle => &mut camera.angle,
-            Self::PrincipalRow => {
-                let middle = 0.5 * camera.resolution[1] as f64;
-                camera.principal_row.get_or_insert(middle)
+    /// Reads the quantities of a section into a set-up, but for those that are read with other
+    /// keys.
+    pub(crate) fn read_all(
+        section: (&str, &Section<'_>),
+        description: &mut SetupDescription,
+    ) -> Result<(), Problem> {
+        let (name, section) = section;
+        for quantity in Self::of_section(name) {
+            let row = quantity.row();
+            let value = match row.example {
+                _ if row.is_read_with_others => continue,
+                Some(example) => Some(section.required(row.key, example)?),
+                None => section.optional(row.key),
+            };
+            if let Some(value) = value {
+                quantity.set(description, value.quantity(row.unit.dimension)?);
             }
-            Self::QuantumEfficiency => &mut sensor.quantum_efficiency,
-            Self::Exposure => &mut sensor.exposure_time,
-            Self::FullWell => &mut sensor.full_well,
-            Self::BlackLevel => &mut sensor.black_level,
-            Self::Gain => &mut sensor.gain,
-            Self::DarkNoise => &mut sensor.dark_noise,
-            Self::DarkCurrent => &mut sensor.dark_current,
-            Self::Prnu => &mut sensor.prnu,
-            Self::Dsnu => &mut sensor.dsnu,
-            Self::FillFactor => &mut sensor.fill_factor,
-            Self::Reflectance => &mut surface.reflectance,
-            Self::Polarisation => &mut surface.polarisation,
-            Self::RmsHeight => &mut surface.relief.rms_height,
-            Self::CorrelationLength => &mut surface.relief.correlation_length,
-            Self::TemperatureChange => &mut environment.temperature_change,
-            Self::BaseExpansion => &mut environment.base_expansion,
-            Self::MountExpansion => &mut environment.mount_expansion,
         }
+        Ok(())
     }
 }
 
@@ -237,46 +346,5 @@ impl fmt::Display for SetupQuantity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [section, key] = self.path();
         write!(f, "{section}.{key}")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{SetupEnvironment, setup::tests::description};
-
-    #[test]
-    fn setting_a_quantity_changes_its_key_in_the_text_alone() {
-        let mut base = description();
-        // Numbers that are written, none as it is by default.
-        base.laser.light.linewidth = 1e-9;
-        SetupQuantity::SourceHalfAngle.set(&mut base, 2e-3);
-        (base.laser.offset, base.laser.tilt) = (1e-3, 0.1);
-        base.camera.principal_row = Some(230.0);
-        (base.sensor.black_level, base.sensor.gain) = (17.0, 0.3);
-        base.sensor.fill_factor = 0.7;
-        base.surface.polarisation = 0.6;
-        (
-            base.surface.relief.rms_height,
-            base.surface.relief.correlation_length,
-        ) = (1e-6, 2e-6);
-        base.environment = SetupEnvironment {
-            temperature_change: 4.0,
-            base_expansion: 2e-5,
-            mount_expansion: 1e-5,
-        };
-        let before = base.to_toml();
-        for quantity in SetupQuantity::ALL {
-            let mut changed = base.clone();
-            quantity.set(&mut changed, 1.25 * quantity.value_in(&base));
-            let after = changed.to_toml();
-            let lines = after
-                .lines()
-                .filter(|line| !before.lines().any(|old| old == *line));
-            let lines: Vec<&str> = lines.collect();
-            let [_, key] = quantity.path();
-            let is_key = lines.len() == 1 && lines[0].starts_with(&format!("{key} = "));
-            assert!(is_key, "{quantity}: {lines:?}");
-        }
     }
 }

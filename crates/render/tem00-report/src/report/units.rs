@@ -13,28 +13,28 @@ pub struct Unit {
     digits: u8,
 }
 
-const fn unit(symbol: &'static str, size: f64) -> Unit {
-    let digits = 4;
-    Unit {
-        symbol,
-        size,
-        digits,
-    }
-}
-
-pub const NUMBER: Unit = unit("", 1.0);
-pub const PERCENT: Unit = unit("%", 0.01);
-pub const PIXELS: Unit = unit("px", 1.0);
-pub const METRES: Unit = unit("m", 1.0);
-pub const MILLIMETRES: Unit = unit("mm", 1e-3);
-pub const MICROMETRES: Unit = unit("µm", 1e-6);
-pub const NANOMETRES: Unit = unit("nm", 1e-9);
-pub const MILLIWATTS: Unit = unit("mW", 1e-3);
-pub const MILLISECONDS: Unit = unit("ms", 1e-3);
-pub const MILLIRADIANS: Unit = unit("mrad", 1e-3);
-pub const DEGREES: Unit = unit("°", core::f64::consts::PI / 180.0);
+pub const NUMBER: Unit = Unit::new("", 1.0);
+pub const PERCENT: Unit = Unit::new("%", 0.01);
+pub const PIXELS: Unit = Unit::new("px", 1.0);
+pub const METRES: Unit = Unit::new("m", 1.0);
+pub const MILLIMETRES: Unit = Unit::new("mm", 1e-3);
+pub const MICROMETRES: Unit = Unit::new("µm", 1e-6);
+pub const NANOMETRES: Unit = Unit::new("nm", 1e-9);
+pub const MILLISECONDS: Unit = Unit::new("ms", 1e-3);
+pub const MILLIRADIANS: Unit = Unit::new("mrad", 1e-3);
+pub const DEGREES: Unit = Unit::new("°", core::f64::consts::PI / 180.0);
 
 impl Unit {
+    /// Creates a unit, whose values are shown with four digits, from its symbol and its size in SI units.
+    pub const fn new(symbol: &'static str, size: f64) -> Self {
+        let digits = 4;
+        Self {
+            symbol,
+            size,
+            digits,
+        }
+    }
+
     /// Returns the unit that suits a length in metres.
     pub const fn of_length(metres: f64) -> Self {
         match metres {

@@ -72,17 +72,6 @@ fn lists_and_ranges_are_read_with_their_units() {
 }
 
 #[test]
-fn every_parameter_and_figure_has_its_key() {
-    let names: Vec<_> = DesignParameter::ALL.map(DesignParameter::name).to_vec();
-    assert_eq!(names, VARY);
-    let mut figures: Vec<_> = DesignFigure::ALL.map(DesignFigure::name).to_vec();
-    let mut keys = REQUIRE.to_vec();
-    figures.sort_unstable();
-    keys.sort_unstable();
-    assert_eq!(figures, keys);
-}
-
-#[test]
 fn what_cannot_be_is_refused_where_it_stands() {
     let cases = [
         ("", "no section [design]", None),

@@ -103,7 +103,7 @@ height = "5 mm"
 
 #[test]
 fn every_quantity_may_be_uncertain() {
-    for quantity in SetupQuantity::ALL {
+    for &quantity in SetupQuantity::ALL {
         let [section, key] = quantity.path();
         let value = match key {
             "linewidth" => "\"1 nm\"",

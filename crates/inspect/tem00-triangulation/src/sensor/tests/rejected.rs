@@ -25,11 +25,7 @@ fn every_quantity_has_a_range() {
         ("black_level", |d, v| d.black_level = v, &[-1.0, 4_095.0]),
         ("pixel_pitch", |d, v| d.pixel_pitch = v, &[0.0, -1e-6, 2.0]),
         ("fill_factor", |d, v| d.fill_factor = v, &[0.0, 1.1]),
-        (
-            "exposure_time",
-            |d, v| d.exposure_time = v,
-            &[0.0, -1.0, 2e6],
-        ),
+        ("exposure", |d, v| d.exposure_time = v, &[0.0, -1.0, 2e6]),
     ];
     for (name, change, bad) in cases {
         for &value in bad.iter().chain(&[f64::NAN, f64::INFINITY]) {

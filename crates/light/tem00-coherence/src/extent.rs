@@ -49,6 +49,12 @@ const EVEN_PANELS: f64 = 12.0;
 /// Directions of differences on a turn.
 const AZIMUTHS: i32 = 32;
 
+/// Checks an angle. It counts as 0 where its square would underflow.
+fn angle(name: &'static str, angle: f64) -> Result<f64, Refusal> {
+    let angle = check::range(name, angle, ANGLES, "rad")?;
+    Ok(if angle < 1e-150 { 0.0 } else { angle })
+}
+
 impl SourceExtent {
     /// A disc about the direction to the source, equally bright, of this half-angle in radians as seen from the surface.
     ///
@@ -58,7 +64,7 @@ impl SourceExtent {
     pub fn disc(source_half_angle: f64) -> Result<Self, Refusal> {
         Ok(Self {
             directions: Directions::Disc {
-                half_angle: check::range("source_half_angle", source_half_angle, ANGLES, "rad")?,
+                half_angle: angle("source_half_angle", source_half_angle)?,
             },
         })
     }
@@ -72,7 +78,7 @@ impl SourceExtent {
     pub fn gaussian(standard_deviation: f64) -> Result<Self, Refusal> {
         Ok(Self {
             directions: Directions::Gaussian {
-                spread: check::range("standard_deviation", standard_deviation, ANGLES, "rad")?,
+                spread: angle("standard_deviation", standard_deviation)?,
             },
         })
     }

@@ -105,7 +105,7 @@ impl MeasuredPoint {
 
 /// All that it takes to measure a frame.
 #[derive(Clone, Debug)]
-pub(super) struct Surroundings<'a> {
+pub(super) struct FrameContext<'a> {
     pub(super) sensor: &'a Sensor,
     pub(super) detector: &'a LineDetector,
     pub(super) calibration: &'a Calibration,
@@ -116,7 +116,7 @@ pub(super) struct Surroundings<'a> {
     pub(super) to_part: RigidMotion,
 }
 
-impl Surroundings<'_> {
+impl FrameContext<'_> {
     /// Exposes the sensor and measures what it shows.
     pub(super) fn measure(
         &self,
@@ -127,8 +127,8 @@ impl Surroundings<'_> {
         let raw = self.sensor.expose(&exposure.electrons, seed)?;
         let image = raw.grey_values();
         let lines = self.detector.detect(&image);
-        let expected = Expected::of(self, &exposure);
-        let points = self.points(&lines, &expected);
+        let noise_free = NoiseFreeFrame::of(self, &exposure);
+        let points = self.points(&lines, &noise_free);
         let both = self.correlation(&exposure, &points, &SpeckleChange::NONE);
         Ok(MeasuredFrame {
             frame,
@@ -146,19 +146,19 @@ impl Surroundings<'_> {
         0.5 * self.detector.settings().window as f64
     }
 
-    fn points(&self, lines: &[Vec<LinePoint>], expected: &Expected) -> Vec<MeasuredPoint> {
+    fn points(&self, lines: &[Vec<LinePoint>], noise_free: &NoiseFreeFrame) -> Vec<MeasuredPoint> {
         let triangulator = self.calibration.triangulator();
         let profile = triangulator.profile(lines, |_, _| 0.0);
         let measured = |seen: &ProfilePoint| {
             let [_, down] = triangulator.derivatives(seen.pixel)?;
-            let noise = expected.noise(self, seen);
+            let noise = noise_free.noise(self, seen);
             let calibration = self.calibration.point_covariance(seen.pixel)?;
             let turn = self.to_part.rotation();
             let mut seen = *seen;
-            if seen.validity == Validity::Valid && expected.is_sliver(&seen, self.reach()) {
+            if seen.validity == Validity::Valid && noise_free.is_sliver(&seen, self.reach()) {
                 seen.validity = Validity::Sliver;
             }
-            let indirect = expected.indirect(self, &seen);
+            let indirect = noise_free.indirect(self, &seen);
             let deviation = noise.total().sqrt().hypot(indirect.shift);
             seen.point = triangulator.point_with_uncertainty(seen.pixel, deviation)?;
             Some(MeasuredPoint {
@@ -188,7 +188,7 @@ impl Surroundings<'_> {
             return vec![1.0];
         };
         let pixel = middle.seen.pixel;
-        let column = Expected::of(self, exposure).column(self, &middle.seen);
+        let column = NoiseFreeFrame::of(self, exposure).column(self, &middle.seen);
         let light = column.light();
         let sensor = self.sensor.description();
         let still = speckle.column(pixel);
@@ -231,7 +231,7 @@ pub(super) fn middle(points: &[MeasuredPoint]) -> Option<&MeasuredPoint> {
 }
 
 /// The frame that the sensor would give on average over all surfaces that look alike.
-struct Expected {
+struct NoiseFreeFrame {
     electrons: Grid<f32>,
     coherent: Grid<f32>,
     multiple: Grid<f32>,
@@ -247,10 +247,10 @@ struct Expected {
 /// pixels of equal light are 2.7 wide, and slopes of the part seldom halve a line.
 const SLIVER: (f64, f64) = (3.0, 0.5);
 
-impl Expected {
-    fn of(surroundings: &Surroundings<'_>, exposure: &Exposure) -> Self {
-        let sensor = surroundings.sensor.description();
-        let dark = surroundings.sensor.dark_electrons();
+impl NoiseFreeFrame {
+    fn of(context: &FrameContext<'_>, exposure: &Exposure) -> Self {
+        let sensor = context.sensor.description();
+        let dark = context.sensor.dark_electrons();
         let largest = f64::from((1_u32 << sensor.bit_depth) - 1);
         let grey_value = |electrons: f32| {
             let charge = (f64::from(electrons) + dark).min(sensor.full_well);
@@ -258,13 +258,13 @@ impl Expected {
         };
         let mean = &exposure.without_speckle;
         let grey_values = mean.map(|&electrons| grey_value(electrons));
-        let lines = surroundings.detector.detect(&grey_values);
+        let lines = context.detector.detect(&grey_values);
         let multiple = &exposure.multiple;
         let has_several = multiple.values().iter().any(|&electrons| electrons > 0.0);
         let direct = has_several.then(|| {
             let light = |x, y| grey_value(mean[(x, y)] - multiple[(x, y)]);
             let frame = Grid::from_fn(mean.width(), mean.height(), light);
-            surroundings.detector.detect(&frame)
+            context.detector.detect(&frame)
         });
         Self {
             usual_width: median_width(&lines),
@@ -278,11 +278,11 @@ impl Expected {
     }
 
     /// Returns the light that met a second surface in the line of a point.
-    fn indirect(&self, surroundings: &Surroundings<'_>, seen: &ProfilePoint) -> IndirectLight {
+    fn indirect(&self, context: &FrameContext<'_>, seen: &ProfilePoint) -> IndirectLight {
         let Some(direct) = &self.direct else {
             return IndirectLight::default();
         };
-        let reach = surroundings.reach();
+        let reach = context.reach();
         let position = self
             .nearest(seen, reach)
             .map_or(seen.pixel.y, |line| line.position);
@@ -307,12 +307,10 @@ impl Expected {
     }
 
     /// Returns the contributions to the variance of a line's position.
-    fn noise(&self, surroundings: &Surroundings<'_>, seen: &ProfilePoint) -> PositionNoise {
-        let sensor = surroundings.sensor.description();
-        let column = self.column(surroundings, seen);
-        let speckle = surroundings
-            .speckle
-            .map(|speckle| speckle.column(seen.pixel));
+    fn noise(&self, context: &FrameContext<'_>, seen: &ProfilePoint) -> PositionNoise {
+        let sensor = context.sensor.description();
+        let column = self.column(context, seen);
+        let speckle = context.speckle.map(|speckle| speckle.column(seen.pixel));
         PositionNoise::of_column(sensor, &speckle.as_deref(), &column.light())
     }
 
@@ -339,13 +337,13 @@ impl Expected {
 
     /// The light in the column of a point, and how its position depends on it: as without speckle where
     /// there would be a line, too.
-    fn column(&self, surroundings: &Surroundings<'_>, seen: &ProfilePoint) -> Column {
+    fn column(&self, context: &FrameContext<'_>, seen: &ProfilePoint) -> Column {
         let take = |grid: &Grid<f32>| -> Vec<f32> {
             (0..grid.height()).map(|y| grid[(seen.column, y)]).collect()
         };
         let wide = |grid: &Grid<f32>| take(grid).into_iter().map(f64::from).collect();
-        let detector = surroundings.detector;
-        let nearest = self.nearest(seen, surroundings.reach());
+        let detector = context.detector;
+        let nearest = self.nearest(seen, context.reach());
         let line = nearest.copied().unwrap_or(LinePoint {
             position: seen.pixel.y,
             width: seen.width,

@@ -14,7 +14,7 @@ use tem00_triangulation::{
 use crate::{ScanError, laser_plane::plane_of};
 use crate::{
     exposure::Exposure,
-    frame::{MeasuredFrame, Surroundings, middle},
+    frame::{FrameContext, MeasuredFrame, middle},
     frame_correlation::FrameCorrelation,
     image_speckle::ImageSpeckle,
     motion::ScanMotion,
@@ -180,8 +180,8 @@ impl Measurement {
         speckled: bool,
     ) -> Result<MeasuredFrame, ScanError> {
         let seed = derived(self.scene.render.seed, Purpose::Frame, u64::from(frame));
-        let surroundings = self.surroundings(frame, speckled);
-        surroundings.measure(exposure, frame, seed)
+        let context = self.context(frame, speckled);
+        context.measure(exposure, frame, seed)
     }
 
     /// Measures what a frame showed once more, where nothing has moved since: the light is the same, the noise of the
@@ -196,8 +196,8 @@ impl Measurement {
             Purpose::Frame,
             u64::from(u32::MAX - number),
         );
-        let surroundings = self.surroundings(frame.frame, frame.reference_point.is_some());
-        let mut repeated = surroundings.measure(frame.exposure.clone(), frame.frame, seed)?;
+        let context = self.context(frame.frame, frame.reference_point.is_some());
+        let mut repeated = context.measure(frame.exposure.clone(), frame.frame, seed)?;
         repeated.reference_point = frame.reference_point;
         Ok(repeated)
     }
@@ -205,9 +205,9 @@ impl Measurement {
     /// Returns how speckle correlates the positions of the line between a frame and those that follow, up
     /// to `frames` of them together, by the law of its motion and decorrelation.
     pub fn frame_correlation(&self, first: &MeasuredFrame, frames: u32) -> FrameCorrelation {
-        let surroundings = self.surroundings(first.frame, first.reference_point.is_some());
+        let context = self.context(first.frame, first.reference_point.is_some());
         let table = |later: u32| match self.speckle_change(first, later) {
-            Some(change) => surroundings.correlation(&first.exposure, &first.points, &change),
+            Some(change) => context.correlation(&first.exposure, &first.points, &change),
             None if later == 0 => vec![1.0],
             None => vec![0.0],
         };
@@ -227,8 +227,8 @@ impl Measurement {
         SpeckleChange::between(&self.scene, LASER, point, frames)
     }
 
-    fn surroundings(&self, frame: u32, speckled: bool) -> Surroundings<'_> {
-        Surroundings {
+    fn context(&self, frame: u32, speckled: bool) -> FrameContext<'_> {
+        FrameContext {
             sensor: &self.sensor,
             detector: &self.detector,
             calibration: &self.calibration,

@@ -1,5 +1,6 @@
 //! Slow tests across crates: waves, trials and whole renders judge the laws.
 
+mod budget_trials;
 mod characteristics;
 mod coherence;
 mod edges_and_colour;

@@ -3,8 +3,6 @@ use tem00_uncertainty::PropagationOptions;
 use super::*;
 use crate::{SetupEnvironment, SimulationOptions, setup::tests::description};
 
-mod coverage;
-
 const HEIGHT: f64 = 4e-3;
 
 /// A warm set-up whose laser plane stands beside the axis, and leans.

@@ -1,5 +1,5 @@
 use super::*;
-use crate::TriangulationError;
+use crate::{SetupDescription, SetupQuantity, TriangulationError};
 
 fn error_of(change: impl FnOnce(&mut SensorDescription)) -> String {
     let mut description = SensorDescription::typical(12);
@@ -9,30 +9,38 @@ fn error_of(change: impl FnOnce(&mut SensorDescription)) -> String {
 
 #[test]
 fn every_quantity_has_a_range() {
-    type Change = fn(&mut SensorDescription, f64);
-    let cases: [(&str, Change, &[f64]); 11] = [
-        (
+    let quantities = SetupQuantity::of_section("sensor").chain([SetupQuantity::PixelPitch]);
+    for quantity in quantities {
+        let positive = [
             "quantum_efficiency",
-            |d, v| d.quantum_efficiency = v,
-            &[0.0, -0.1, 1.01],
-        ),
-        ("gain", |d, v| d.gain = v, &[0.0, -1.0, 2e6]),
-        ("dark_noise", |d, v| d.dark_noise = v, &[-1e-9, 2e6]),
-        ("dark_current", |d, v| d.dark_current = v, &[-1.0, 2e12]),
-        ("full_well", |d, v| d.full_well = v, &[0.0, 0.5, 2e9]),
-        ("prnu", |d, v| d.prnu = v, &[-0.01, 0.11]),
-        ("dsnu", |d, v| d.dsnu = v, &[-1.0, 2e6]),
-        ("black_level", |d, v| d.black_level = v, &[-1.0, 4_095.0]),
-        ("pixel_pitch", |d, v| d.pixel_pitch = v, &[0.0, -1e-6, 2.0]),
-        ("fill_factor", |d, v| d.fill_factor = v, &[0.0, 1.1]),
-        ("exposure", |d, v| d.exposure_time = v, &[0.0, -1.0, 2e6]),
-    ];
-    for (name, change, bad) in cases {
-        for &value in bad.iter().chain(&[f64::NAN, f64::INFINITY]) {
-            let message = error_of(|d| change(d, value));
-            let start = format!("{name} must be ");
-            assert!(message.starts_with(&start), "{name} = {value}: {message}");
+            "exposure",
+            "gain",
+            "fill_factor",
+            "pixel_pitch",
+        ];
+        let least = if positive.contains(&quantity.key()) {
+            0.0
+        } else {
+            -1e-9
+        };
+        for bad in [least, -1.0, 2e12, f64::NAN, f64::INFINITY] {
+            let mut setup = SetupDescription::default();
+            quantity.set(&mut setup, bad);
+            let error = Sensor::new(setup.sensor).unwrap_err();
+            assert_eq!(error.parameter(), Some(quantity.key()), "{bad}: {error}");
         }
+    }
+    for (name, edge) in [
+        ("fill_factor", 1.01),
+        ("prnu", 0.11),
+        ("black_level", 4095.0),
+    ] {
+        let message = error_of(|d| match name {
+            "fill_factor" => d.fill_factor = edge,
+            "prnu" => d.prnu = edge,
+            _ => d.black_level = edge,
+        });
+        assert!(message.starts_with(name), "{message}");
     }
 }
 

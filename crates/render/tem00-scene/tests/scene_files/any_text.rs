@@ -1,33 +1,20 @@
 use proptest::prelude::*;
+use tem00_testkit::robust;
 
 use super::{minimal, parse, with};
 
-proptest! {
-    #[test]
-    fn any_text_is_read_or_refused(text in ".{0,200}") {
-        // The message is made, too: it slices the text.
-        let _ = parse(&text).map_err(|error| error.to_string());
-    }
-
-    #[test]
-    fn any_damage_to_a_scene_is_read_or_refused(
-        start in 0_usize..400,
-        length in 0_usize..12,
-        patch in "[-0-9a-z.\"'\\[\\]{}=, \nµ]{0,12}",
-    ) {
-        let text: Vec<char> = minimal().chars().collect();
-        let start = start.min(text.len());
-        let end = (start + length).min(text.len());
-        let damaged: String = text[..start].iter().copied()
-            .chain(patch.chars())
-            .chain(text[end..].iter().copied())
-            .collect();
-        if let Err(error) = parse(&damaged) {
+#[test]
+fn any_text_is_read_or_refused() {
+    let read = |bytes: &[u8]| {
+        if let Err(error) = parse(&String::from_utf8_lossy(bytes)) {
             let span = error.span().unwrap_or(0..0);
-            prop_assert!(error.source_text().get(span).is_some(), "{error}");
+            assert!(error.source_text().get(span).is_some(), "{error}");
         }
-    }
+    };
+    robust(read, &[minimal().as_bytes()]);
+}
 
+proptest! {
     #[test]
     fn any_number_in_any_place_is_read_or_refused(
         place in 0_usize..6,

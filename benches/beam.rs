@@ -13,7 +13,7 @@ use std::hint::black_box;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use tem00::beam::{
     DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight, LineProfile,
-    NextEventSlices, Placement, Real, SpotLight,
+    NextEventSlices, Placement, SpotLight,
 };
 
 /// Few enough for coordinates and results to stay in the nearer caches.
@@ -33,11 +33,11 @@ fn focus() -> GaussianBeam {
     GaussianBeam::from_waist(650e-9, 50e-6).expect("a valid beam")
 }
 
-fn spot() -> SpotLight<f64> {
+fn spot() -> SpotLight {
     SpotLight::place(&focus(), WAIST_DISTANCE, &placement(), POWER).expect("a valid light")
 }
 
-fn line(profile: LineProfile) -> LineLight<f64> {
+fn line(profile: LineProfile) -> LineLight {
     let fan = FanGeometry {
         fan_angle: 0.5,
         apex_offset: 2e-3,
@@ -68,28 +68,20 @@ fn points(width: f64, height: f64) -> [Vec<f64>; 3] {
     [0, 1, 2].map(|k| points.iter().map(|p| p[k]).collect())
 }
 
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "rounding to single precision is the purpose"
-)]
-fn single(points: &[Vec<f64>; 3]) -> [Vec<f32>; 3] {
-    [0, 1, 2].map(|k| points[k].iter().map(|&x| x as f32).collect())
-}
-
 /// Hands over each point in registers, as a renderer does that has just computed it.
 #[inline(always)]
-fn each<T: Real, R>([x, y, z]: &[Vec<T>; 3], query: impl Fn([T; 3]) -> R) {
+fn each<R>([x, y, z]: &[Vec<f64>; 3], query: impl Fn([f64; 3]) -> R) {
     for ((&x, &y), &z) in x.iter().zip(y).zip(z) {
         black_box(query([black_box(x), black_box(y), black_box(z)]));
     }
 }
 
 /// Times single calls at `points`, each with the uniform variates in `u`.
-fn calls<T: Real>(
+fn calls(
     criterion: &mut Criterion,
     name: &str,
-    light: &impl Emitter<T>,
-    (points, u): (&[Vec<T>; 3], [T; 4]),
+    light: &impl Emitter,
+    (points, u): (&[Vec<f64>; 3], [f64; 4]),
 ) {
     let mut group = criterion.benchmark_group("call");
     group.throughput(Throughput::Elements(POINTS.into()));
@@ -110,11 +102,11 @@ fn calls<T: Real>(
 }
 
 /// Times batches over `points`.
-fn batches<T: Real>(
+fn batches(
     criterion: &mut Criterion,
     name: &str,
-    light: &impl Emitter<T>,
-    (points, zero): (&[Vec<T>; 3], T),
+    light: &impl Emitter,
+    (points, zero): (&[Vec<f64>; 3], f64),
 ) {
     let mut group = criterion.benchmark_group("batch");
     group.throughput(Throughput::Elements(POINTS.into()));
@@ -137,48 +129,32 @@ fn batches<T: Real>(
 }
 
 /// The irradiance of a spot, as one writes it first.
-macro_rules! naive {
-    ($name:ident, $float:ident) => {
-        fn $name(light: &SpotLight<$float>, points: &[Vec<$float>; 3], out: &mut [$float]) {
-            let [x, y, z] = points;
-            let dot = |a: [$float; 3], b: [$float; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-            for (i, out) in out.iter_mut().enumerate() {
-                let [ox, oy, oz] = light.origin;
-                let d = [x[i] - ox, y[i] - oy, z[i] - oz];
-                let (u, v, w) = (dot(d, light.ex), dot(d, light.ey), dot(d, light.ez));
-                let wx_sq = light.x.w0_sq + light.x.theta_sq * (w - light.x.z0).powi(2);
-                let wy_sq = light.y.w0_sq + light.y.theta_sq * (w - light.y.z0).powi(2);
-                let rho_sq = u * u / wx_sq + v * v / wy_sq;
-                *out = if w < 0.0 || rho_sq > light.cutoff * light.cutoff {
-                    0.0
-                } else {
-                    2.0 * light.power / (core::$float::consts::PI * (wx_sq * wy_sq).sqrt())
-                        * (-2.0 * rho_sq).exp()
-                };
-            }
-        }
-    };
+fn naive(light: &SpotLight, points: &[Vec<f64>; 3], out: &mut [f64]) {
+    let [x, y, z] = points;
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    for (i, out) in out.iter_mut().enumerate() {
+        let [ox, oy, oz] = light.origin;
+        let d = [x[i] - ox, y[i] - oy, z[i] - oz];
+        let (u, v, w) = (dot(d, light.ex), dot(d, light.ey), dot(d, light.ez));
+        let wx_sq = light.x.w0_sq + light.x.theta_sq * (w - light.x.z0).powi(2);
+        let wy_sq = light.y.w0_sq + light.y.theta_sq * (w - light.y.z0).powi(2);
+        let rho_sq = u * u / wx_sq + v * v / wy_sq;
+        *out = if w < 0.0 || rho_sq > light.cutoff * light.cutoff {
+            0.0
+        } else {
+            2.0 * light.power / (core::f64::consts::PI * (wx_sq * wy_sq).sqrt())
+                * (-2.0 * rho_sq).exp()
+        };
+    }
 }
-
-naive!(naive_f64, f64);
-naive!(naive_f32, f32);
 
 fn lights(criterion: &mut Criterion) {
     let near = points(4e-3, 4e-3);
     let wide = points(0.12, 4e-3);
     let u = [0.3, 0.6, 0.7, 0.2];
-    let u_single = [0.3, 0.6, 0.7, 0.2];
     let light = spot();
-    let single_light = light.to_f32().expect("it fits");
     calls(criterion, "spot f64", &light, (&near, u));
-    calls(
-        criterion,
-        "spot f32",
-        &single_light,
-        (&single(&near), u_single),
-    );
     batches(criterion, "spot f64", &light, (&near, 0.0));
-    batches(criterion, "spot f32", &single_light, (&single(&near), 0.0));
     for (name, profile) in [
         ("line f64", LineProfile::GaussianTan),
         ("Powell line f64", LineProfile::Powell { edge: 0.1 }),
@@ -187,8 +163,6 @@ fn lights(criterion: &mut Criterion) {
         calls(criterion, name, &light, (&wide, u));
         batches(criterion, name, &light, (&wide, 0.0));
     }
-    let single_light = line(LineProfile::GaussianTan).to_f32().expect("it fits");
-    batches(criterion, "line f32", &single_light, (&single(&wide), 0.0));
 }
 
 fn peers(criterion: &mut Criterion) {
@@ -197,13 +171,7 @@ fn peers(criterion: &mut Criterion) {
     let points = points(4e-3, 4e-3);
     let mut out = vec![0.0; points[0].len()];
     group.bench_function("spot f64", |bencher| {
-        bencher.iter(|| naive_f64(black_box(&spot()), &points, black_box(&mut out)));
-    });
-    let light = spot().to_f32().expect("it fits");
-    let points = single(&points);
-    let mut out = vec![0.0; points[0].len()];
-    group.bench_function("spot f32", |bencher| {
-        bencher.iter(|| naive_f32(black_box(&light), &points, black_box(&mut out)));
+        bencher.iter(|| naive(black_box(&spot()), &points, black_box(&mut out)));
     });
 }
 

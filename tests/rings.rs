@@ -100,7 +100,7 @@ fn the_guide_shows_the_programs_that_run() {
 fn what_a_renderer_holds_crosses_threads() {
     const fn crosses<T: Send + Sync>() {}
     const {
-        crosses::<(beam::SpotLight<f64>, beam::LineLight<f64>, beam::Refusal)>();
+        crosses::<(beam::SpotLight, beam::LineLight, beam::Refusal)>();
         crosses::<(speckle::SpeckleStack, speckle::SpecklePattern)>();
         crosses::<(decorrelation::RigidChange, shading::Laser)>();
         crosses::<(shading::Speckle, shading::SpeckleFrame)>();

@@ -52,7 +52,7 @@ impl Drop for Handle {
     }
 }
 
-fn library() -> SpotLight<f64> {
+fn library() -> SpotLight {
     let beam = GaussianBeam::from_waist(SPOT.wavelength, SPOT.waist_radius).expect("a valid beam");
     let placement = tem00_beam::Placement {
         origin: DVec3::ZERO,

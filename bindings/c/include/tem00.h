@@ -1280,8 +1280,6 @@ tem00_status tem00_light_next_event(const tem00_light *light,
 /**
  * As `tem00_light_next_event`, in single precision.
  *
- * Fails if single precision cannot carry the light.
- *
  * The pointers are null or valid.
  */
 tem00_status tem00_light_next_event_f32(const tem00_light *light,
@@ -1411,8 +1409,6 @@ tem00_status tem00_light_irradiance_batch(const tem00_light *light,
 /**
  * As `tem00_light_irradiance_batch`, in single precision.
  *
- * Fails if single precision cannot carry the light.
- *
  * The pointers are null or valid for `count` numbers.
  */
 tem00_status tem00_light_irradiance_batch_f32(const tem00_light *light,
@@ -1439,8 +1435,6 @@ tem00_status tem00_light_next_event_batch(const tem00_light *light,
 
 /**
  * As `tem00_light_next_event_batch`, in single precision.
- *
- * Fails if single precision cannot carry the light.
  *
  * The pointers are null or valid for `count` numbers.
  */
@@ -1481,8 +1475,6 @@ tem00_status tem00_light_sample_ray_batch(const tem00_light *light,
 /**
  * Copies a light as plain numbers in single precision, to be uploaded to a GPU or evaluated by
  * `tem00_beam.h`.
- *
- * Fails if single precision cannot carry the light.
  *
  * The pointers are null or valid.
  */

@@ -20,9 +20,7 @@ pub use plain::*;
 pub use queries::*;
 pub use targets::*;
 
-use tem00_beam::{
-    AngularKnot, AngularProfile, Emitter, LineLight, Real, Refusal, SpotLight, TabulatedLineLight,
-};
+use tem00_beam::{AngularKnot, Emitter, LineLight, SpotLight, TabulatedLineLight};
 use tem00_coherence::SpectralLine;
 use tem00_shading::{BeamShape, DVec3, LaserDescription, ShadingError};
 
@@ -31,76 +29,48 @@ use crate::{pointers, status::Failure};
 /// A laser in a scene. It never changes: any number of threads may ask it at once.
 #[derive(Debug)]
 pub struct Light {
-    double: Laser<f64>,
-    single: Result<Laser<f32>, Refusal>,
+    placed: Placed,
     /// As speckle needs it.
     laser: Result<tem00_shading::Laser, Failure>,
 }
 
-/// The lights of the library, in one precision.
+/// The lights of the library.
 #[derive(Clone, Debug)]
-enum Laser<T> {
-    Spot(SpotLight<T>),
-    Line(LineLight<T>),
-    Tabulated(LineLight<T>, Vec<AngularKnot<T>>),
-}
-
-impl<T: Real> Laser<T> {
-    /// Asks the light, whichever it is.
-    fn ask<R>(&self, question: impl FnOnce(&dyn Emitter<T>) -> R) -> R {
-        match self {
-            Self::Spot(light) => question(light),
-            Self::Line(light) => question(light),
-            Self::Tabulated(line, knots) => question(&TabulatedLineLight { line: *line, knots }),
-        }
-    }
+enum Placed {
+    Spot(SpotLight),
+    Line(LineLight),
+    Tabulated(LineLight, Vec<AngularKnot>),
 }
 
 impl Light {
-    /// A light that is a struct of numbers in either precision.
-    fn plain<D, S>(
-        light: D,
-        to_single: impl Fn(&D) -> Result<S, Refusal>,
-        double: impl Fn(D) -> Laser<f64>,
-        single: impl Fn(S) -> Laser<f32>,
-        laser: Result<tem00_shading::Laser, Failure>,
-    ) -> Self {
-        Self {
-            single: to_single(&light).map(single),
-            double: double(light),
-            laser,
+    /// Asks the light, whichever it is.
+    fn ask<R>(&self, question: impl FnOnce(&dyn Emitter) -> R) -> R {
+        match &self.placed {
+            Placed::Spot(light) => question(light),
+            Placed::Line(light) => question(light),
+            Placed::Tabulated(line, knots) => question(&TabulatedLineLight { line: *line, knots }),
         }
     }
 
-    fn spot(light: SpotLight<f64>, shape: BeamShape) -> Self {
-        let laser = laser(&light, light.ex, shape);
-        Self::plain(light, SpotLight::to_f32, Laser::Spot, Laser::Spot, laser)
-    }
-
-    fn line(light: LineLight<f64>, shape: BeamShape) -> Self {
-        let laser = laser(&light, light.ex, shape);
-        Self::plain(light, LineLight::to_f32, Laser::Line, Laser::Line, laser)
-    }
-
-    fn tabulated(
-        light: TabulatedLineLight<'_, f64>,
-        profile: &AngularProfile,
-        shape: BeamShape,
-    ) -> Self {
-        let single = profile.to_f32().and_then(|knots| {
-            let line = light.to_f32(&knots)?.line;
-            Ok(Laser::Tabulated(line, knots))
-        });
+    fn spot(light: SpotLight, shape: BeamShape) -> Self {
         Self {
-            double: Laser::Tabulated(light.line, light.knots.to_vec()),
-            single,
+            laser: laser(&light, light.ex, shape),
+            placed: Placed::Spot(light),
+        }
+    }
+
+    fn line(light: LineLight, shape: BeamShape) -> Self {
+        Self {
+            laser: laser(&light, light.ex, shape),
+            placed: Placed::Line(light),
+        }
+    }
+
+    fn tabulated(light: TabulatedLineLight<'_>, shape: BeamShape) -> Self {
+        Self {
             laser: laser(&light, light.line.ex, shape),
+            placed: Placed::Tabulated(light.line, light.knots.to_vec()),
         }
-    }
-
-    /// The light in single precision, if that can carry it.
-    fn single(&self) -> Result<&Laser<f32>, Failure> {
-        self.single.as_ref().map_err(|error| error.clone().into())
     }
 
     /// The light as speckle needs it, if it can.
@@ -111,7 +81,7 @@ impl Light {
 
 /// Makes of a placed light, whose first axis is `ex`, what speckle needs.
 fn laser(
-    light: &impl Emitter<f64>,
+    light: &impl Emitter,
     ex: [f64; 3],
     shape: BeamShape,
 ) -> Result<tem00_shading::Laser, Failure> {

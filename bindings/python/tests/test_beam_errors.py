@@ -103,7 +103,6 @@ REFUSED: list[tuple[str, Callable[[], object]]] = [
     ("rows", lambda: beam.SpotLight.from_rows(WRONG_ROWS)),
     ("rows", lambda: beam.LineLight.from_rows(SPOT.to_rows())),
     ("dtype", lambda: SPOT.to_rows("int8")),  # type: ignore[arg-type]
-    ("dtype", lambda: beam.SpotLight.place(LASER, 0.1, PLACEMENT, 1e39).to_rows("float32")),
     ("x", lambda: SPOT.irradiance(NAN, 0, 0)),
     ("z", lambda: SPOT.next_event(0, 0, [1e31])),
     ("y", lambda: SPOT.flux(np.zeros(3), np.zeros(2), 0)),

@@ -99,7 +99,7 @@ impl SpotSpeckle {
         let PlacedLight::Spot(light) = self.laser.placed() else {
             return Ok(Vec::new());
         };
-        Ok(light.to_f32()?.to_rows().as_flattened().to_vec())
+        Ok(light.to_rows_f32().as_flattened().to_vec())
     }
 
     /// Returns the speckle of a part that has moved by `step`, as the numbers of `Tem00SpeckleFrame`.

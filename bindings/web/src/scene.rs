@@ -31,8 +31,8 @@ pub fn rows(values: &Values, speckle: &Speckle, samples: u32) -> Result<Rows, An
     // The light that is off stays dark.
     let (mut line, mut spot) = ([[0.0; 4]; 7], [[0.0; 4]; 6]);
     match optics::laser(values)?.placed() {
-        PlacedLight::Line(light) => line = light.to_f32()?.to_rows(),
-        PlacedLight::Spot(light) => spot = light.to_f32()?.to_rows(),
+        PlacedLight::Line(light) => line = light.to_rows_f32(),
+        PlacedLight::Spot(light) => spot = light.to_rows_f32(),
     }
     let mut rows = Rows::new();
     rows.extend(line);

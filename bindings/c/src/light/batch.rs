@@ -1,6 +1,6 @@
-use tem00_beam::{NextEventSlices, Real};
+use tem00_beam::NextEventSlices;
 
-use super::{Laser, Light, RaySample, SampledEvent};
+use super::{Light, RaySample, SampledEvent};
 use crate::{
     numbers::{check_coordinates, check_variates},
     pointers::{Borrowed, borrow, columns, records, rows},
@@ -41,20 +41,50 @@ pub struct NextEventColumnsF32 {
     pub e_perp: *mut f32,
 }
 
-/// The two precisions of a light.
-trait Precision: Real + Into<f64> {
-    fn laser(light: &Light) -> Result<&Laser<Self>, Failure>;
+/// The two precisions of points and answers; lights answer in `f64`.
+pub(super) trait Precision: Copy + Into<f64> {
+    fn rounded(x: f64) -> Self;
 }
 
 impl Precision for f64 {
-    fn laser(light: &Light) -> Result<&Laser<Self>, Failure> {
-        Ok(&light.double)
+    fn rounded(x: f64) -> Self {
+        x
     }
 }
 
 impl Precision for f32 {
-    fn laser(light: &Light) -> Result<&Laser<Self>, Failure> {
-        light.single()
+    #[expect(clippy::cast_possible_truncation, reason = "rounded on purpose")]
+    fn rounded(x: f64) -> Self {
+        x as Self
+    }
+}
+
+/// Points that are converted at a time.
+const BLOCK: usize = 256;
+
+/// Asks for `M` numbers at each point, in `f64`.
+fn in_blocks<T: Precision, const M: usize>(
+    points: [&[T]; 3],
+    mut answers: [&mut [T]; M],
+    ask: impl Fn([&[f64]; 3], [&mut [f64]; M]),
+) {
+    let mut wide = [[0.0; BLOCK]; 3];
+    let mut out = [[0.0; BLOCK]; M];
+    let count = points[0].len();
+    for start in (0..count).step_by(BLOCK) {
+        let length = BLOCK.min(count - start);
+        for (wide, points) in wide.iter_mut().zip(points) {
+            for (wide, &x) in wide.iter_mut().zip(&points[start..]) {
+                *wide = x.into();
+            }
+        }
+        let block = wide.each_ref().map(|column| &column[..length]);
+        ask(block, out.each_mut().map(|column| &mut column[..length]));
+        for (answers, out) in answers.iter_mut().zip(&out) {
+            for (answer, &x) in answers[start..].iter_mut().zip(&out[..length]) {
+                *answer = T::rounded(x);
+            }
+        }
     }
 }
 
@@ -93,8 +123,12 @@ unsafe fn irradiance<T: Precision>(
         // SAFETY: by the contract of this function.
         let light = unsafe { borrow("light", light) }?;
         // SAFETY: by the contract of this function.
-        let ([x, y, z], [out]) = unsafe { points_and_answers(points, count, answers) }?;
-        T::laser(light)?.ask(|light| light.irradiance_batch(x, y, z, out));
+        let (points, answers) = unsafe { points_and_answers(points, count, answers) }?;
+        light.ask(|light| {
+            in_blocks(points, answers, |[x, y, z], [out]| {
+                light.irradiance_batch(x, y, z, out);
+            });
+        });
         Ok(())
     })
 }
@@ -118,14 +152,19 @@ unsafe fn next_event<T: Precision>(
     // SAFETY: by the contract of this function.
     let light = unsafe { borrow("light", light) }?;
     // SAFETY: by the contract of this function.
-    let ([x, y, z], answers) = unsafe { points_and_answers(points, count, answers) }?;
-    let [wi_x, wi_y, wi_z, distance, e_perp] = answers;
-    let out = NextEventSlices {
-        wi: [wi_x, wi_y, wi_z],
-        distance,
-        e_perp,
-    };
-    T::laser(light)?.ask(|light| light.next_event_batch(x, y, z, out));
+    let (points, answers) = unsafe { points_and_answers(points, count, answers) }?;
+    light.ask(|light| {
+        in_blocks(points, answers, |[x, y, z], answers| {
+            let [wi_x, wi_y, wi_z, distance, e_perp] = answers;
+            let wi = [wi_x, wi_y, wi_z];
+            let out = NextEventSlices {
+                wi,
+                distance,
+                e_perp,
+            };
+            light.next_event_batch(x, y, z, out);
+        });
+    });
     Ok(())
 }
 
@@ -151,8 +190,6 @@ pub unsafe extern "C" fn tem00_light_irradiance_batch(
 }
 
 /// As `tem00_light_irradiance_batch`, in single precision.
-///
-/// Fails if single precision cannot carry the light.
 ///
 /// # Safety
 ///
@@ -197,8 +234,6 @@ pub unsafe extern "C" fn tem00_light_next_event_batch(
 }
 
 /// As `tem00_light_next_event_batch`, in single precision.
-///
-/// Fails if single precision cannot carry the light.
 ///
 /// # Safety
 ///
@@ -250,7 +285,7 @@ pub unsafe extern "C" fn tem00_light_next_event_sampled_batch(
         let events = unsafe { records(count, ("events", events), read) }?;
         check_coordinates("points", points.as_flattened())?;
         check_variates("u", u.as_flattened())?;
-        light.double.ask(|light| {
+        light.ask(|light| {
             for ((&p, &u), event) in points.iter().zip(u).zip(events) {
                 let drawn = light.next_event_sampled(p, u);
                 *event = drawn.map(SampledEvent::from).unwrap_or_default();
@@ -282,7 +317,7 @@ pub unsafe extern "C" fn tem00_light_sample_ray_batch(
         // SAFETY: by the contract of this function.
         let rays = unsafe { records(count, ("rays", rays), [("u", u.as_flattened())]) }?;
         check_variates("u", u.as_flattened())?;
-        light.double.ask(|light| {
+        light.ask(|light| {
             for (&u, ray) in u.iter().zip(rays) {
                 *ray = light.sample_ray(u).into();
             }

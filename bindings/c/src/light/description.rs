@@ -199,9 +199,9 @@ impl LineDescription {
             fan: *line.fan(),
             profile: line.profile().clone(),
         };
-        if let tem00_beam::LineProfile::Tabulated(profile) = line.profile() {
+        if let tem00_beam::LineProfile::Tabulated(_) = line.profile() {
             let light = TabulatedLineLight::place(&line, &placement, self.power)?;
-            return Ok(Light::tabulated(light, profile, shape));
+            return Ok(Light::tabulated(light, shape));
         }
         let light = LineLight::place(&line, &placement, self.power)?;
         Ok(Light::line(light, shape))

@@ -1,4 +1,4 @@
-use super::{Laser, Light};
+use super::{Light, Placed};
 use crate::{
     pointers::{borrow, write},
     status::{Status, call},
@@ -29,11 +29,13 @@ pub struct LightData {
 }
 
 impl LightData {
-    fn new(laser: &Laser<f32>) -> Self {
-        match laser {
-            Laser::Spot(light) => Self::of_rows(LightKind::Spot, &light.to_rows()),
-            Laser::Line(light) => Self::of_rows(LightKind::Line, &light.to_rows()),
-            Laser::Tabulated(light, _) => Self::of_rows(LightKind::TabulatedLine, &light.to_rows()),
+    fn new(light: &Light) -> Self {
+        match &light.placed {
+            Placed::Spot(light) => Self::of_rows(LightKind::Spot, &light.to_rows_f32()),
+            Placed::Line(light) => Self::of_rows(LightKind::Line, &light.to_rows_f32()),
+            Placed::Tabulated(light, _) => {
+                Self::of_rows(LightKind::TabulatedLine, &light.to_rows_f32())
+            }
         }
     }
 
@@ -54,8 +56,6 @@ impl LightData {
 /// Copies a light as plain numbers in single precision, to be uploaded to a GPU or evaluated by
 /// `tem00_beam.h`.
 ///
-/// Fails if single precision cannot carry the light.
-///
 /// # Safety
 ///
 /// The pointers are null or valid.
@@ -66,7 +66,7 @@ pub unsafe extern "C" fn tem00_light_plain_data(
 ) -> Status {
     call(|| {
         // SAFETY: by the contract of this function.
-        let result = LightData::new(unsafe { borrow("light", light) }?.single()?);
+        let result = LightData::new(unsafe { borrow("light", light) }?);
         // SAFETY: by the contract of this function.
         unsafe { write("data", data, result) }
     })

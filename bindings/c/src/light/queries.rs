@@ -1,6 +1,6 @@
 use tem00_beam::Emitter;
 
-use super::Light;
+use super::{Light, batch::Precision};
 use crate::{
     numbers::{check_coordinates, check_length, check_variates, unit_vector},
     pointers::{borrow, read, write},
@@ -106,13 +106,13 @@ pub(super) unsafe fn ask_at<R>(
     light: *const Light,
     point: (&'static str, *const f64),
     answer: (&'static str, *mut R),
-    question: impl FnOnce(&dyn Emitter<f64>, [f64; 3]) -> Result<R, Failure>,
+    question: impl FnOnce(&dyn Emitter, [f64; 3]) -> Result<R, Failure>,
 ) -> Status {
     call(|| {
         // SAFETY: by the contract of this function.
         let (light, place) = unsafe { (borrow("light", light)?, read(point.0, point.1)?) };
         check_coordinates(point.0, &place)?;
-        let result = light.double.ask(|light| question(light, place))?;
+        let result = light.ask(|light| question(light, place))?;
         // SAFETY: by the contract of this function.
         unsafe { write(answer.0, answer.1, result) }
     })
@@ -212,8 +212,6 @@ pub unsafe extern "C" fn tem00_light_next_event(
 
 /// As `tem00_light_next_event`, in single precision.
 ///
-/// Fails if single precision cannot carry the light.
-///
 /// # Safety
 ///
 /// The pointers are null or valid.
@@ -226,8 +224,9 @@ pub unsafe extern "C" fn tem00_light_next_event_f32(
     call(|| {
         // SAFETY: by the contract of this function.
         let (light, place) = unsafe { (borrow("light", light)?, read("point", point)?) };
+        let place: [f32; 3] = place;
         check_coordinates("point", &place)?;
-        let result = light.single()?.ask(|light| light.next_event(place));
+        let result = light.ask(|light| light.next_event(place.map(f64::from)));
         let result = result.map(NextEventF32::from).unwrap_or_default();
         // SAFETY: by the contract of this function.
         unsafe { write("event", event, result) }
@@ -297,7 +296,7 @@ pub unsafe extern "C" fn tem00_light_sample_ray(
     call(|| {
         // SAFETY: by the contract of this function.
         let (light, u) = unsafe { (borrow("light", light)?, variates(u)?) };
-        let drawn = light.double.ask(|light| light.sample_ray(u));
+        let drawn = light.ask(|light| light.sample_ray(u));
         // SAFETY: by the contract of this function.
         unsafe { write("ray", ray, drawn.into()) }
     })
@@ -369,14 +368,14 @@ pub unsafe extern "C" fn tem00_light_bounds(
         check_length("distance", distance)?;
         // SAFETY: by the contract of this function.
         let light = unsafe { borrow("light", light) }?;
-        let result = light.double.ask(|light| light.bounds(distance));
+        let result = light.ask(|light| light.bounds(distance));
         // SAFETY: by the contract of this function.
         unsafe { write("bounds", bounds, result.into()) }
     })
 }
 
-impl From<tem00_beam::NextEvent<f64>> for NextEvent {
-    fn from(event: tem00_beam::NextEvent<f64>) -> Self {
+impl From<tem00_beam::NextEvent> for NextEvent {
+    fn from(event: tem00_beam::NextEvent) -> Self {
         Self {
             point: event.point,
             distance: event.distance,
@@ -386,19 +385,19 @@ impl From<tem00_beam::NextEvent<f64>> for NextEvent {
     }
 }
 
-impl From<tem00_beam::NextEvent<f32>> for NextEventF32 {
-    fn from(event: tem00_beam::NextEvent<f32>) -> Self {
+impl From<tem00_beam::NextEvent> for NextEventF32 {
+    fn from(event: tem00_beam::NextEvent) -> Self {
         Self {
-            point: event.point,
-            distance: event.distance,
-            wi: event.wi,
-            e_perp: event.e_perp,
+            point: event.point.map(f32::rounded),
+            distance: f32::rounded(event.distance),
+            wi: event.wi.map(f32::rounded),
+            e_perp: f32::rounded(event.e_perp),
         }
     }
 }
 
-impl From<tem00_beam::SampledEvent<f64>> for SampledEvent {
-    fn from(event: tem00_beam::SampledEvent<f64>) -> Self {
+impl From<tem00_beam::SampledEvent> for SampledEvent {
+    fn from(event: tem00_beam::SampledEvent) -> Self {
         Self {
             point: event.point,
             distance: event.distance,
@@ -409,8 +408,8 @@ impl From<tem00_beam::SampledEvent<f64>> for SampledEvent {
     }
 }
 
-impl From<tem00_beam::RaySample<f64>> for RaySample {
-    fn from(ray: tem00_beam::RaySample<f64>) -> Self {
+impl From<tem00_beam::RaySample> for RaySample {
+    fn from(ray: tem00_beam::RaySample) -> Self {
         Self {
             origin: ray.origin,
             flux: ray.flux,
@@ -421,8 +420,8 @@ impl From<tem00_beam::RaySample<f64>> for RaySample {
     }
 }
 
-impl From<tem00_beam::RayPdf<f64>> for RayPdf {
-    fn from(pdf: tem00_beam::RayPdf<f64>) -> Self {
+impl From<tem00_beam::RayPdf> for RayPdf {
+    fn from(pdf: tem00_beam::RayPdf) -> Self {
         Self {
             position: pdf.position,
             direction_given_position: pdf.direction_given_position,
@@ -432,8 +431,8 @@ impl From<tem00_beam::RayPdf<f64>> for RayPdf {
     }
 }
 
-impl From<tem00_beam::Bounds<f64>> for Bounds {
-    fn from(bounds: tem00_beam::Bounds<f64>) -> Self {
+impl From<tem00_beam::Bounds> for Bounds {
+    fn from(bounds: tem00_beam::Bounds) -> Self {
         Self {
             min: bounds.min,
             max: bounds.max,

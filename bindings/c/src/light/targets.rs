@@ -46,7 +46,7 @@ pub unsafe extern "C" fn tem00_light_describe(light: *const Light, info: *mut Li
     call(|| {
         // SAFETY: by the contract of this function.
         let light = unsafe { borrow("light", light) }?;
-        let result = light.double.ask(|light| LightInfo {
+        let result = light.ask(|light| LightInfo {
             origin: light.origin(),
             power: light.power(),
             axis: light.axis(),
@@ -108,8 +108,8 @@ pub unsafe extern "C" fn tem00_light_power_bound(
     }
 }
 
-impl From<tem00_beam::ApertureHit<f64>> for ApertureHit {
-    fn from(hit: tem00_beam::ApertureHit<f64>) -> Self {
+impl From<tem00_beam::ApertureHit> for ApertureHit {
+    fn from(hit: tem00_beam::ApertureHit) -> Self {
         Self {
             point: hit.point,
             distance: hit.distance,

@@ -81,8 +81,8 @@ struct Pair {
 
 /// Results of the library without the interface.
 enum Peer {
-    Spot(SpotLight<f64>),
-    Line(LineLight<f64>),
+    Spot(SpotLight),
+    Line(LineLight),
     Tabulated(LaserLine),
 }
 
@@ -164,27 +164,12 @@ fn pairs() -> [Pair; 4] {
 }
 
 impl Peer {
-    fn ask<R>(&self, question: impl FnOnce(&dyn Emitter<f64>) -> R) -> R {
+    fn ask<R>(&self, question: impl FnOnce(&dyn Emitter) -> R) -> R {
         match self {
             Self::Spot(light) => question(light),
             Self::Line(light) => question(light),
             Self::Tabulated(line) => {
                 question(&TabulatedLineLight::place(line, &placement(), 2e-3).unwrap())
-            }
-        }
-    }
-
-    fn ask_in_single<R>(&self, question: impl FnOnce(&dyn Emitter<f32>) -> R) -> R {
-        match self {
-            Self::Spot(light) => question(&light.to_f32().unwrap()),
-            Self::Line(light) => question(&light.to_f32().unwrap()),
-            Self::Tabulated(line) => {
-                let tem00_beam::LineProfile::Tabulated(profile) = line.profile() else {
-                    panic!("the line has a table");
-                };
-                let knots = profile.to_f32().unwrap();
-                let light = TabulatedLineLight::place(line, &placement(), 2e-3).unwrap();
-                question(&light.to_f32(&knots).unwrap())
             }
         }
     }

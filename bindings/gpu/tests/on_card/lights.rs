@@ -80,7 +80,7 @@ fn answers(gpu: &Gpu, kind: &Kind, fields: &[f32], points: &[[f32; 3]]) -> Vec<A
         .collect()
 }
 
-fn agree<L: Emitter<f64>>(kind: &Kind, samples: &[Sample<L>]) {
+fn agree<L: Emitter>(kind: &Kind, samples: &[Sample<L>]) {
     let gpu = Gpu::new().expect("an adapter");
     for sample in samples {
         let mut judge = Judge::new(sample, f64::from(f32::EPSILON));
@@ -110,7 +110,7 @@ fn a_line_whose_profile_is_a_table_is_dark() {
     let gpu = Gpu::new().expect("an adapter");
     let sample = &lines()[0];
     let mut fields = sample.fields.clone();
-    fields[offset_of!(LineLight<f32>, variable) / size_of::<f32>()] = 3.0;
+    fields[offset_of!(LineLight, variable) / size_of::<f64>()] = 3.0;
     let points: Vec<_> = sample.points.iter().map(|p| single_precision(*p)).collect();
     for (p, answer) in points.iter().zip(answers(&gpu, &LINE, &fields, &points)) {
         assert!(answer.iter().all(|x| x.abs() <= 0.0), "{p:?}: {answer:?}");
@@ -118,7 +118,7 @@ fn a_line_whose_profile_is_a_table_is_dark() {
 }
 
 /// Evaluates points in the same directions as the sample's, up to 1e9 m away.
-fn stays_finite<L: Emitter<f64>>(gpu: &Gpu, kind: &Kind, samples: &[Sample<L>]) {
+fn stays_finite<L: Emitter>(gpu: &Gpu, kind: &Kind, samples: &[Sample<L>]) {
     for sample in samples {
         let origin: [f64; 3] = core::array::from_fn(|i| f64::from(sample.fields[i]));
         let far = |p: &[f64; 3], scale: f64| {

@@ -4,7 +4,7 @@ use numpy::PyArray1;
 use pyo3::{prelude::*, types::PyFloat};
 
 use super::{
-    arguments::{OrRaiseAs, components, coordinate, coordinates, map_inner, uniforms},
+    arguments::{components, coordinate, coordinates, map_inner, uniforms},
     light::Light,
     records::{ApertureHit, Bounds, NextEvent, RayPdf, RaySample, SampledEvent},
     rows::{Precision, array_of},
@@ -36,7 +36,7 @@ impl Emitter {
     /// Parameters
     /// ----------
     /// dtype : {"float64", "float32"}, optional
-    ///     Precision of the rows. A light that single precision cannot hold is refused.
+    ///     Precision of the rows.
     ///
     /// Returns
     /// -------
@@ -46,11 +46,7 @@ impl Emitter {
     fn to_rows<'py>(&self, py: Python<'py>, dtype: Precision) -> PyResult<Array<'py>> {
         Ok(match dtype {
             Precision::Double => array_of(py, &self.0.rows())?.into_any(),
-            Precision::Single => {
-                let rows = self.0.single_rows();
-                let names = [("single_precision", "dtype")];
-                array_of(py, &rows.or_raise_as(&names)?)?.into_any()
-            }
+            Precision::Single => array_of(py, &self.0.single_rows())?.into_any(),
         })
     }
 

@@ -1,16 +1,17 @@
 //! The three lights as one, and their queries over many points.
 
 use tem00_beam::{
-    self as physics, AngularProfile, LineLight, NextEventSlices, RayPdf, Refusal, SpotLight,
+    self as physics, AngularProfile, LineLight, NextEventSlices, RayPdf, SpotLight,
     TabulatedLineLight,
 };
+use tem00_numerics::cast::to_f32;
 
 /// A light as the beam crate holds it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Light {
-    Spot(SpotLight<f64>),
-    Line(LineLight<f64>),
-    Tabulated(LineLight<f64>, AngularProfile),
+    Spot(SpotLight),
+    Line(LineLight),
+    Tabulated(LineLight, AngularProfile),
 }
 
 impl Light {
@@ -28,22 +29,12 @@ impl Light {
         std::array::from_fn(|i| rows[i])
     }
 
-    pub(super) fn single_rows(&self) -> Result<Vec<[f32; 4]>, Refusal> {
-        Ok(match self {
-            Self::Spot(light) => light.to_f32()?.to_rows().to_vec(),
-            Self::Line(light) => light.to_f32()?.to_rows().to_vec(),
-            Self::Tabulated(line, profile) => {
-                let (line, knots) = (*line, profile.knots());
-                let single = TabulatedLineLight { line, knots }
-                    .to_f32(&profile.to_f32()?)?
-                    .line;
-                single.to_rows().to_vec()
-            }
-        })
+    pub(super) fn single_rows(&self) -> Vec<[f32; 4]> {
+        self.rows().into_iter().map(|row| row.map(to_f32)).collect()
     }
 
     /// Asks the light, whichever it is.
-    pub(super) fn ask<R>(&self, query: impl FnOnce(&dyn physics::Emitter<f64>) -> R) -> R {
+    pub(super) fn ask<R>(&self, query: impl FnOnce(&dyn physics::Emitter) -> R) -> R {
         match self {
             Self::Spot(light) => query(light),
             Self::Line(light) => query(light),
@@ -130,7 +121,7 @@ impl Light {
 }
 
 /// Writes densities, in the order of their fields, to the place `i` of each column.
-fn put(pdf: RayPdf<f64>, i: usize, columns: &mut [&mut [f64]; 4]) {
+fn put(pdf: RayPdf, i: usize, columns: &mut [&mut [f64]; 4]) {
     let values = [
         pdf.position,
         pdf.direction_given_position,

@@ -29,7 +29,7 @@ use crate::{
 ///     origin, power | ex, cutoff | ey, wavelength | ez, 0 | x: w0_sq, theta_sq, z0, 0 | y: likewise
 #[pyclass(frozen, extends = Emitter, module = "tem00.beam")]
 #[derive(Debug)]
-pub(crate) struct SpotLight(pub(super) physics::SpotLight<f64>);
+pub(crate) struct SpotLight(pub(super) physics::SpotLight);
 
 #[pymethods]
 impl SpotLight {
@@ -111,7 +111,7 @@ methods! {
 }
 
 impl SpotLight {
-    pub(super) fn of(py: Python<'_>, light: physics::SpotLight<f64>) -> PyResult<Py<Self>> {
+    pub(super) fn of(py: Python<'_>, light: physics::SpotLight) -> PyResult<Py<Self>> {
         let base = PyClassInitializer::from(Emitter(Light::Spot(light)));
         Py::new(py, base.add_subclass(Self(light)))
     }

@@ -34,7 +34,7 @@ use crate::{
 ///     | flat, sigma, variable, mass | half_slope, focus_on_plane, wavelength, 0
 #[pyclass(frozen, extends = Emitter, module = "tem00.beam")]
 #[derive(Debug)]
-pub(crate) struct LineLight(pub(super) physics::LineLight<f64>);
+pub(crate) struct LineLight(pub(super) physics::LineLight);
 
 #[pymethods]
 impl LineLight {
@@ -119,7 +119,7 @@ methods! {
 }
 
 impl LineLight {
-    pub(super) fn of(py: Python<'_>, light: physics::LineLight<f64>) -> PyResult<Py<Self>> {
+    pub(super) fn of(py: Python<'_>, light: physics::LineLight) -> PyResult<Py<Self>> {
         let base = PyClassInitializer::from(Emitter(Light::Line(light)));
         Py::new(py, base.add_subclass(Self(light)))
     }
@@ -133,7 +133,7 @@ impl LineLight {
 #[pyclass(frozen, extends = Emitter, module = "tem00.beam")]
 #[derive(Debug)]
 pub(crate) struct TabulatedLineLight {
-    line: physics::LineLight<f64>,
+    line: physics::LineLight,
     profile: physics::AngularProfile,
 }
 
@@ -181,7 +181,7 @@ methods! {
 impl TabulatedLineLight {
     pub(super) fn of(
         py: Python<'_>,
-        line: physics::LineLight<f64>,
+        line: physics::LineLight,
         profile: physics::AngularProfile,
     ) -> PyResult<Py<Self>> {
         let base = PyClassInitializer::from(Emitter(Light::Tabulated(line, profile.clone())));

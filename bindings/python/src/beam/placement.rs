@@ -72,7 +72,7 @@ impl Placement {
 /// it loses all digits of ``float32`` near a tight waist.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Axis(pub(super) physics::Axis<f64>);
+pub(crate) struct Axis(pub(super) physics::Axis);
 
 #[pymethods]
 impl Axis {

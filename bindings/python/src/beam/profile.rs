@@ -3,6 +3,7 @@
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use tem00_beam as physics;
+use tem00_numerics::cast::to_f32;
 
 use super::{
     arguments::{OrRaiseAs, list},
@@ -181,18 +182,11 @@ impl AngularProfile {
     /// Returns
     /// -------
     /// ndarray, shape (n, 3)
-    ///     As ``knots``, in float32. A table whose angles single precision cannot tell apart is
-    ///     refused.
+    ///     As ``knots``, in float32.
     fn to_f32<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let knots = self
-            .0
-            .to_f32()
-            .or_raise_as(&[("single_precision", "angles")])?;
-        let rows: Vec<_> = knots
-            .iter()
-            .map(|k| [k.angle, k.density, k.cumulative])
-            .collect();
-        array_of(py, &rows)
+        let knots = self.0.knots().iter();
+        let rows = knots.map(|k| [k.angle, k.density, k.cumulative].map(to_f32));
+        array_of(py, &rows.collect::<Vec<_>>())
     }
 
     pub(super) fn __repr__(&self) -> String {

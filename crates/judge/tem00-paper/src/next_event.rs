@@ -61,11 +61,11 @@ pub fn streamline_point(beam: &GaussianBeam, receiver: DVec3, aperture_z: f64) -
 /// unit normal `n`; `None` outside the cut-off, behind the aperture, or on the unlit side.
 ///
 /// See [`radiance`] and [`streamline_point`] for what is wrong with it.
-pub fn spot_next_event(light: &SpotLight<f64>, p: [f64; 3], n: [f64; 3]) -> Option<PrintedEvent> {
+pub fn spot_next_event(light: &SpotLight, p: [f64; 3], n: [f64; 3]) -> Option<PrintedEvent> {
     let irradiance = Some(light.irradiance(p)).filter(|&e| e > 0.0)?;
     let frame = Frame::new(light.origin, [light.ex, light.ey, light.ez]);
     let [x, y, z] = frame.local(p);
-    let ratio = |axis: &Axis<f64>| (axis.radius_sq_at(0.0) / axis.radius_sq_at(z)).sqrt();
+    let ratio = |axis: &Axis| (axis.radius_sq_at(0.0) / axis.radius_sq_at(z)).sqrt();
     let aperture = [x * ratio(&light.x), y * ratio(&light.y)];
     printed_event(frame.aperture_point(aperture), p, n, irradiance)
 }
@@ -76,7 +76,7 @@ pub fn spot_next_event(light: &SpotLight<f64>, p: [f64; 3], n: [f64; 3]) -> Opti
 /// The fan is that of [`PrintedFan`](crate::PrintedFan), which knows only the Gaussian profile, and
 /// the scaled x′ is the coordinate that the ratio of beam radii is applied to: the unscaled one
 /// would end outside the aperture. See [`radiance`] for what else is wrong with it.
-pub fn line_next_event(light: &LineLight<f64>, p: [f64; 3], n: [f64; 3]) -> Option<PrintedEvent> {
+pub fn line_next_event(light: &LineLight, p: [f64; 3], n: [f64; 3]) -> Option<PrintedEvent> {
     let frame = Frame::new(light.origin, [light.ex, light.ey, light.ez]);
     let [x, y, z] = frame.local(p);
     if z <= 0.0 {

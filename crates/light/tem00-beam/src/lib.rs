@@ -30,13 +30,13 @@
 
 mod astigmatic;
 pub mod closed_form;
+mod exponential;
 mod gaussian;
 mod line;
 mod located;
 mod normal;
 mod placed;
 mod profile;
-mod real;
 
 pub use astigmatic::AstigmaticBeam;
 pub use gaussian::GaussianBeam;
@@ -48,5 +48,4 @@ pub use placed::{
     RaySample, SampledEvent, SpotLight, TabulatedLineLight,
 };
 pub use profile::{AngularKnot, AngularProfile, LineProfile};
-pub use real::Real;
 pub use tem00_numerics::Refusal;

@@ -109,7 +109,7 @@ pub struct LaserLine {
     fan: FanGeometry,
     profile: LineProfile,
     half_slope: f64,
-    density: SlopeDensity<f64>,
+    density: SlopeDensity,
 }
 
 impl LaserLine {
@@ -344,7 +344,7 @@ impl LaserLine {
     }
 
     /// Asks the profile along the fan.
-    fn along(&self, query: impl Fn(&dyn SlopeProfile<f64>) -> f64) -> f64 {
+    fn along(&self, query: impl Fn(&dyn SlopeProfile) -> f64) -> f64 {
         match &self.profile {
             LineProfile::Tabulated(profile) => query(&profile.table()),
             _ => query(&self.density),
@@ -352,7 +352,7 @@ impl LaserLine {
     }
 
     /// Returns the density of the slope along the fan; dark if the profile is tabulated.
-    pub(crate) const fn slope_density(&self) -> &SlopeDensity<f64> {
+    pub(crate) const fn slope_density(&self) -> &SlopeDensity {
         &self.density
     }
 }

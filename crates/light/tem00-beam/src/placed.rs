@@ -1,4 +1,4 @@
-//! The renderer face: placed lights as plain structs, generic over the scalar.
+//! The renderer face: placed lights as plain structs.
 
 mod axis;
 mod emitter;
@@ -20,7 +20,6 @@ pub use line::LineLight;
 pub use record::{
     ApertureHit, Bounds, NextEvent, NextEventSlices, RayPdf, RaySample, SampledEvent,
 };
-pub(crate) use rows::too_large_for_single;
 pub use spot::SpotLight;
 pub use tabulated::TabulatedLineLight;
 

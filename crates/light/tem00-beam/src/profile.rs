@@ -81,7 +81,7 @@ pub enum LineProfile {
 impl LineProfile {
     /// Returns the density of the slope for a fan of the full angle `fan_angle`; that of a table is
     /// dark, the table stands in for it.
-    pub(crate) fn slope_density(&self, fan_angle: f64) -> Result<SlopeDensity<f64>, Refusal> {
+    pub(crate) fn slope_density(&self, fan_angle: f64) -> Result<SlopeDensity, Refusal> {
         let half_angle = 0.5 * fan_angle;
         let half_slope = half_angle.tan();
         Ok(match self {
@@ -100,7 +100,7 @@ impl LineProfile {
 }
 
 /// A Gaussian with its 1/e² points at ±`edge`, cut off at ±`end`.
-fn gaussian_within(variable: Variable, edge: f64, end: f64) -> SlopeDensity<f64> {
+fn gaussian_within(variable: Variable, edge: f64, end: f64) -> SlopeDensity {
     SlopeDensity::gaussian(variable, edge, libm::erf(SQRT_2 * end / edge))
 }
 

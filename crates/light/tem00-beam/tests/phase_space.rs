@@ -29,7 +29,7 @@ fn placement() -> Placement {
     }
 }
 
-fn spot(waist: f64, m_squared: f64, waist_distance: f64) -> (GaussianBeam, SpotLight<f64>) {
+fn spot(waist: f64, m_squared: f64, waist_distance: f64) -> (GaussianBeam, SpotLight) {
     let beam = GaussianBeam::from_waist(WAVELENGTH, waist)
         .and_then(|beam| beam.with_m_squared(m_squared))
         .expect("a valid beam");
@@ -60,7 +60,7 @@ fn lines(fan: FanGeometry) -> impl Iterator<Item = LaserLine> {
 }
 
 /// Places a line as the light that its profile needs.
-fn place(line: &LaserLine) -> Box<dyn Emitter<f64> + '_> {
+fn place(line: &LaserLine) -> Box<dyn Emitter + '_> {
     match line.profile() {
         LineProfile::Tabulated(_) => {
             Box::new(TabulatedLineLight::place(line, &placement(), POWER).expect("a valid light"))
@@ -80,7 +80,7 @@ fn rng() -> ChaCha8Rng {
     ChaCha8Rng::seed_from_u64(2016)
 }
 
-fn rays(light: &dyn Emitter<f64>, count: usize) -> Vec<RaySample<f64>> {
+fn rays(light: &dyn Emitter, count: usize) -> Vec<RaySample> {
     let mut rng = rng();
     (0..count).map(|_| light.sample_ray(rng.random())).collect()
 }
@@ -97,7 +97,7 @@ fn world(axes: [DVec3; 3], local: DVec3) -> [f64; 3] {
 }
 
 /// The position and slope of a ray, in the frame of the light, at the distance z.
-fn crossing(axes: [DVec3; 3], ray: &RaySample<f64>, z: f64) -> (DVec3, DVec3) {
+fn crossing(axes: [DVec3; 3], ray: &RaySample, z: f64) -> (DVec3, DVec3) {
     let rotate = |v: DVec3| DVec3::new(v.dot(axes[0]), v.dot(axes[1]), v.dot(axes[2]));
     let origin = rotate(DVec3::from(ray.origin) - placement().origin);
     let direction = rotate(DVec3::from(ray.direction));
@@ -268,7 +268,7 @@ fn chi_square(
 ///
 /// `half` are the half-sizes of the rectangle in the local directions `along` and `across`.
 fn chi_square_on_surface(
-    light: &dyn Emitter<f64>,
+    light: &dyn Emitter,
     centre: DVec3,
     [along, across]: [DVec3; 2],
     half: [f64; 2],
@@ -308,7 +308,7 @@ fn rays_of_a_spot_reproduce_the_irradiance_of_a_tilted_surface() {
 }
 
 /// An elliptic beam with M² in one axis, turned, and its light.
-fn elliptic() -> (AstigmaticBeam, SpotLight<f64>) {
+fn elliptic() -> (AstigmaticBeam, SpotLight) {
     let axis = |waist, m_squared, waist_distance| {
         LocatedBeam::new(spot(waist, m_squared, 0.0).0, waist_distance).expect("a valid beam")
     };
@@ -378,7 +378,7 @@ fn rays_of_a_line_reproduce_the_irradiance_of_tilted_surfaces() {
 }
 
 /// χ² of the slopes of rays, in bins up to `half`, against the density of their directions.
-fn chi_square_of_directions(light: &dyn Emitter<f64>, half: [f64; 2]) -> (f64, f64) {
+fn chi_square_of_directions(light: &dyn Emitter, half: [f64; 2]) -> (f64, f64) {
     let rays = rays(light, RAYS);
     let slopes = rays.iter().map(|ray| {
         let (_, slope) = crossing(line_axes(), ray, 0.0);
@@ -571,7 +571,7 @@ fn position_density_integrates_to_one_over_the_aperture() {
 }
 
 /// The mean and the standard error of the reflected radiance (for f = 1) by sampled next events.
-fn sampled_mean(light: &dyn Emitter<f64>, p: [f64; 3], n: DVec3) -> (f64, f64) {
+fn sampled_mean(light: &dyn Emitter, p: [f64; 3], n: DVec3) -> (f64, f64) {
     const COUNT: usize = 20_000;
     let mut rng = rng();
     let (mut sum, mut squares) = (0.0, 0.0);
@@ -588,7 +588,7 @@ fn sampled_mean(light: &dyn Emitter<f64>, p: [f64; 3], n: DVec3) -> (f64, f64) {
     (mean, (variance / COUNT as f64).sqrt())
 }
 
-fn check_sampled_mean(light: &dyn Emitter<f64>, local: DVec3) {
+fn check_sampled_mean(light: &dyn Emitter, local: DVec3) {
     let [ex, ey, ez] = line_axes();
     let p = world(line_axes(), local);
     let n = (ex * 0.3 + ey * 0.8 - ez * 0.4).normalize();
@@ -614,7 +614,7 @@ fn sampled_next_events_average_to_the_delta_form() {
     }
 }
 
-fn check_sampled_values(light: &dyn Emitter<f64>, local: DVec3) {
+fn check_sampled_values(light: &dyn Emitter, local: DVec3) {
     let mut rng = rng();
     let p = world(line_axes(), local);
     for _ in 0..1000 {

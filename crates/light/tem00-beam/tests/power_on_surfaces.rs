@@ -201,10 +201,7 @@ fn round_surfaces() -> impl Strategy<Value = Surface> {
 }
 
 /// The flow per watt of a light placed anywhere, in its own frame.
-fn local_flux<'a>(
-    light: &'a dyn Emitter<f64>,
-    placement: &Placement,
-) -> impl Fn(DVec3) -> DVec3 + 'a {
+fn local_flux<'a>(light: &'a dyn Emitter, placement: &Placement) -> impl Fn(DVec3) -> DVec3 + 'a {
     let ez = placement.direction.normalize();
     let ex = placement.fan_axis.reject_from_normalized(ez).normalize();
     let (origin, ey) = (placement.origin, ez.cross(ex));

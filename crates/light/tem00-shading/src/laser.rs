@@ -72,13 +72,10 @@ pub struct Laser {
 enum Source {
     Spot {
         beam: AstigmaticBeam,
-        light: SpotLight<f64>,
+        light: SpotLight,
     },
     /// The table of a tabulated profile stays in the line.
-    Line {
-        line: LaserLine,
-        light: LineLight<f64>,
-    },
+    Line { line: LaserLine, light: LineLight },
 }
 
 impl Laser {
@@ -247,9 +244,9 @@ impl Laser {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlacedLight {
     /// A spot.
-    Spot(SpotLight<f64>),
+    Spot(SpotLight),
     /// A line, without the table of its profile.
-    Line(LineLight<f64>),
+    Line(LineLight),
 }
 
 impl Source {
@@ -286,11 +283,7 @@ fn beam(wavelength: f64, waist_radius: f64, m_squared: f64) -> Result<GaussianBe
 }
 
 /// Places a line; the table of a tabulated profile is left to [`line_event`].
-fn line_light(
-    line: &LaserLine,
-    placement: &Placement,
-    power: f64,
-) -> Result<LineLight<f64>, Refusal> {
+fn line_light(line: &LaserLine, placement: &Placement, power: f64) -> Result<LineLight, Refusal> {
     match line.profile() {
         LineProfile::Tabulated(_) => {
             TabulatedLineLight::place(line, placement, power).map(|light| light.line)
@@ -299,7 +292,7 @@ fn line_light(
     }
 }
 
-fn line_event(line: &LaserLine, light: &LineLight<f64>, point: [f64; 3]) -> Option<NextEvent<f64>> {
+fn line_event(line: &LaserLine, light: &LineLight, point: [f64; 3]) -> Option<NextEvent> {
     match line.profile() {
         LineProfile::Tabulated(profile) => {
             let (line, knots) = (*light, profile.knots());
@@ -330,7 +323,7 @@ impl LaserEventBatch {
         }
     }
 
-    fn by(&mut self, light: &impl Emitter<f64>) {
+    fn by(&mut self, light: &impl Emitter) {
         let [x, y, z] = &self.points;
         for values in &mut self.events {
             values.resize(x.len(), 0.0);

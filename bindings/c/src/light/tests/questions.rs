@@ -292,17 +292,14 @@ fn single_precision_is_that_of_the_library() {
             // SAFETY: the handle and the pointers are valid.
             let event: NextEventF32 =
                 answer(|out| unsafe { tem00_light_next_event_f32(*handle, p.as_ptr(), out) });
-            let expected = peer.ask_in_single(|light| light.next_event(p));
+            let expected = peer.ask(|light| light.next_event(p.map(f64::from)));
             assert_eq!(
                 event,
                 expected.map(NextEventF32::from).unwrap_or_default(),
                 "{name}"
             );
-            assert_eq!(
-                irradiance[i],
-                peer.ask_in_single(|light| light.irradiance(p)),
-                "{name}"
-            );
+            let expected = peer.ask(|light| light.irradiance(p.map(f64::from)));
+            assert_eq!([irradiance[i]].to_vec(), narrowed(vec![expected]), "{name}");
             let got = ([wi_x[i], wi_y[i], wi_z[i]], distance[i], e_perp[i]);
             assert_eq!(
                 got,
@@ -322,16 +319,11 @@ fn narrowed(values: Vec<f64>) -> Vec<f32> {
 #[test]
 fn plain_data_are_the_rows_of_the_light_in_single_precision() {
     let expected: [(LightKind, Vec<f32>); 4] = pairs().map(|pair| match &pair.peer {
-        Peer::Spot(light) => (LightKind::Spot, light.to_f32().unwrap().to_rows().concat()),
-        Peer::Line(light) => (LightKind::Line, light.to_f32().unwrap().to_rows().concat()),
+        Peer::Spot(light) => (LightKind::Spot, light.to_rows_f32().concat()),
+        Peer::Line(light) => (LightKind::Line, light.to_rows_f32().concat()),
         Peer::Tabulated(line) => {
-            let light = TabulatedLineLight::place(line, &placement(), 2e-3)
-                .unwrap()
-                .line;
-            (
-                LightKind::TabulatedLine,
-                light.to_f32().unwrap().to_rows().concat(),
-            )
+            let light = TabulatedLineLight::place(line, &placement(), 2e-3).unwrap();
+            (LightKind::TabulatedLine, light.line.to_rows_f32().concat())
         }
     });
     for (pair, (kind, fields)) in pairs().iter().zip(expected) {
@@ -423,15 +415,9 @@ fn records_keep_each_number_under_its_name() {
         fields(&event),
         "next event"
     );
-    let single = tem00_beam::NextEvent {
-        point: [1.0, 2.0, 3.0],
-        distance: 10.0_f32,
-        wi: [4.0, 5.0, 6.0],
-        e_perp: 11.0,
-    };
     assert_eq!(
-        fields(&NextEventF32::from(single)),
-        fields(&single),
+        fields(&NextEventF32::from(event)),
+        fields(&event),
         "in single precision"
     );
     let drawn = tem00_beam::SampledEvent {

@@ -152,32 +152,6 @@ fn null_is_refused_for_every_pointer() {
 }
 
 #[test]
-fn a_light_that_single_precision_cannot_carry_is_refused_there_alone() {
-    let tiny = SpotDescription {
-        wavelength: 1e-27,
-        waist_radius: 1e-26,
-        ..SPOT
-    };
-    let mut light = ptr::null_mut();
-    let (mut event, mut single) = (NextEvent::default(), NextEventF32::default());
-    // SAFETY: the pointers are valid, and the light is destroyed once.
-    let statuses = unsafe {
-        [
-            tem00_light_create_spot(&raw const tiny, &raw mut light),
-            tem00_light_next_event(light, POINT.as_ptr(), &raw mut event),
-            tem00_light_next_event_f32(light, [0.0; 3].as_ptr(), &raw mut single),
-        ]
-    };
-    // SAFETY: as above.
-    unsafe { tem00_light_destroy(light) };
-    assert_eq!(
-        statuses,
-        [Status::Ok, Status::Ok, Status::InvalidArgument],
-        "in turn"
-    );
-}
-
-#[test]
 fn threads_may_share_a_light() {
     fn is_shared<T: Send + Sync>() {}
     is_shared::<Light>();

@@ -1,5 +1,4 @@
 use crate::GaussianBeam;
-use crate::real::Real;
 
 /// The squared beam radius along one principal axis: `w²(z) = w0_sq + theta_sq (z − z0)²`.
 ///
@@ -7,18 +6,18 @@ use crate::real::Real;
 /// `f32` near a tight waist.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Axis<T> {
+pub struct Axis {
     /// Squared waist radius, in m².
-    pub w0_sq: T,
+    pub w0_sq: f64,
     /// Squared divergence half-angle, in rad².
-    pub theta_sq: T,
+    pub theta_sq: f64,
     /// Position of the waist, in metres, on the coordinate the light says.
-    pub z0: T,
+    pub z0: f64,
     /// Unused, 0. Completes a row of four.
-    pub pad: T,
+    pub pad: f64,
 }
 
-impl Axis<f64> {
+impl Axis {
     pub(super) fn new(beam: &GaussianBeam, z0: f64) -> Self {
         Self {
             w0_sq: beam.waist_radius() * beam.waist_radius(),
@@ -29,19 +28,19 @@ impl Axis<f64> {
     }
 }
 
-impl<T: Real> Axis<T> {
+impl Axis {
     /// Returns the squared beam radius `w²(z)`, in m².
     #[inline(always)]
-    pub fn radius_sq_at(&self, z: T) -> T {
+    pub fn radius_sq_at(&self, z: f64) -> f64 {
         let dz = z - self.z0;
         self.w0_sq + self.theta_sq * dz * dz
     }
 
-    pub(super) fn to_row(self) -> [T; 4] {
+    pub(super) fn to_row(self) -> [f64; 4] {
         [self.w0_sq, self.theta_sq, self.z0, self.pad]
     }
 
-    pub(super) fn from_row([w0_sq, theta_sq, z0, pad]: [T; 4]) -> Self {
+    pub(super) fn from_row([w0_sq, theta_sq, z0, pad]: [f64; 4]) -> Self {
         Self {
             w0_sq,
             theta_sq,
@@ -52,23 +51,23 @@ impl<T: Real> Axis<T> {
 
     /// Returns the relative growth of the radius `w'/w`, which is 1/R.
     #[inline(always)]
-    pub(super) fn growth_at(&self, z: T) -> T {
+    pub(super) fn growth_at(&self, z: f64) -> f64 {
         self.theta_sq * (z - self.z0) / self.radius_sq_at(z)
     }
 
     /// Returns the standard deviations of position at the waist, and of slope.
-    pub(super) fn deviations(&self) -> (T, T) {
-        let half = T::of(0.5);
+    pub(super) fn deviations(&self) -> (f64, f64) {
+        let half = 0.5;
         (half * self.w0_sq.sqrt(), half * self.theta_sq.sqrt())
     }
 
     /// Returns the mean and standard deviation of the slope at the offset `x` from the axis.
-    pub(super) fn conditional_slope(&self, x: T, z: T) -> (T, T) {
+    pub(super) fn conditional_slope(&self, x: f64, z: f64) -> (f64, f64) {
         let w_sq = self.radius_sq_at(z);
         let mean = x * self.growth_at(z);
         (
             mean,
-            T::of(0.5) * (self.w0_sq * self.theta_sq).sqrt() / w_sq.sqrt(),
+            0.5 * (self.w0_sq * self.theta_sq).sqrt() / w_sq.sqrt(),
         )
     }
 }

@@ -4,7 +4,6 @@ use super::record::{
     ApertureHit, Bounds, NextEvent, NextEventSlices, RayPdf, RaySample, SampledEvent,
 };
 use super::slope::{aperture_point, direction, secant, slope_of, towards_light};
-use crate::real::Real;
 
 /// A light that a renderer can evaluate and sample, without allocation.
 ///
@@ -85,7 +84,7 @@ use crate::real::Real;
 /// # };
 /// # let green = GaussianBeam::from_waist(532e-9, 0.1e-3)?;
 /// # let green = LaserLine::new(green, fan, LineProfile::GaussianTan)?;
-/// let lights: Vec<Box<dyn Emitter<f64>>> = vec![
+/// let lights: Vec<Box<dyn Emitter>> = vec![
 ///     Box::new(SpotLight::place(&red, 0.5, &placement, 5e-3)?),
 ///     Box::new(LineLight::place(&green, &placement, 1e-3)?),
 /// ];
@@ -97,33 +96,33 @@ use crate::real::Real;
 /// assert!(brightest.axis()[2] < -0.999_999);
 /// # Ok::<(), tem00_beam::Refusal>(())
 /// ```
-pub trait Emitter<T: Real>: PhaseSpace<T> {
+pub trait Emitter: PhaseSpace {
     /// Returns the power, in watts.
-    fn power(&self) -> T;
+    fn power(&self) -> f64;
 
     /// Returns the wavelength in the medium, in metres.
-    fn wavelength(&self) -> T;
+    fn wavelength(&self) -> f64;
 
     /// Returns the centre of the aperture, in metres.
-    fn origin(&self) -> [T; 3] {
+    fn origin(&self) -> [f64; 3] {
         self.frame().origin
     }
 
     /// Returns the unit vector along the direction of travel.
-    fn axis(&self) -> [T; 3] {
+    fn axis(&self) -> [f64; 3] {
         self.frame().ez
     }
 
     /// Returns the irradiance, in W/m², of a plane through `p` at right angles to the axis.
     #[inline]
-    fn irradiance(&self, p: [T; 3]) -> T {
+    fn irradiance(&self, p: [f64; 3]) -> f64 {
         irradiance_at(self, p)
     }
 
     /// Returns the energy-flow vector at `p`, in W/m².
     ///
     /// A surface whose normal `n` lies on the lit side receives the irradiance `max(0, −F·n)`.
-    fn flux(&self, p: [T; 3]) -> [T; 3] {
+    fn flux(&self, p: [f64; 3]) -> [f64; 3] {
         let frame = self.frame();
         match self.lit_flow(frame.local_from_world_point(p)) {
             Some(flow) => {
@@ -131,7 +130,7 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
                 let e = flow.irradiance;
                 frame.world_from_local_vector([e * x, e * y, e])
             }
-            None => [T::ZERO; 3],
+            None => [0.0; 3],
         }
     }
 
@@ -141,8 +140,8 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     /// `f · |n·wi| · V · e_perp`. Returns `None` outside the cut-off and behind the aperture, where
     /// no shadow ray is needed.
     #[inline]
-    fn next_event(&self, p: [T; 3]) -> Option<NextEvent<T>> {
-        Some(event_at(self, p)).filter(|event| event.e_perp > T::ZERO)
+    fn next_event(&self, p: [f64; 3]) -> Option<NextEvent> {
+        Some(event_at(self, p)).filter(|event| event.e_perp > 0.0)
     }
 
     /// Returns the light at `p` as one direction, drawn from the phase-space density at `p`.
@@ -151,7 +150,7 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     /// by the density already. The mean over `u` is that of [`next_event`](Self::next_event).
     /// Returns `None` outside the cut-off and behind the aperture.
     #[inline]
-    fn next_event_sampled(&self, p: [T; 3], u: [T; 2]) -> Option<SampledEvent<T>> {
+    fn next_event_sampled(&self, p: [f64; 3], u: [f64; 2]) -> Option<SampledEvent> {
         let frame = self.frame();
         let local = frame.local_from_world_point(p);
         self.lit_flow(local)?;
@@ -172,13 +171,13 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     /// Multiple importance sampling needs it for a direction that another technique has drawn. The
     /// product with the `value` of the event in that direction is the radiance along it.
     #[inline]
-    fn next_event_pdf(&self, p: [T; 3], wi: [T; 3]) -> T {
+    fn next_event_pdf(&self, p: [f64; 3], wi: [f64; 3]) -> f64 {
         let frame = self.frame();
         let local = frame.local_from_world_point(p);
         let slope = slope_of(frame.local_from_world_vector(towards_light(wi)));
         match (self.lit_flow(local), slope) {
             (Some(_), Some(slope)) => self.slope_pdf(local, slope),
-            _ => T::ZERO,
+            _ => 0.0,
         }
     }
 
@@ -192,7 +191,7 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     ///
     /// Returns `None` where [`next_event_sampled`](Self::next_event_sampled) does, for a ray that runs
     /// with the light or along its aperture, and for one that meets no light.
-    fn hit(&self, p: [T; 3], wi: [T; 3]) -> Option<ApertureHit<T>> {
+    fn hit(&self, p: [f64; 3], wi: [f64; 3]) -> Option<ApertureHit> {
         let frame = self.frame();
         let local = frame.local_from_world_point(p);
         self.lit_flow(local)?;
@@ -204,7 +203,7 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
             radiance: radiance_of(self, position, slope),
             pdf: self.slope_pdf(local, slope),
         };
-        Some(hit).filter(|hit| hit.radiance > T::ZERO)
+        Some(hit).filter(|hit| hit.radiance > 0.0)
     }
 
     /// Draws a ray that leaves the aperture.
@@ -216,14 +215,14 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     /// radiance · cos = power · pdf.direction · pdf.position_given_direction
     /// ```
     #[inline]
-    fn sample_ray(&self, u: [T; 4]) -> RaySample<T> {
+    fn sample_ray(&self, u: [f64; 4]) -> RaySample {
         let frame = self.frame();
         let (position, slope) = self.draw(u);
         RaySample {
             origin: frame.world_from_aperture(position),
             flux: self.power(),
             direction: frame.world_from_local_vector(direction(slope)),
-            cos: T::ONE / secant(slope),
+            cos: 1.0 / secant(slope),
             pdf: self.densities(position, slope),
         }
     }
@@ -234,14 +233,14 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     /// Any point `o` of the ray will do: the densities of position are those of the ray's point on the
     /// aperture plane. In `f32` this needs the coordinates to resolve the source, which for a line
     /// is about a micrometre wide.
-    fn ray_pdf(&self, o: [T; 3], d: [T; 3]) -> RayPdf<T> {
+    fn ray_pdf(&self, o: [f64; 3], d: [f64; 3]) -> RayPdf {
         let frame = self.frame();
         match slope_of(frame.local_from_world_vector(d)) {
             Some(slope) => {
                 let position = aperture_point(frame.local_from_world_point(o), slope);
                 self.densities(position, slope)
             }
-            None => RayPdf::from_position(T::ZERO, || T::ZERO),
+            None => RayPdf::from_position(0.0, || 0.0),
         }
     }
 
@@ -250,14 +249,14 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     ///
     /// Radiance is constant along a ray in free space, so any point `o` of it will do. Its integral
     /// over direction, weighted with the cosine to the axis, is the irradiance at `o`.
-    fn radiance(&self, o: [T; 3], d: [T; 3]) -> T {
+    fn radiance(&self, o: [f64; 3], d: [f64; 3]) -> f64 {
         let frame = self.frame();
         match slope_of(frame.local_from_world_vector(d)) {
             Some(slope) => {
                 let position = aperture_point(frame.local_from_world_point(o), slope);
                 radiance_of(self, position, slope)
             }
-            None => T::ZERO,
+            None => 0.0,
         }
     }
 
@@ -265,21 +264,21 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     ///
     /// The box holds all points within the cut-off. The cone holds the mean energy flow at all of
     /// them; a sampled ray is outside it with a probability of about exp(−2 · cutoff²).
-    fn bounds(&self, l: T) -> Bounds<T> {
+    fn bounds(&self, l: f64) -> Bounds {
         let frame = self.frame();
         let reach = self.reach(l);
         let mut bounds = Bounds {
             min: frame.origin,
             max: frame.origin,
             axis: frame.ez,
-            half_angle: T::of(reach.slope.wide().atan()),
+            half_angle: reach.slope.atan(),
         };
         for i in 0..3 {
             let across =
                 reach.half_width[0] * frame.ex[i].abs() + reach.half_width[1] * frame.ey[i].abs();
             let far = frame.origin[i] + l * frame.ez[i];
-            bounds.min[i] = frame.origin[i].smaller(far) - across;
-            bounds.max[i] = frame.origin[i].larger(far) + across;
+            bounds.min[i] = frame.origin[i].min(far) - across;
+            bounds.max[i] = frame.origin[i].max(far) + across;
         }
         bounds
     }
@@ -298,14 +297,14 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     /// receives more. Of rods along the axis, up to a thousand times as long as wide, half have a bound
     /// within 10 % of the power; it is up to some twenty times the power beside a focus that the rod
     /// passes.
-    fn power_bound(&self, min: [T; 3], max: [T; 3]) -> T {
+    fn power_bound(&self, min: [f64; 3], max: [f64; 3]) -> f64 {
         match LocalBox::around(&self.frame(), min, max) {
             Some(target) => {
-                let bound = self.power().wide() * self.fraction_bound(&target);
+                let bound = self.power() * self.fraction_bound(&target);
                 // Larger than any rounding on the way.
-                T::of(bound * (1.0 + 1e-6)).smaller(self.power())
+                (bound * (1.0 + 1e-6)).min(self.power())
             }
-            None => T::ZERO,
+            None => 0.0,
         }
     }
 
@@ -314,7 +313,7 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     /// # Panics
     ///
     /// Panics unless `x.len() == y.len() == z.len() == out.len()`.
-    fn irradiance_batch(&self, x: &[T], y: &[T], z: &[T], out: &mut [T]) {
+    fn irradiance_batch(&self, x: &[f64], y: &[f64], z: &[f64], out: &mut [f64]) {
         check_lengths([x, y, z], [out.len()]);
         self.run(Batch::Irradiance([x, y, z], out));
     }
@@ -325,7 +324,7 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     /// # Panics
     ///
     /// Panics unless `x`, `y`, `z` and the five slices of `out` are of equal length.
-    fn next_event_batch(&self, x: &[T], y: &[T], z: &[T], out: NextEventSlices<'_, T>) {
+    fn next_event_batch(&self, x: &[f64], y: &[f64], z: &[f64], out: NextEventSlices<'_>) {
         let [wi_x, wi_y, wi_z] = &out.wi;
         let lengths = [wi_x, wi_y, wi_z, &out.distance, &out.e_perp].map(|slice| slice.len());
         check_lengths([x, y, z], lengths);
@@ -338,7 +337,7 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     /// # Panics
     ///
     /// Panics unless `p.len() == u.len() == out.len()`.
-    fn next_event_sampled_batch(&self, p: &[[T; 3]], u: &[[T; 2]], out: &mut [SampledEvent<T>]) {
+    fn next_event_sampled_batch(&self, p: &[[f64; 3]], u: &[[f64; 2]], out: &mut [SampledEvent]) {
         let (points, uniforms, events) = (p.len(), u.len(), out.len());
         assert!(
             points == uniforms && points == events,
@@ -354,7 +353,7 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     /// # Panics
     ///
     /// Panics unless `u.len() == out.len()`.
-    fn sample_ray_batch(&self, u: &[[T; 4]], out: &mut [RaySample<T>]) {
+    fn sample_ray_batch(&self, u: &[[f64; 4]], out: &mut [RaySample]) {
         let (uniforms, rays) = (u.len(), out.len());
         assert!(
             uniforms == rays,
@@ -367,14 +366,14 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
 }
 
 /// Returns the radiance of a ray from a point of the aperture plane.
-fn radiance_of<T: Real>(light: &(impl Emitter<T> + ?Sized), position: [T; 2], slope: [T; 2]) -> T {
+fn radiance_of(light: &(impl Emitter + ?Sized), position: [f64; 2], slope: [f64; 2]) -> f64 {
     let pdf = light.densities(position, slope);
     light.power() * pdf.position_given_direction * pdf.direction * secant(slope)
 }
 
 /// Panics unless all slices of a batch are of equal length.
-fn check_lengths<T, const N: usize>(points: [&[T]; 3], out: [usize; N]) {
-    let [x, y, z] = points.map(<[T]>::len);
+fn check_lengths<const N: usize>(points: [&[f64]; 3], out: [usize; N]) {
+    let [x, y, z] = points.map(<[f64]>::len);
     assert!(
         [y, z].iter().chain(&out).all(|&len| len == x),
         "x, y, z and out must be of equal length, got {x}, {y}, {z} and {out:?}",

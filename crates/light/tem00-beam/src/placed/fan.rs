@@ -11,21 +11,19 @@ use super::line::LineLight;
 use super::phase_space::{Batch, Flow, PhaseSpace, Reach, SlopeSample};
 use super::power_bound::{LocalBox, ROUNDING, chance};
 use super::record::RayPdf;
-use crate::normal::{normal_density, standard_normal};
+use crate::normal::{HALF_SPACING, normal_density, standard_normal};
 use crate::profile::{SlopeDensity, SlopeProfile, Variable, secant};
-use crate::real::Real;
 
 /// A laser line with a profile along its fan.
 pub trait Fan {
-    type Scalar: Real;
-    type Profile: SlopeProfile<Self::Scalar>;
+    type Profile: SlopeProfile;
 
-    fn line(&self) -> &LineLight<Self::Scalar>;
+    fn line(&self) -> &LineLight;
     fn profile(&self) -> Self::Profile;
 
     /// Answers a query at many points. A profile without tables and special functions overrides it
     /// with a loop that fills the vector units.
-    fn run_batch(&self, batch: Batch<'_, Self::Scalar>)
+    fn run_batch(&self, batch: Batch<'_>)
     where
         Self: Sized,
     {
@@ -41,20 +39,20 @@ pub trait Fan {
 ///
 /// to second order in `σ_b/r`, the angle that the rays of a point differ by, and to first order
 /// within that angle of an abrupt end.
-fn position_density<T: Real>(fan: &impl Fan<Scalar = T>, [x, y]: [T; 2]) -> T {
+fn position_density(fan: &impl Fan, [x, y]: [f64; 2]) -> f64 {
     let line = fan.line();
     let u = x / line.apex_offset;
     let sec = secant(u);
     let r = line.apex_offset * sec;
-    let sigma = T::of(0.5) * line.source_radius / r;
+    let sigma = 0.5 * line.source_radius / r;
     let w_sq = line.axis_towards(sec).radius_sq_at(r);
-    let across = normal_density(y, T::of(0.5) * w_sq.sqrt());
+    let across = normal_density(y, 0.5 * w_sq.sqrt());
     fan.profile().spread_per_angle(u, sigma) / (r * sec) * across
 }
 
-impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
+impl<F: Fan> PhaseSpace for F {
     #[inline(always)]
-    fn frame(&self) -> Frame<T> {
+    fn frame(&self) -> Frame {
         let line = self.line();
         Frame {
             origin: line.origin,
@@ -64,12 +62,12 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
         }
     }
 
-    fn run(&self, batch: Batch<'_, T>) {
+    fn run(&self, batch: Batch<'_>) {
         self.run_batch(batch);
     }
 
     #[inline(always)]
-    fn flow(&self, [x, y, z]: [T; 3]) -> Flow<T> {
+    fn flow(&self, [x, y, z]: [f64; 3]) -> Flow {
         let (line, profile) = (self.line(), self.profile());
         let z = z + line.apex_offset;
         let u = x / z;
@@ -78,10 +76,10 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
         let w_sq = axis.radius_sq_at(r);
         let lit = profile.reaches(u, line.cutoff) & (y * y <= line.cutoff * line.cutoff * w_sq);
         let irradiance = if lit {
-            let across = normal_density(y, T::of(0.5) * w_sq.sqrt());
+            let across = normal_density(y, 0.5 * w_sq.sqrt());
             line.power * profile.per_slope(u) / z * across
         } else {
-            T::ZERO
+            0.0
         };
         Flow {
             irradiance,
@@ -90,10 +88,10 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
     }
 
     /// Draws the impact parameter, which fixes the ray in the fan plane, then the slope across it.
-    fn sample_slope(&self, [x, y, z]: [T; 3], u: [T; 2]) -> SlopeSample<T> {
+    fn sample_slope(&self, [x, y, z]: [f64; 3], u: [f64; 2]) -> SlopeSample {
         let line = self.line();
         let z = z + line.apex_offset;
-        let sigma_b = T::of(0.5) * line.source_radius;
+        let sigma_b = 0.5 * line.source_radius;
         let b = sigma_b * standard_normal(u[0]);
         // The foot of the perpendicular from the apex is at distance b: r' = √(r² − b²) from there.
         let slope = x / z;
@@ -101,7 +99,7 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
         let along = (r - b).sqrt() * (r + b).sqrt();
         // tan(θ_p − θ) = b / r', with θ_p the angle of the point.
         let turn = b / along;
-        let slope_x = (slope - turn) / (T::ONE + slope * turn);
+        let slope_x = (slope - turn) / (1.0 + slope * turn);
         let sec_fan = secant(slope_x);
         let axis = line.axis_towards(sec_fan);
         let (mean, sigma_s) = axis.conditional_slope(y, along);
@@ -110,7 +108,7 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
         let sec_elevation = secant(s);
 
         let f = self.profile().per_angle(slope_x);
-        let across = normal_density(y, T::of(0.5) * axis.radius_sq_at(along).sqrt());
+        let across = normal_density(y, 0.5 * axis.radius_sq_at(along).sqrt());
         let density = normal_density(b, sigma_b) * along * normal_density(deviation, sigma_s);
         SlopeSample {
             slope: [slope_x, s * sec_fan],
@@ -119,7 +117,7 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
         }
     }
 
-    fn slope_pdf(&self, [x, y, z]: [T; 3], slope: [T; 2]) -> T {
+    fn slope_pdf(&self, [x, y, z]: [f64; 3], slope: [f64; 2]) -> f64 {
         let line = self.line();
         let z = z + line.apex_offset;
         let sec_fan = secant(slope[0]);
@@ -129,25 +127,25 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
         // behind the foot of the perpendicular.
         let b = (x - slope[0] * z) / sec_fan;
         let along = (x * slope[0] + z) / sec_fan;
-        if along <= T::ZERO {
-            return T::ZERO;
+        if along <= 0.0 {
+            return 0.0;
         }
         let (mean, sigma_s) = line.axis_towards(sec_fan).conditional_slope(y, along);
         let density =
-            normal_density(b, T::of(0.5) * line.source_radius) * normal_density(s - mean, sigma_s);
+            normal_density(b, 0.5 * line.source_radius) * normal_density(s - mean, sigma_s);
         // A point next to infinity is `along` without bound, where 0 meets infinity.
-        if density > T::ZERO {
+        if density > 0.0 {
             density * along * sec_elevation * sec_elevation * sec_elevation
         } else {
-            T::ZERO
+            0.0
         }
     }
 
-    fn draw(&self, u: [T; 4]) -> ([T; 2], [T; 2]) {
+    fn draw(&self, u: [f64; 4]) -> ([f64; 2], [f64; 2]) {
         let line = self.line();
         let (sigma_y, sigma_s) = line.y.deviations();
         let slope_x = self.profile().quantile(u[2]);
-        let b = T::of(0.5) * line.source_radius * standard_normal(u[0]);
+        let b = 0.5 * line.source_radius * standard_normal(u[0]);
         let y_waist = sigma_y * standard_normal(u[1]);
         let s = sigma_s * standard_normal(u[3]);
         let sec = secant(slope_x);
@@ -158,7 +156,7 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
     }
 
     /// A ray leaves the aperture at `x = z_a u + b sec θ`, so that `dx dy = sec θ db dy₀`.
-    fn densities(&self, [x, y]: [T; 2], slope: [T; 2]) -> RayPdf<T> {
+    fn densities(&self, [x, y]: [f64; 2], slope: [f64; 2]) -> RayPdf {
         let line = self.line();
         let (sigma_y, sigma_s) = line.y.deviations();
         let sec_fan = secant(slope[0]);
@@ -168,47 +166,45 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
         let along = (x * slope[0] + line.apex_offset) / sec_fan;
         let y_waist = y - s * (along - line.axis_towards(sec_fan).z0);
 
-        let sigma_b = T::of(0.5) * line.source_radius;
+        let sigma_b = 0.5 * line.source_radius;
         let source = normal_density(b, sigma_b);
         let f = self.profile().per_angle(slope[0]);
         let elevation = normal_density(s, sigma_s) * sec_elevation * sec_elevation * sec_elevation;
         let given_direction = source * normal_density(y_waist, sigma_y) / sec_fan;
         // A ray that overflows, so that 0 meets infinity, passes far from the light.
-        let given_direction = if given_direction > T::ZERO {
+        let given_direction = if given_direction > 0.0 {
             given_direction
         } else {
-            T::ZERO
+            0.0
         };
         let direction = f * elevation;
         let position = position_density(self, [x, y]);
         RayPdf {
             direction,
             position_given_direction: given_direction,
-            ..RayPdf::from_position(position, || {
-                T::of(direction.wide() * given_direction.wide() / position.wide())
-            })
+            ..RayPdf::from_position(position, || direction * given_direction / position)
         }
     }
 
     /// The part of the fan that meets the box, times the part of its light across that does.
     fn fraction_bound(&self, target: &LocalBox) -> f64 {
-        let line = self.line().wide();
+        let line = self.line();
         let [near, far] = target.z.map(|z| z + line.apex_offset);
         // Rays within the cut-off pass the apex at no more than this distance.
         let source = line.cutoff * line.source_radius;
         let turn = (source / near).min(1.0).asin();
-        let widest = self.profile().largest_slope(self.line().cutoff).wide();
+        let widest = self.profile().largest_slope(self.line().cutoff);
         let outwards = |x: f64| {
             let slope = if x > 0.0 { x / near } else { x / far };
             let angle = (slope.atan() + turn).min(FRAC_PI_2);
             let slope = angle.tan().min(widest);
-            slope + 4.0 * T::HALF_SPACING * slope.abs()
+            slope + 4.0 * HALF_SPACING * slope.abs()
         };
         let [low, high] = [-outwards(-target.x[0]), outwards(target.x[1])];
         if low > high || high < -widest || low > widest {
             return 0.0;
         }
-        let along = self.profile().between(T::of(low), T::of(high)).wide() + ROUNDING;
+        let along = self.profile().between(low, high) + ROUNDING;
         let steepest = low.abs().max(high.abs());
         let secants = [secant(low.max(-high).max(0.0)), secant(steepest)];
         let dz = line.distances_from_waist([near, far], secants, source * steepest);
@@ -216,11 +212,11 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
     }
 
     /// In double precision, because the squares of a slope next to infinity overflow.
-    fn reach(&self, l: T) -> Reach<T> {
-        let slope = self.profile().largest_slope(self.line().cutoff).wide();
-        let line = self.line().wide();
+    fn reach(&self, l: f64) -> Reach {
+        let slope = self.profile().largest_slope(self.line().cutoff);
+        let line = self.line();
         let sec = secant(slope);
-        let (near, far) = (line.apex_offset, l.wide() + line.apex_offset);
+        let (near, far) = (line.apex_offset, l + line.apex_offset);
         // w² is convex in the slant distance and in its secant, so it is largest at a corner.
         let corners = [(near, 1.0), (near * sec, sec), (far * sec, sec)];
         let w_sq = corners
@@ -229,25 +225,24 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
             .fold(0.0, f64::max);
         let elevation = line.cutoff * line.y.theta_sq.sqrt() * sec;
         Reach {
-            half_width: [T::of(slope * far), T::of(line.cutoff * w_sq.sqrt())],
-            slope: T::of(slope.hypot(elevation)),
+            half_width: [slope * far, (line.cutoff * w_sq.sqrt())],
+            slope: slope.hypot(elevation),
         }
     }
 }
 
-impl<T: Real> Emitter<T> for LineLight<T> {
-    fn power(&self) -> T {
+impl Emitter for LineLight {
+    fn power(&self) -> f64 {
         self.power
     }
 
-    fn wavelength(&self) -> T {
+    fn wavelength(&self) -> f64 {
         self.wavelength
     }
 }
 
-impl<T: Real> Fan for LineLight<T> {
-    type Scalar = T;
-    type Profile = SlopeDensity<T>;
+impl Fan for LineLight {
+    type Profile = SlopeDensity;
 
     #[inline(always)]
     fn line(&self) -> &Self {
@@ -255,16 +250,16 @@ impl<T: Real> Fan for LineLight<T> {
     }
 
     #[inline(always)]
-    fn profile(&self) -> SlopeDensity<T> {
+    fn profile(&self) -> SlopeDensity {
         self.slope_density()
     }
 
     /// Writes the constants of a Gaussian into the loop, whose compiler then drops the branches to
     /// the other profiles.
-    fn run_batch(&self, batch: Batch<'_, T>) {
+    fn run_batch(&self, batch: Batch<'_>) {
         const TAN: f64 = Variable::Tan.code();
         const SIN: f64 = Variable::Sin.code();
-        let is_gaussian_in = |code: f64| self.flat == T::ZERO && self.variable == T::of(code);
+        let is_gaussian_in = |code: f64| self.flat == 0.0 && self.variable == code;
         if is_gaussian_in(TAN) {
             vectorised(
                 #[inline(always)]
@@ -281,7 +276,7 @@ impl<T: Real> Fan for LineLight<T> {
     }
 }
 
-impl LineLight<f64> {
+impl LineLight {
     /// Returns the range of the distances from the waist, along rays whose secants are in a range, at
     /// distances from the plane of the apex that are in another, each ±`slack`.
     fn distances_from_waist(
@@ -306,13 +301,13 @@ impl LineLight<f64> {
     }
 }
 
-impl<T: Real> LineLight<T> {
+impl LineLight {
     /// Returns the light with the profile of a Gaussian in the variable of this code.
     #[inline(always)]
     fn gaussian_in(&self, code: f64) -> Self {
         Self {
-            flat: T::ZERO,
-            variable: T::of(code),
+            flat: 0.0,
+            variable: code,
             ..*self
         }
     }

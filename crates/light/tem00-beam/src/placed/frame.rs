@@ -2,7 +2,6 @@ use glam::DVec3;
 use tem00_numerics::check;
 
 use crate::Refusal;
-use crate::real::Real;
 
 /// The sine of the smallest accepted angle between the fan axis and the direction.
 const MIN_FAN_AXIS_SINE: f64 = 1e-6;
@@ -21,7 +20,7 @@ pub struct Placement {
 
 impl Placement {
     /// Returns the frame of the light.
-    pub(super) fn frame(&self) -> Result<Frame<f64>, Refusal> {
+    pub(super) fn frame(&self) -> Result<Frame, Refusal> {
         for x in self.origin.to_array() {
             check::coordinate("origin", x)?;
         }
@@ -51,14 +50,14 @@ impl Placement {
 /// An origin and three orthonormal axes: the frame of a placed light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(unnameable_types, reason = "it belongs to a sealed trait")]
-pub struct Frame<T> {
-    pub(super) origin: [T; 3],
-    pub(super) ex: [T; 3],
-    pub(super) ey: [T; 3],
-    pub(super) ez: [T; 3],
+pub struct Frame {
+    pub(super) origin: [f64; 3],
+    pub(super) ex: [f64; 3],
+    pub(super) ey: [f64; 3],
+    pub(super) ez: [f64; 3],
 }
 
-impl Frame<f64> {
+impl Frame {
     /// Returns the frame with x and y turned by `angle`, in radians, about z by the right hand.
     pub(super) fn turned(self, angle: f64) -> Self {
         let (sin, cos) = angle.sin_cos();
@@ -71,10 +70,10 @@ impl Frame<f64> {
     }
 }
 
-impl<T: Real> Frame<T> {
+impl Frame {
     /// Transforms a point of the world into the frame.
     #[inline(always)]
-    pub(crate) fn local_from_world_point(&self, p: [T; 3]) -> [T; 3] {
+    pub(crate) fn local_from_world_point(&self, p: [f64; 3]) -> [f64; 3] {
         // Subtract first, then rotate: the difference is exact where the light is near.
         self.local_from_world_vector([
             p[0] - self.origin[0],
@@ -85,25 +84,25 @@ impl<T: Real> Frame<T> {
 
     /// Rotates a vector of the world into the frame.
     #[inline(always)]
-    pub(crate) fn local_from_world_vector(&self, v: [T; 3]) -> [T; 3] {
+    pub(crate) fn local_from_world_vector(&self, v: [f64; 3]) -> [f64; 3] {
         [dot(v, self.ex), dot(v, self.ey), dot(v, self.ez)]
     }
 
     /// Rotates a vector of the frame into the world.
     #[inline(always)]
-    pub(crate) fn world_from_local_vector(&self, v: [T; 3]) -> [T; 3] {
+    pub(crate) fn world_from_local_vector(&self, v: [f64; 3]) -> [f64; 3] {
         core::array::from_fn(|i| v[0] * self.ex[i] + v[1] * self.ey[i] + v[2] * self.ez[i])
     }
 
     /// Transforms a point of the aperture plane into the world.
-    pub(crate) fn world_from_aperture(&self, [x, y]: [T; 2]) -> [T; 3] {
-        let offset = self.world_from_local_vector([x, y, T::ZERO]);
+    pub(crate) fn world_from_aperture(&self, [x, y]: [f64; 2]) -> [f64; 3] {
+        let offset = self.world_from_local_vector([x, y, 0.0]);
         core::array::from_fn(|i| self.origin[i] + offset[i])
     }
 }
 
 #[inline(always)]
-fn dot<T: Real>(a: [T; 3], b: [T; 3]) -> T {
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 

@@ -1,9 +1,9 @@
+use tem00_numerics::cast::to_f32;
+
 use super::axis::Axis;
 use super::frame::Placement;
-use super::rows::{DEFAULT_CUTOFF, check_digits, checked_power, first_three, row, to_single};
-use crate::normal::normal_density;
-use crate::profile::{SlopeDensity, SlopeProfile};
-use crate::real::Real;
+use super::rows::{DEFAULT_CUTOFF, checked_power, first_three, row};
+use crate::profile::SlopeDensity;
 use crate::{FocusCurve, LaserLine, LineProfile, Refusal};
 
 /// A laser line in a scene, prepared for a renderer.
@@ -74,46 +74,46 @@ use crate::{FocusCurve, LaserLine, LineProfile, Refusal};
 /// ```
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LineLight<T> {
+pub struct LineLight {
     /// Centre of the lens, in metres.
-    pub origin: [T; 3],
+    pub origin: [f64; 3],
     /// Power, in watts.
-    pub power: T,
+    pub power: f64,
     /// Unit vector along which the fan opens.
-    pub ex: [T; 3],
+    pub ex: [f64; 3],
     /// Distance from the fan plane, in beam radii, beyond which no light arrives.
-    pub cutoff: T,
+    pub cutoff: f64,
     /// Unit vector of the normal of the fan plane.
-    pub ey: [T; 3],
+    pub ey: [f64; 3],
     /// Distance of the virtual apex behind the lens, in metres.
-    pub apex_offset: T,
+    pub apex_offset: f64,
     /// Unit vector along the direction of travel.
-    pub ez: [T; 3],
+    pub ez: [f64; 3],
     /// Radius of the virtual apex, in metres: the diffraction-limited width of the fan's source.
-    pub source_radius: T,
+    pub source_radius: f64,
     /// Beam radius across the fan; its `z0` is the slant distance from the virtual apex to the
     /// waist, on the axis.
-    pub y: Axis<T>,
+    pub y: Axis,
     /// Half-width of the uniform part of the profile, in its variable; 0 for a Gaussian profile.
-    pub flat: T,
+    pub flat: f64,
     /// Standard deviation of the Gaussian part of the profile, in its variable; 0 for a top hat.
-    pub sigma: T,
+    pub sigma: f64,
     /// The variable of the profile: 0 for tan θ, 1 for θ, 2 for sin θ, 3 for a table kept elsewhere,
     /// without which the light is dark.
-    pub variable: T,
+    pub variable: f64,
     /// Fraction of the untruncated profile inside `|θ| < π/2`; 1 in tan θ.
-    pub mass: T,
+    pub mass: f64,
     /// `T = tan(α/2)`, the slope of the edges of the fan.
-    pub half_slope: T,
+    pub half_slope: f64,
     /// 1 if the waist lies on a plane square to the axis, 0 if on a circle about the virtual apex.
-    pub focus_on_plane: T,
+    pub focus_on_plane: f64,
     /// Wavelength in the medium, in metres.
-    pub wavelength: T,
+    pub wavelength: f64,
     /// Unused, 0. Completes a row of four.
-    pub pad: T,
+    pub pad: f64,
 }
 
-impl LineLight<f64> {
+impl LineLight {
     /// Places a laser line in a scene, with the lens at the placement's origin and a power in watts.
     ///
     /// # Errors
@@ -166,25 +166,8 @@ impl LineLight<f64> {
         })
     }
 
-    /// Returns the light in single precision.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if a field overflows, or if the squared waist or divergence, the source
-    /// radius, the slope deviation or the peak irradiance is outside the range of normal `f32`
-    /// numbers.
-    pub fn to_f32(&self) -> Result<LineLight<f32>, Refusal> {
-        let across = normal_density(0.0, 0.5 * self.y.w0_sq.sqrt());
-        let peak = self.power * self.slope_density().per_slope(0.0) / self.apex_offset * across;
-        let (y, source) = (self.y, self.source_radius);
-        check_digits([y.w0_sq, y.theta_sq, source, self.sigma, peak])?;
-        Ok(LineLight::from_rows(to_single(self.to_rows())?))
-    }
-}
-
-impl<T: Real> LineLight<T> {
     /// Returns the fields in the order of memory, as seven rows of four.
-    pub fn to_rows(&self) -> [[T; 4]; 7] {
+    pub fn to_rows(&self) -> [[f64; 4]; 7] {
         [
             row(self.origin, self.power),
             row(self.ex, self.cutoff),
@@ -201,8 +184,13 @@ impl<T: Real> LineLight<T> {
         ]
     }
 
+    /// Returns the fields as [`to_rows`](Self::to_rows) does, rounded to `f32` for a kernel.
+    pub fn to_rows_f32(&self) -> [[f32; 4]; 7] {
+        self.to_rows().map(|row| row.map(to_f32))
+    }
+
     /// Creates a light from its fields in the order of memory, as seven rows of four.
-    pub fn from_rows([origin, ex, ey, ez, y, profile, fan]: [[T; 4]; 7]) -> Self {
+    pub fn from_rows([origin, ex, ey, ez, y, profile, fan]: [[f64; 4]; 7]) -> Self {
         Self {
             origin: first_three(origin),
             power: origin[3],
@@ -226,8 +214,8 @@ impl<T: Real> LineLight<T> {
 
     /// Returns the beam radius across the fan along the rays whose angle has the secant `sec`.
     #[inline(always)]
-    pub(super) fn axis_towards(&self, sec: T) -> Axis<T> {
-        if self.focus_on_plane > T::ZERO {
+    pub(super) fn axis_towards(&self, sec: f64) -> Axis {
+        if self.focus_on_plane > 0.0 {
             Axis {
                 z0: self.y.z0 * sec,
                 ..self.y
@@ -239,17 +227,12 @@ impl<T: Real> LineLight<T> {
 
     /// Returns the density of the slope along the fan.
     #[inline(always)]
-    pub(super) fn slope_density(&self) -> SlopeDensity<T> {
+    pub(super) fn slope_density(&self) -> SlopeDensity {
         SlopeDensity {
             variable: self.variable,
             flat: self.flat,
             sigma: self.sigma,
             mass: self.mass,
         }
-    }
-
-    /// Widens the fields to double precision.
-    pub(super) fn wide(&self) -> LineLight<f64> {
-        LineLight::from_rows(self.to_rows().map(|row| row.map(T::wide)))
     }
 }

@@ -6,38 +6,37 @@ use tem00_numerics::vectorised;
 use super::frame::Frame;
 use super::power_bound::LocalBox;
 use super::record::{NextEvent, NextEventSlices, RayPdf};
-use super::slope::{aperture_point, direction, secant, towards_light};
-use crate::real::Real;
+use super::slope::{aperture_point, direction, only_if, secant, towards_light};
 
 /// The laws of a light in its own frame: +z travel, z = 0 the aperture plane.
-pub trait PhaseSpace<T: Real> {
-    fn frame(&self) -> Frame<T>;
+pub trait PhaseSpace {
+    fn frame(&self) -> Frame;
 
     /// Returns the energy flow, with an irradiance of 0 outside the cut-off.
     ///
     /// One path for all points, so that a loop over points fills the vector units.
-    fn flow(&self, local: [T; 3]) -> Flow<T>;
+    fn flow(&self, local: [f64; 3]) -> Flow;
 
     /// Draws a slope from the conditional density at a point.
-    fn sample_slope(&self, local: [T; 3], u: [T; 2]) -> SlopeSample<T>;
+    fn sample_slope(&self, local: [f64; 3], u: [f64; 2]) -> SlopeSample;
 
     /// Returns the density of [`sample_slope`](Self::sample_slope), per steradian.
-    fn slope_pdf(&self, local: [T; 3], slope: [T; 2]) -> T;
+    fn slope_pdf(&self, local: [f64; 3], slope: [f64; 2]) -> f64;
 
     /// Draws a point of the aperture plane and a slope.
-    fn draw(&self, u: [T; 4]) -> ([T; 2], [T; 2]);
+    fn draw(&self, u: [f64; 4]) -> ([f64; 2], [f64; 2]);
 
     /// Returns the densities of [`draw`](Self::draw).
-    fn densities(&self, position: [T; 2], slope: [T; 2]) -> RayPdf<T>;
+    fn densities(&self, position: [f64; 2], slope: [f64; 2]) -> RayPdf;
 
     /// Returns how far the light reaches up to the distance `l`.
-    fn reach(&self, l: T) -> Reach<T>;
+    fn reach(&self, l: f64) -> Reach;
 
     /// Returns a bound of the part of the power, within the cut-off, that reaches a box.
     fn fraction_bound(&self, target: &LocalBox) -> f64;
 
     /// Answers a query at many points.
-    fn run(&self, batch: Batch<'_, T>) {
+    fn run(&self, batch: Batch<'_>) {
         vectorised(
             #[inline(always)]
             || batch.over(self),
@@ -46,47 +45,47 @@ pub trait PhaseSpace<T: Real> {
 
     /// Returns the energy flow, with an irradiance of 0 where the point is behind the aperture too.
     #[inline(always)]
-    fn flow_in_front(&self, local: [T; 3]) -> Flow<T> {
+    fn flow_in_front(&self, local: [f64; 3]) -> Flow {
         let flow = self.flow(local);
         Flow {
-            irradiance: flow.irradiance.only_if(local[2] >= T::ZERO),
+            irradiance: only_if(local[2] >= 0.0, flow.irradiance),
             ..flow
         }
     }
 
     /// Returns the energy flow, unless the point is not lit.
-    fn lit_flow(&self, local: [T; 3]) -> Option<Flow<T>> {
-        Some(self.flow_in_front(local)).filter(|flow| flow.irradiance > T::ZERO)
+    fn lit_flow(&self, local: [f64; 3]) -> Option<Flow> {
+        Some(self.flow_in_front(local)).filter(|flow| flow.irradiance > 0.0)
     }
 }
 
 /// The energy flow `irradiance · (slope, 1)`.
 #[derive(Clone, Copy, Debug)]
-pub struct Flow<T> {
-    pub(crate) irradiance: T,
-    pub(crate) slope: [T; 2],
+pub struct Flow {
+    pub(crate) irradiance: f64,
+    pub(crate) slope: [f64; 2],
 }
 
 /// A slope, its density per steradian, and the radiance divided by that density.
 #[derive(Clone, Copy, Debug)]
-pub struct SlopeSample<T> {
-    pub(crate) slope: [T; 2],
-    pub(crate) pdf: T,
-    pub(crate) value: T,
+pub struct SlopeSample {
+    pub(crate) slope: [f64; 2],
+    pub(crate) pdf: f64,
+    pub(crate) value: f64,
 }
 
 /// The largest half-widths along x and y, and the largest slope.
 #[derive(Clone, Copy, Debug)]
-pub struct Reach<T> {
-    pub(crate) half_width: [T; 2],
-    pub(crate) slope: T,
+pub struct Reach {
+    pub(crate) half_width: [f64; 2],
+    pub(crate) slope: f64,
 }
 
 /// The irradiance at a point; 0 where no light arrives.
 ///
 /// Single calls and batches share it, and so agree to the last bit.
 #[inline(always)]
-pub(super) fn irradiance_at<T: Real>(light: &(impl PhaseSpace<T> + ?Sized), p: [T; 3]) -> T {
+pub(super) fn irradiance_at(light: &(impl PhaseSpace + ?Sized), p: [f64; 3]) -> f64 {
     let local = light.frame().local_from_world_point(p);
     light.flow_in_front(local).irradiance
 }
@@ -95,34 +94,34 @@ pub(super) fn irradiance_at<T: Real>(light: &(impl PhaseSpace<T> + ?Sized), p: [
 ///
 /// Single calls and batches share it, and so agree to the last bit.
 #[inline(always)]
-pub(super) fn event_at<T: Real>(light: &(impl PhaseSpace<T> + ?Sized), p: [T; 3]) -> NextEvent<T> {
+pub(super) fn event_at(light: &(impl PhaseSpace + ?Sized), p: [f64; 3]) -> NextEvent {
     let frame = light.frame();
     let local = frame.local_from_world_point(p);
     let flow = light.flow_in_front(local);
-    let lit = flow.irradiance > T::ZERO;
+    let lit = flow.irradiance > 0.0;
     let length = secant(flow.slope);
     let [x, y, z] = towards_light(frame.world_from_local_vector(direction(flow.slope)));
     NextEvent {
         point: frame.world_from_aperture(aperture_point(local, flow.slope)),
-        distance: (local[2] * length).only_if(lit),
-        wi: [x.only_if(lit), y.only_if(lit), z.only_if(lit)],
-        e_perp: (flow.irradiance * length).only_if(lit),
+        distance: only_if(lit, local[2] * length),
+        wi: [x, y, z].map(|component| only_if(lit, component)),
+        e_perp: only_if(lit, flow.irradiance * length),
     }
 }
 
 /// A query at many points `(x[i], y[i], z[i])`, with slices of equal length.
 #[derive(Debug)]
-pub enum Batch<'a, T> {
-    Irradiance([&'a [T]; 3], &'a mut [T]),
-    NextEvents([&'a [T]; 3], NextEventSlices<'a, T>),
+pub enum Batch<'a> {
+    Irradiance([&'a [f64]; 3], &'a mut [f64]),
+    NextEvents([&'a [f64]; 3], NextEventSlices<'a>),
 }
 
-impl<T: Real> Batch<'_, T> {
+impl Batch<'_> {
     /// Answers the query for one light.
     ///
     /// The loops are inlined into whatever [`vectorised`] compiles for the processor at hand.
     #[inline(always)]
-    pub(super) fn over(self, light: &(impl PhaseSpace<T> + ?Sized)) {
+    pub(super) fn over(self, light: &(impl PhaseSpace + ?Sized)) {
         match self {
             Self::Irradiance([x, y, z], out) => {
                 for (((&x, &y), &z), out) in x.iter().zip(y).zip(z).zip(out) {

@@ -5,7 +5,6 @@ use core::f64::consts::FRAC_2_PI;
 use super::axis::Axis;
 use super::frame::Frame;
 use crate::normal::{normal_between, normal_density};
-use crate::real::Real;
 
 /// What rounding may take from a probability.
 pub(super) const ROUNDING: f64 = 1e-15;
@@ -21,12 +20,12 @@ pub struct LocalBox {
 
 impl LocalBox {
     /// Encloses the part of a box of the world that lies in front of the aperture, if there is any.
-    pub(super) fn around<T: Real>(frame: &Frame<T>, min: [T; 3], max: [T; 3]) -> Option<Self> {
-        let along = |axis: [T; 3]| {
+    pub(super) fn around(frame: &Frame, min: [f64; 3], max: [f64; 3]) -> Option<Self> {
+        let along = |axis: [f64; 3]| {
             let mut range = [0.0; 2];
             for i in 0..3 {
-                let (e, origin) = (axis[i].wide(), frame.origin[i].wide());
-                let [a, b] = [min[i], max[i]].map(|end| e * (end.wide() - origin));
+                let (e, origin) = (axis[i], frame.origin[i]);
+                let [a, b] = [min[i], max[i]].map(|end| e * (end - origin));
                 // Differences of coordinates are good to the rounding of the larger.
                 let slack = 4.0 * f64::EPSILON * (a.abs() + b.abs() + (e * origin).abs());
                 range[0] += a.min(b) - slack;
@@ -55,7 +54,7 @@ impl LocalBox {
 /// ```
 ///
 /// and `⟨|v|⟩ = √(2/π)`, `P(u² + v² ≥ x²) = exp(−x²/2)`.
-pub(super) fn chance(axis: &Axis<f64>, dz: [f64; 2], x: [f64; 2], cutoff: f64) -> f64 {
+pub(super) fn chance(axis: &Axis, dz: [f64; 2], x: [f64; 2], cutoff: f64) -> f64 {
     let nearest = dz[0].max(-dz[1]).max(0.0);
     let deviation = |dz: f64| 0.5 * (axis.w0_sq + axis.theta_sq * dz * dz).sqrt();
     let smallest = deviation(nearest);

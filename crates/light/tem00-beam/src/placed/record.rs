@@ -1,88 +1,88 @@
 //! Results of the queries of a placed light.
 
-use crate::real::Real;
+use super::slope::only_if;
 
 /// The light that arrives at a point, as one direction and one irradiance.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NextEvent<T> {
+pub struct NextEvent {
     /// Point of the aperture plane that the light seems to come from.
-    pub point: [T; 3],
+    pub point: [f64; 3],
     /// Distance to `point`, in metres.
-    pub distance: T,
+    pub distance: f64,
     /// Unit vector towards the light, against the mean energy flow.
-    pub wi: [T; 3],
+    pub wi: [f64; 3],
     /// Irradiance of a surface square to `wi`, in W/m².
-    pub e_perp: T,
+    pub e_perp: f64,
 }
 
 /// Output slices for the next events at many points: one for each number.
 ///
 /// The point of the aperture plane is left out: it is `p + distance · wi`.
 #[derive(Debug)]
-pub struct NextEventSlices<'a, T> {
+pub struct NextEventSlices<'a> {
     /// Coordinates x, y, z of the unit vectors towards the light.
-    pub wi: [&'a mut [T]; 3],
+    pub wi: [&'a mut [f64]; 3],
     /// Distances to the aperture plane along `wi`, in metres.
-    pub distance: &'a mut [T],
+    pub distance: &'a mut [f64],
     /// Irradiances of a surface square to `wi`, in W/m²; 0 where no light arrives.
-    pub e_perp: &'a mut [T],
+    pub e_perp: &'a mut [f64],
 }
 
 /// The light that arrives at a point, as a random direction and its density.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SampledEvent<T> {
+pub struct SampledEvent {
     /// Point of the aperture plane that the ray comes from.
-    pub point: [T; 3],
+    pub point: [f64; 3],
     /// Distance to `point`, in metres.
-    pub distance: T,
+    pub distance: f64,
     /// Unit vector towards the light.
-    pub wi: [T; 3],
+    pub wi: [f64; 3],
     /// Radiance divided by `pdf`, in W/m².
-    pub value: T,
+    pub value: f64,
     /// Probability density of `wi`, per steradian.
-    pub pdf: T,
+    pub pdf: f64,
 }
 
-impl<T: Real> SampledEvent<T> {
+impl SampledEvent {
     pub(super) const DARK: Self = Self {
-        point: [T::ZERO; 3],
-        distance: T::ZERO,
-        wi: [T::ZERO; 3],
-        value: T::ZERO,
-        pdf: T::ZERO,
+        point: [0.0; 3],
+        distance: 0.0,
+        wi: [0.0; 3],
+        value: 0.0,
+        pdf: 0.0,
     };
 }
 
 /// The light that a ray meets on its way to the aperture.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ApertureHit<T> {
+pub struct ApertureHit {
     /// Point of the aperture plane.
-    pub point: [T; 3],
+    pub point: [f64; 3],
     /// Distance to `point`, in metres.
-    pub distance: T,
+    pub distance: f64,
     /// Radiance that arrives along the ray, in W/(m² sr).
-    pub radiance: T,
+    pub radiance: f64,
     /// Probability density with which a sampled next event has this direction, per steradian.
-    pub pdf: T,
+    pub pdf: f64,
 }
 
 /// A ray that leaves the aperture.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RaySample<T> {
+pub struct RaySample {
     /// Point of the aperture plane.
-    pub origin: [T; 3],
+    pub origin: [f64; 3],
     /// Power the ray stands for, in watts: that of the light, to be divided by the number of rays.
-    pub flux: T,
+    pub flux: f64,
     /// Unit vector along the ray.
-    pub direction: [T; 3],
+    pub direction: [f64; 3],
     /// Cosine of the angle between the ray and the axis.
-    pub cos: T,
+    pub cos: f64,
     /// Probability densities of the ray.
-    pub pdf: RayPdf<T>,
+    pub pdf: RayPdf,
 }
 
 /// The probability densities of a ray, whose joint density factors in two ways:
@@ -96,27 +96,27 @@ pub struct RaySample<T> {
 /// from.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RayPdf<T> {
+pub struct RayPdf {
     /// Density of the position, whatever the direction, per m² of the aperture plane.
-    pub position: T,
+    pub position: f64,
     /// Density of the direction at this position, per steradian.
-    pub direction_given_position: T,
+    pub direction_given_position: f64,
     /// Density of the direction, wherever the ray starts, per steradian.
-    pub direction: T,
+    pub direction: f64,
     /// Density of the position among the rays of this direction, per m² of the aperture plane.
-    pub position_given_direction: T,
+    pub position_given_direction: f64,
 }
 
-impl<T: Real> RayPdf<T> {
+impl RayPdf {
     /// Returns the factors that begin with the position, the second of them 0 where the first is: far
     /// from the light, where the closed forms meet infinities.
-    pub(super) fn from_position(position: T, direction: impl FnOnce() -> T) -> Self {
-        let met = position > T::ZERO;
+    pub(super) fn from_position(position: f64, direction: impl FnOnce() -> f64) -> Self {
+        let met = position > 0.0;
         Self {
-            position: position.only_if(met),
-            direction_given_position: if met { direction() } else { T::ZERO },
-            direction: T::ZERO,
-            position_given_direction: T::ZERO,
+            position: only_if(met, position),
+            direction_given_position: if met { direction() } else { 0.0 },
+            direction: 0.0,
+            position_given_direction: 0.0,
         }
     }
 }
@@ -124,13 +124,13 @@ impl<T: Real> RayPdf<T> {
 /// Bounds of the light in space and direction, as a light hierarchy stores them.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds<T> {
+pub struct Bounds {
     /// Smallest corner of an axis-aligned box around the lit volume.
-    pub min: [T; 3],
+    pub min: [f64; 3],
     /// Largest corner of the box.
-    pub max: [T; 3],
+    pub max: [f64; 3],
     /// Unit vector along the axis.
-    pub axis: [T; 3],
+    pub axis: [f64; 3],
     /// Half-angle, in radians, of the cone about `axis` that the light travels in.
-    pub half_angle: T,
+    pub half_angle: f64,
 }

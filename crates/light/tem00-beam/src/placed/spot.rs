@@ -1,4 +1,6 @@
-use core::f64::consts::{FRAC_2_PI, PI};
+use core::f64::consts::PI;
+
+use tem00_numerics::cast::to_f32;
 
 use super::axis::Axis;
 use super::emitter::Emitter;
@@ -6,10 +8,10 @@ use super::frame::{Frame, Placement};
 use super::phase_space::{Flow, PhaseSpace, Reach, SlopeSample};
 use super::power_bound::{LocalBox, chance};
 use super::record::RayPdf;
-use super::rows::{DEFAULT_CUTOFF, check_digits, checked_power, first_three, row, to_single};
-use super::slope::secant;
+use super::rows::{DEFAULT_CUTOFF, checked_power, first_three, row};
+use super::slope::{only_if, secant};
+use crate::exponential::exponential;
 use crate::normal::{joint_normal_density, standard_normal};
-use crate::real::Real;
 use crate::{AstigmaticBeam, GaussianBeam, LocatedBeam, Refusal};
 
 /// A Gaussian beam in a scene, circular or elliptic, prepared for a renderer.
@@ -43,7 +45,7 @@ use crate::{AstigmaticBeam, GaussianBeam, LocatedBeam, Refusal};
 ///     direction: DVec3::Z,
 ///     fan_axis: DVec3::X,
 /// };
-/// let light = SpotLight::place(&beam, 0.1, &placement, 1e-3)?.to_f32()?;
+/// let light = SpotLight::place(&beam, 0.1, &placement, 1e-3)?;
 ///
 /// let waist = light.irradiance([0.0, 0.0, 0.1]);
 /// assert!((waist / 254.6e3 - 1.0).abs() < 1e-3); // W/m²
@@ -51,30 +53,30 @@ use crate::{AstigmaticBeam, GaussianBeam, LocatedBeam, Refusal};
 /// ```
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SpotLight<T> {
+pub struct SpotLight {
     /// Centre of the aperture, in metres.
-    pub origin: [T; 3],
+    pub origin: [f64; 3],
     /// Power, in watts.
-    pub power: T,
+    pub power: f64,
     /// Unit vector of the local x axis.
-    pub ex: [T; 3],
+    pub ex: [f64; 3],
     /// Distance from the axis, in beam radii, beyond which no light arrives.
-    pub cutoff: T,
+    pub cutoff: f64,
     /// Unit vector of the local y axis.
-    pub ey: [T; 3],
+    pub ey: [f64; 3],
     /// Wavelength in the medium, in metres.
-    pub wavelength: T,
+    pub wavelength: f64,
     /// Unit vector along the direction of travel.
-    pub ez: [T; 3],
+    pub ez: [f64; 3],
     /// Unused, 0. Completes a row of four.
-    pub pad_ez: T,
+    pub pad_ez: f64,
     /// Beam radius along x; its `z0` is the distance from the aperture to the waist.
-    pub x: Axis<T>,
+    pub x: Axis,
     /// Beam radius along y; its `z0` is the distance from the aperture to the waist.
-    pub y: Axis<T>,
+    pub y: Axis,
 }
 
-impl SpotLight<f64> {
+impl SpotLight {
     /// Places a beam in a scene, with its waist at the signed distance `waist_distance`, in metres,
     /// from the aperture along the axis, and a power in watts.
     ///
@@ -128,23 +130,8 @@ impl SpotLight<f64> {
         })
     }
 
-    /// Returns the light in single precision.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if a field overflows, or if a squared waist or divergence or the peak
-    /// irradiance is outside the range of normal `f32` numbers.
-    pub fn to_f32(&self) -> Result<SpotLight<f32>, Refusal> {
-        let peak = FRAC_2_PI * self.power / (self.x.w0_sq * self.y.w0_sq).sqrt();
-        let [x, y] = [self.x, self.y];
-        check_digits([x.w0_sq, x.theta_sq, y.w0_sq, y.theta_sq, peak])?;
-        Ok(SpotLight::from_rows(to_single(self.to_rows())?))
-    }
-}
-
-impl<T: Real> SpotLight<T> {
     /// Returns the fields in the order of memory, as six rows of four.
-    pub fn to_rows(&self) -> [[T; 4]; 6] {
+    pub fn to_rows(&self) -> [[f64; 4]; 6] {
         [
             row(self.origin, self.power),
             row(self.ex, self.cutoff),
@@ -155,8 +142,13 @@ impl<T: Real> SpotLight<T> {
         ]
     }
 
+    /// Returns the fields as [`to_rows`](Self::to_rows) does, rounded to `f32` for a kernel.
+    pub fn to_rows_f32(&self) -> [[f32; 4]; 6] {
+        self.to_rows().map(|row| row.map(to_f32))
+    }
+
     /// Creates a light from its fields in the order of memory, as six rows of four.
-    pub fn from_rows([origin, ex, ey, ez, x, y]: [[T; 4]; 6]) -> Self {
+    pub fn from_rows([origin, ex, ey, ez, x, y]: [[f64; 4]; 6]) -> Self {
         Self {
             origin: first_three(origin),
             power: origin[3],
@@ -172,19 +164,19 @@ impl<T: Real> SpotLight<T> {
     }
 }
 
-impl<T: Real> Emitter<T> for SpotLight<T> {
-    fn power(&self) -> T {
+impl Emitter for SpotLight {
+    fn power(&self) -> f64 {
         self.power
     }
 
-    fn wavelength(&self) -> T {
+    fn wavelength(&self) -> f64 {
         self.wavelength
     }
 }
 
-impl<T: Real> PhaseSpace<T> for SpotLight<T> {
+impl PhaseSpace for SpotLight {
     #[inline(always)]
-    fn frame(&self) -> Frame<T> {
+    fn frame(&self) -> Frame {
         Frame {
             origin: self.origin,
             ex: self.ex,
@@ -194,18 +186,20 @@ impl<T: Real> PhaseSpace<T> for SpotLight<T> {
     }
 
     #[inline(always)]
-    fn flow(&self, [x, y, z]: [T; 3]) -> Flow<T> {
+    fn flow(&self, [x, y, z]: [f64; 3]) -> Flow {
         let (wx_sq, wy_sq) = (self.x.radius_sq_at(z), self.y.radius_sq_at(z));
         let rho_sq = x * x / wx_sq + y * y / wy_sq;
-        let peak = T::of(2.0 / PI) * self.power / (wx_sq.sqrt() * wy_sq.sqrt());
+        let peak = (2.0 / PI) * self.power / (wx_sq.sqrt() * wy_sq.sqrt());
         Flow {
-            irradiance: (peak * (T::of(-2.0) * rho_sq).exp())
-                .only_if(rho_sq <= self.cutoff * self.cutoff),
+            irradiance: only_if(
+                rho_sq <= self.cutoff * self.cutoff,
+                peak * exponential(-2.0 * rho_sq),
+            ),
             slope: [x * self.x.growth_at(z), y * self.y.growth_at(z)],
         }
     }
 
-    fn sample_slope(&self, local: [T; 3], u: [T; 2]) -> SlopeSample<T> {
+    fn sample_slope(&self, local: [f64; 3], u: [f64; 2]) -> SlopeSample {
         let [x, y, z] = local;
         let (mean_x, sigma_x) = self.x.conditional_slope(x, z);
         let (mean_y, sigma_y) = self.y.conditional_slope(y, z);
@@ -223,7 +217,7 @@ impl<T: Real> PhaseSpace<T> for SpotLight<T> {
         }
     }
 
-    fn slope_pdf(&self, [x, y, z]: [T; 3], slope: [T; 2]) -> T {
+    fn slope_pdf(&self, [x, y, z]: [f64; 3], slope: [f64; 2]) -> f64 {
         let (mean_x, sigma_x) = self.x.conditional_slope(x, z);
         let (mean_y, sigma_y) = self.y.conditional_slope(y, z);
         let deviation = [slope[0] - mean_x, slope[1] - mean_y];
@@ -231,8 +225,8 @@ impl<T: Real> PhaseSpace<T> for SpotLight<T> {
         joint_normal_density(deviation, [sigma_x, sigma_y]) * sec * sec * sec
     }
 
-    fn draw(&self, u: [T; 4]) -> ([T; 2], [T; 2]) {
-        let along = |axis: &Axis<T>, u_position: T, u_slope: T| {
+    fn draw(&self, u: [f64; 4]) -> ([f64; 2], [f64; 2]) {
+        let along = |axis: &Axis, u_position: f64, u_slope: f64| {
             let (sigma_position, sigma_slope) = axis.deviations();
             let slope = sigma_slope * standard_normal(u_slope);
             let waist = sigma_position * standard_normal(u_position);
@@ -243,7 +237,7 @@ impl<T: Real> PhaseSpace<T> for SpotLight<T> {
         ([x, y], [slope_x, slope_y])
     }
 
-    fn densities(&self, position: [T; 2], slope: [T; 2]) -> RayPdf<T> {
+    fn densities(&self, position: [f64; 2], slope: [f64; 2]) -> RayPdf {
         let waist = [
             position[0] + slope[0] * self.x.z0,
             position[1] + slope[1] * self.y.z0,
@@ -251,37 +245,33 @@ impl<T: Real> PhaseSpace<T> for SpotLight<T> {
         let ((waist_x, slope_x), (waist_y, slope_y)) = (self.x.deviations(), self.y.deviations());
         // dω = cos³ ds_x ds_y
         let sec = secant(slope);
-        let radius_sq = [&self.x, &self.y].map(|axis| axis.radius_sq_at(T::ZERO));
-        let deviations = radius_sq.map(|w_sq| T::of(0.5) * w_sq.sqrt());
+        let radius_sq = [&self.x, &self.y].map(|axis| axis.radius_sq_at(0.0));
+        let deviations = radius_sq.map(|w_sq| 0.5 * w_sq.sqrt());
         let [x, y] = position;
         RayPdf {
             direction: joint_normal_density(slope, [slope_x, slope_y]) * sec * sec * sec,
             position_given_direction: joint_normal_density(waist, [waist_x, waist_y]),
             ..RayPdf::from_position(joint_normal_density(position, deviations), || {
-                self.slope_pdf([x, y, T::ZERO], slope)
+                self.slope_pdf([x, y, 0.0], slope)
             })
         }
     }
 
     fn fraction_bound(&self, target: &LocalBox) -> f64 {
-        let along = |axis: &Axis<T>, range: [f64; 2]| {
-            let axis = Axis::from_row(axis.to_row().map(T::wide));
+        let along = |axis: &Axis, range: [f64; 2]| {
+            let axis = Axis::from_row(axis.to_row());
             let dz = target.z.map(|z| z - axis.z0);
-            chance(&axis, dz, range, self.cutoff.wide())
+            chance(&axis, dz, range, self.cutoff)
         };
         along(&self.x, target.x) * along(&self.y, target.y)
     }
 
-    fn reach(&self, l: T) -> Reach<T> {
+    fn reach(&self, l: f64) -> Reach {
         // w² is convex in z, so it is largest at one of the ends.
-        let radius = |axis: &Axis<T>| {
-            axis.radius_sq_at(T::ZERO)
-                .larger(axis.radius_sq_at(l))
-                .sqrt()
-        };
+        let radius = |axis: &Axis| axis.radius_sq_at(0.0).max(axis.radius_sq_at(l)).sqrt();
         Reach {
             half_width: [self.cutoff * radius(&self.x), self.cutoff * radius(&self.y)],
-            slope: self.cutoff * self.x.theta_sq.larger(self.y.theta_sq).sqrt(),
+            slope: self.cutoff * self.x.theta_sq.max(self.y.theta_sq).sqrt(),
         }
     }
 }

@@ -2,10 +2,7 @@ use super::emitter::Emitter;
 use super::fan::Fan;
 use super::frame::Placement;
 use super::line::LineLight;
-use super::rows::check_digits;
-use crate::normal::normal_density;
 use crate::profile::AngularTable;
-use crate::real::Real;
 use crate::{AngularKnot, LaserLine, LineProfile, Refusal};
 
 /// A laser line in a scene whose power along the fan is a table.
@@ -35,7 +32,7 @@ use crate::{AngularKnot, LaserLine, LineProfile, Refusal};
 /// let angles = [-30_f64, -20.0, 20.0, 30.0].map(f64::to_radians);
 /// let profile = AngularProfile::new(&angles, &[0.0, 1.0, 0.9, 0.0])?;
 /// let focus = GaussianBeam::from_waist(650e-9, 0.1e-3)?;
-/// let line = LaserLine::new(focus, fan, LineProfile::Tabulated(profile.clone()))?;
+/// let line = LaserLine::new(focus, fan, LineProfile::Tabulated(profile))?;
 /// let placement = Placement {
 ///     origin: DVec3::new(0.0, 0.0, 0.2),
 ///     direction: DVec3::NEG_Z,
@@ -44,21 +41,17 @@ use crate::{AngularKnot, LaserLine, LineProfile, Refusal};
 /// let light = TabulatedLineLight::place(&line, &placement, 5e-3)?;
 /// assert!(light.next_event([0.1, 0.0, 0.0]).is_some());
 /// assert!(light.next_event([0.12, 0.0, 0.0]).is_none());
-///
-/// let knots = profile.to_f32()?;
-/// let single = light.to_f32(&knots)?;
-/// assert!(single.next_event([0.1, 0.0, 0.0]).is_some());
 /// # Ok::<(), tem00_beam::Refusal>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TabulatedLineLight<'a, T> {
+pub struct TabulatedLineLight<'a> {
     /// The line but for its profile.
-    pub line: LineLight<T>,
+    pub line: LineLight,
     /// The profile, by ascending angle.
-    pub knots: &'a [AngularKnot<T>],
+    pub knots: &'a [AngularKnot],
 }
 
-impl<'a> TabulatedLineLight<'a, f64> {
+impl<'a> TabulatedLineLight<'a> {
     /// Places a laser line in a scene, with the lens at the placement's origin and a power in watts.
     ///
     /// # Errors
@@ -77,43 +70,26 @@ impl<'a> TabulatedLineLight<'a, f64> {
             )),
         }
     }
-
-    /// Returns the light in single precision, with the knots in single precision.
-    ///
-    /// # Errors
-    ///
-    /// As [`LineLight::to_f32`].
-    pub fn to_f32<'b>(
-        &self,
-        knots: &'b [AngularKnot<f32>],
-    ) -> Result<TabulatedLineLight<'b, f32>, Refusal> {
-        let across = normal_density(0.0, 0.5 * self.line.y.w0_sq.sqrt());
-        let peak = AngularTable(self.knots).peak();
-        check_digits([self.line.power * peak / self.line.apex_offset * across])?;
-        let line = self.line.to_f32()?;
-        Ok(TabulatedLineLight { line, knots })
-    }
 }
 
-impl<T: Real> Emitter<T> for TabulatedLineLight<'_, T> {
-    fn power(&self) -> T {
+impl Emitter for TabulatedLineLight<'_> {
+    fn power(&self) -> f64 {
         self.line.power
     }
 
-    fn wavelength(&self) -> T {
+    fn wavelength(&self) -> f64 {
         self.line.wavelength
     }
 }
 
-impl<'a, T: Real> Fan for TabulatedLineLight<'a, T> {
-    type Scalar = T;
-    type Profile = AngularTable<'a, T>;
+impl<'a> Fan for TabulatedLineLight<'a> {
+    type Profile = AngularTable<'a>;
 
-    fn line(&self) -> &LineLight<T> {
+    fn line(&self) -> &LineLight {
         &self.line
     }
 
-    fn profile(&self) -> AngularTable<'a, T> {
+    fn profile(&self) -> AngularTable<'a> {
         AngularTable(self.knots)
     }
 }

@@ -5,9 +5,7 @@ use tem00_numerics::check;
 
 use super::density::{SlopeProfile, Variable};
 use crate::Refusal;
-use crate::normal::{interior, normal_between, normal_density};
-use crate::placed::too_large_for_single;
-use crate::real::Real;
+use crate::normal::{HALF_SPACING, interior, normal_between, normal_density};
 
 /// The smallest accepted distance between two angles, in radians: finer than any measurement.
 const MIN_SPACING: f64 = 1e-12;
@@ -44,19 +42,19 @@ const NORMAL_REACH: f64 = 9.0;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct AngularProfile {
-    knots: Arc<[AngularKnot<f64>]>,
+    knots: Arc<[AngularKnot]>,
 }
 
 /// One angle of an [`AngularProfile`].
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AngularKnot<T> {
+pub struct AngularKnot {
     /// Signed angle from the axis, in radians.
-    pub angle: T,
+    pub angle: f64,
     /// Fraction of the power per angle, in rad⁻¹.
-    pub density: T,
+    pub density: f64,
     /// Fraction of the power below the angle, from 0 to 1.
-    pub cumulative: T,
+    pub cumulative: f64,
 }
 
 impl AngularProfile {
@@ -118,47 +116,18 @@ impl AngularProfile {
     }
 
     /// Returns the angles of the table, with the normalised density and its integral at each.
-    pub fn knots(&self) -> &[AngularKnot<f64>] {
+    pub fn knots(&self) -> &[AngularKnot] {
         &self.knots
     }
 
-    /// Returns the knots in single precision, as a
-    /// [`TabulatedLineLight<f32>`](crate::TabulatedLineLight) borrows them.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if two neighbouring angles are one in single precision, or if the whole table
-    /// is hardly wider than the rounding of an angle.
-    pub fn to_f32(&self) -> Result<Vec<AngularKnot<f32>>, Refusal> {
-        let knots: Vec<_> = self.knots.iter().map(AngularKnot::rounded).collect();
-        let table = AngularTable(&knots);
-        let [first, last] = table.ends();
-        let same = |pair: &[AngularKnot<f32>]| pair[0].angle >= pair[1].angle;
-        match knots.windows(2).position(same) {
-            Some(index) => Err(too_large_for_single(self.knots[index].angle)),
-            None if last - first <= 4.0 * table.margin() => Err(too_large_for_single(first)),
-            None => Ok(knots),
-        }
-    }
-
     /// Returns the table as a density along the fan.
-    pub(crate) fn table(&self) -> AngularTable<'_, f64> {
+    pub(crate) fn table(&self) -> AngularTable<'_> {
         AngularTable(&self.knots)
     }
 }
 
-impl AngularKnot<f64> {
-    fn rounded<T: Real>(&self) -> AngularKnot<T> {
-        AngularKnot {
-            angle: T::of(self.angle),
-            density: T::of(self.density),
-            cumulative: T::of(self.cumulative),
-        }
-    }
-}
-
 /// Integrates and normalises a table whose largest power is 1.
-fn normalised(table: Vec<(f64, f64)>) -> Vec<AngularKnot<f64>> {
+fn normalised(table: Vec<(f64, f64)>) -> Vec<AngularKnot> {
     let mut sum = 0.0;
     let mut before = table[0];
     let mut knots = Vec::with_capacity(table.len());
@@ -181,22 +150,22 @@ fn normalised(table: Vec<(f64, f64)>) -> Vec<AngularKnot<f64>> {
 /// The knots of a table as a density along the fan; dark if there are fewer than two.
 #[derive(Clone, Copy, Debug)]
 #[expect(unnameable_types, reason = "it belongs to a sealed trait")]
-pub struct AngularTable<'a, T>(pub(crate) &'a [AngularKnot<T>]);
+pub struct AngularTable<'a>(pub(crate) &'a [AngularKnot]);
 
-impl<'a, T: Real> AngularTable<'a, T> {
+impl<'a> AngularTable<'a> {
     /// Returns the knots about the first one for which `beyond` holds.
-    fn interval(self, beyond: impl Fn(&AngularKnot<T>) -> bool) -> Option<Interval> {
+    fn interval(self, beyond: impl Fn(&AngularKnot) -> bool) -> Option<Interval> {
         let last = self.0.len().checked_sub(1)?;
         let end = self.0.partition_point(|knot| !beyond(knot)).min(last);
         let start = end.checked_sub(1)?;
         Some(Interval {
-            start: self.0[start].wide(),
-            end: self.0[end].wide(),
+            start: self.0[start],
+            end: self.0[end],
         })
     }
 
     fn interval_at(self, angle: f64) -> Option<Interval> {
-        self.interval(|knot| knot.angle.wide() > angle)
+        self.interval(|knot| knot.angle > angle)
     }
 
     /// Returns the density per radian at an angle.
@@ -210,13 +179,11 @@ impl<'a, T: Real> AngularTable<'a, T> {
     /// Returns the density per radian at an angle that a normal deviate has been added to.
     fn spread_at(self, angle: f64, sigma: f64) -> f64 {
         let reach = NORMAL_REACH * sigma;
-        let near = self
-            .0
-            .partition_point(|knot| knot.angle.wide() < angle - reach);
+        let near = self.0.partition_point(|knot| knot.angle < angle - reach);
         let knots = &self.0[near.saturating_sub(1)..];
         let intervals = knots.windows(2).map(|pair| Interval {
-            start: pair[0].wide(),
-            end: pair[1].wide(),
+            start: pair[0],
+            end: pair[1],
         });
         let met = intervals.take_while(|interval| interval.start.angle <= angle + reach);
         met.map(|interval| interval.spread_at(angle, sigma))
@@ -239,37 +206,21 @@ impl<'a, T: Real> AngularTable<'a, T> {
 
     /// Returns the first and the last angle.
     fn ends(self) -> [f64; 2] {
-        [self.0.first(), self.0.last()].map(|knot| knot.map_or(0.0, |knot| knot.angle.wide()))
+        [self.0.first(), self.0.last()].map(|knot| knot.map_or(0.0, |knot| knot.angle))
     }
 
     /// Returns the distance from the ends within which the rounding of a slope may leave the table.
     fn margin(self) -> f64 {
         let [first, last] = self.ends();
         // Four units in the last place: two for the slope, two for its arc tangent.
-        16.0 * T::HALF_SPACING * first.abs().max(last.abs())
-    }
-
-    /// Returns the largest density per radian.
-    pub(crate) fn peak(self) -> f64 {
-        let densities = self.0.iter().map(|knot| knot.density.wide());
-        densities.fold(0.0, f64::max)
-    }
-}
-
-impl<T: Real> AngularKnot<T> {
-    fn wide(&self) -> AngularKnot<f64> {
-        AngularKnot {
-            angle: self.angle.wide(),
-            density: self.density.wide(),
-            cumulative: self.cumulative.wide(),
-        }
+        16.0 * HALF_SPACING * first.abs().max(last.abs())
     }
 }
 
 /// Two neighbouring knots.
 struct Interval {
-    start: AngularKnot<f64>,
-    end: AngularKnot<f64>,
+    start: AngularKnot,
+    end: AngularKnot,
 }
 
 impl Interval {
@@ -326,42 +277,42 @@ impl Interval {
     }
 }
 
-impl<T: Real> SlopeProfile<T> for AngularTable<'_, T> {
-    fn per_slope(&self, u: T) -> T {
-        self.per_angle(u) / (T::ONE + u * u)
+impl SlopeProfile for AngularTable<'_> {
+    fn per_slope(&self, u: f64) -> f64 {
+        self.per_angle(u) / (1.0 + u * u)
     }
 
-    fn per_angle(&self, u: T) -> T {
-        T::of(self.density_at(u.wide().atan()))
+    fn per_angle(&self, u: f64) -> f64 {
+        self.density_at(u.atan())
     }
 
-    fn spread_per_angle(&self, u: T, sigma: T) -> T {
-        T::of(self.spread_at(u.wide().atan(), sigma.wide()))
+    fn spread_per_angle(&self, u: f64, sigma: f64) -> f64 {
+        self.spread_at(u.atan(), sigma)
     }
 
     /// The table itself says where the light ends.
-    fn reaches(&self, _: T, _: T) -> bool {
+    fn reaches(&self, _: f64, _: f64) -> bool {
         true
     }
 
-    fn largest_slope(&self, _: T) -> T {
+    fn largest_slope(&self, _: f64) -> f64 {
         let ends = [self.0.first(), self.0.last()];
         let angles = ends.into_iter().flatten();
-        let widest = angles.fold(0.0, |widest: f64, knot| widest.max(knot.angle.wide().abs()));
-        T::of(Variable::Angle.slope(widest))
+        let widest = angles.fold(0.0, |widest: f64, knot| widest.max(knot.angle.abs()));
+        Variable::Angle.slope(widest)
     }
 
-    fn quantile(&self, p: T) -> T {
+    fn quantile(&self, p: f64) -> f64 {
         let p = interior(p);
         let angle = self
-            .interval(|knot| knot.cumulative.wide() > p)
+            .interval(|knot| knot.cumulative > p)
             .map_or(0.0, |interval| self.off_the_ends(interval.angle_at(p)));
-        T::of(Variable::Angle.slope(angle))
+        Variable::Angle.slope(angle)
     }
 
-    fn between(&self, a: T, b: T) -> T {
-        let [below_a, below_b] = [a, b].map(|u| self.cumulative_at(u.wide().atan()));
-        T::of(below_b - below_a)
+    fn between(&self, a: f64, b: f64) -> f64 {
+        let [below_a, below_b] = [a, b].map(|u| self.cumulative_at(u.atan()));
+        below_b - below_a
     }
 }
 

@@ -4,7 +4,6 @@
 use core::f64::consts::{FRAC_PI_2, SQRT_2};
 
 use crate::normal::{interior, normal_density, standard_normal};
-use crate::real::Real;
 
 /// The slope of the angle next to π/2 in double precision: no ray of a fan is steeper.
 const STEEPEST: f64 = 1.633_123_935_319_537e16;
@@ -12,29 +11,29 @@ const STEEPEST: f64 = 1.633_123_935_319_537e16;
 /// The power along a fan, as a density normalised to 1.
 ///
 /// Its argument is the slope `u = tan θ`, at most [`STEEPEST`] in size.
-pub trait SlopeProfile<T: Real> {
+pub trait SlopeProfile {
     /// Returns the density per unit slope, `g(u)`; 0 or not finite beyond the steepest slope.
-    fn per_slope(&self, u: T) -> T;
+    fn per_slope(&self, u: f64) -> f64;
 
     /// Returns the density per radian, `f(θ) = g(u) / cos² θ`.
-    fn per_angle(&self, u: T) -> T;
+    fn per_angle(&self, u: f64) -> f64;
 
     /// Returns the density per radian after a normal deviate of standard deviation `sigma`, in
     /// radians, has been added to the angle; to first order in `sigma` where the angle is not the
     /// variable of the profile.
-    fn spread_per_angle(&self, u: T, sigma: T) -> T;
+    fn spread_per_angle(&self, u: f64, sigma: f64) -> f64;
 
     /// Returns whether the slope is within the cut-off, given in half-widths at 1/e².
-    fn reaches(&self, u: T, cutoff: T) -> bool;
+    fn reaches(&self, u: f64, cutoff: f64) -> bool;
 
     /// Returns the largest slope within the cut-off.
-    fn largest_slope(&self, cutoff: T) -> T;
+    fn largest_slope(&self, cutoff: f64) -> f64;
 
     /// Returns the slope below which the fraction `p` in [0, 1) of the power lies.
-    fn quantile(&self, p: T) -> T;
+    fn quantile(&self, p: f64) -> f64;
 
     /// Returns the fraction of the power between two slopes, `a` ≤ `b`.
-    fn between(&self, a: T, b: T) -> T;
+    fn between(&self, a: f64, b: f64) -> f64;
 }
 
 /// The variable of the fan angle that a density is given in.
@@ -58,12 +57,12 @@ impl Variable {
     }
 
     #[inline(always)]
-    fn from_code<T: Real>(code: T) -> Self {
-        if code < T::of(0.5) {
+    fn from_code(code: f64) -> Self {
+        if code < 0.5 {
             Self::Tan
-        } else if code < T::of(1.5) {
+        } else if code < 1.5 {
             Self::Angle
-        } else if code < T::of(2.5) {
+        } else if code < 2.5 {
             Self::Sin
         } else {
             Self::Tabulated
@@ -72,10 +71,10 @@ impl Variable {
 
     /// Returns the variable at a slope.
     #[inline(always)]
-    fn at<T: Real>(self, u: T) -> T {
+    fn at(self, u: f64) -> f64 {
         match self {
             Self::Tan | Self::Tabulated => u,
-            Self::Angle => T::of(u.wide().atan()),
+            Self::Angle => u.atan(),
             Self::Sin => u / secant(u),
         }
     }
@@ -100,16 +99,16 @@ impl Variable {
 /// All line profiles but the tabulated one are of this kind: `flat = 0` is a Gaussian, `sigma = 0` a
 /// top hat.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SlopeDensity<T> {
+pub struct SlopeDensity {
     /// The number of the variable; see [`Variable`].
-    pub(crate) variable: T,
-    pub(crate) flat: T,
-    pub(crate) sigma: T,
+    pub(crate) variable: f64,
+    pub(crate) flat: f64,
+    pub(crate) sigma: f64,
     /// The part of the density inside the range of the variable, by which it is divided.
-    pub(crate) mass: T,
+    pub(crate) mass: f64,
 }
 
-impl SlopeDensity<f64> {
+impl SlopeDensity {
     /// A Gaussian with its 1/e² points at ±`edge`.
     pub(crate) const fn gaussian(variable: Variable, edge: f64, mass: f64) -> Self {
         Self {
@@ -131,10 +130,10 @@ impl SlopeDensity<f64> {
     }
 }
 
-impl<T: Real> SlopeProfile<T> for SlopeDensity<T> {
+impl SlopeProfile for SlopeDensity {
     #[inline(always)]
-    fn per_slope(&self, u: T) -> T {
-        let sec_sq = T::ONE + u * u;
+    fn per_slope(&self, u: f64) -> f64 {
+        let sec_sq = 1.0 + u * u;
         match self.variable() {
             Variable::Tan => self.in_variable(u),
             Variable::Angle => self.in_variable(Variable::Angle.at(u)) / sec_sq,
@@ -142,12 +141,12 @@ impl<T: Real> SlopeProfile<T> for SlopeDensity<T> {
                 let sec = sec_sq.sqrt();
                 self.in_variable(u / sec) / (sec_sq * sec)
             }
-            Variable::Tabulated => T::ZERO,
+            Variable::Tabulated => 0.0,
         }
     }
 
-    fn per_angle(&self, u: T) -> T {
-        let sec_sq = T::ONE + u * u;
+    fn per_angle(&self, u: f64) -> f64 {
+        let sec_sq = 1.0 + u * u;
         match self.variable() {
             Variable::Tan => self.in_variable(u) * sec_sq,
             Variable::Angle => self.in_variable(Variable::Angle.at(u)),
@@ -155,13 +154,13 @@ impl<T: Real> SlopeProfile<T> for SlopeDensity<T> {
                 let sec = sec_sq.sqrt();
                 self.in_variable(u / sec) / sec
             }
-            Variable::Tabulated => T::ZERO,
+            Variable::Tabulated => 0.0,
         }
     }
 
     /// Normal distributions add their variances.
-    fn spread_per_angle(&self, u: T, sigma: T) -> T {
-        let sec_sq = T::ONE + u * u;
+    fn spread_per_angle(&self, u: f64, sigma: f64) -> f64 {
+        let sec_sq = 1.0 + u * u;
         let added = match self.variable() {
             Variable::Tan | Variable::Tabulated => sigma * sec_sq,
             Variable::Angle => sigma,
@@ -172,33 +171,33 @@ impl<T: Real> SlopeProfile<T> for SlopeDensity<T> {
     }
 
     #[inline(always)]
-    fn reaches(&self, u: T, cutoff: T) -> bool {
+    fn reaches(&self, u: f64, cutoff: f64) -> bool {
         self.variable().at(u).abs() <= self.end(cutoff)
     }
 
-    fn largest_slope(&self, cutoff: T) -> T {
-        T::of(self.variable().slope(self.end(cutoff).wide()))
+    fn largest_slope(&self, cutoff: f64) -> f64 {
+        self.variable().slope(self.end(cutoff))
     }
 
-    fn quantile(&self, p: T) -> T {
-        let mass = self.mass.wide();
+    fn quantile(&self, p: f64) -> f64 {
+        let mass = self.mass;
         let p = mass * interior(p) + 0.5 * (1.0 - mass);
-        T::of(self.variable().slope(self.wide().quantile_in_variable(p)))
+        self.variable().slope(self.quantile_in_variable(p))
     }
 
-    fn between(&self, a: T, b: T) -> T {
-        let density = self.wide();
-        let [a, b] = [a, b].map(|u| u.wide().clamp(-STEEPEST, STEEPEST));
-        T::of(match (a < 0.0, b < 0.0) {
+    fn between(&self, a: f64, b: f64) -> f64 {
+        let density = self;
+        let [a, b] = [a, b].map(|u| u.clamp(-STEEPEST, STEEPEST));
+        match (a < 0.0, b < 0.0) {
             (true, true) => density.tail(b) - density.tail(a),
             (true, false) => 1.0 - density.tail(a) - density.tail(-b),
             // The upper tail keeps its digits where 1 minus it has none.
             (false, _) => density.tail(-a) - density.tail(-b),
-        })
+        }
     }
 }
 
-impl<T: Real> SlopeDensity<T> {
+impl SlopeDensity {
     #[inline(always)]
     fn variable(&self) -> Variable {
         Variable::from_code(self.variable)
@@ -206,36 +205,27 @@ impl<T: Real> SlopeDensity<T> {
 
     /// Returns the end of the cut-off, in the variable.
     #[inline(always)]
-    fn end(&self, cutoff: T) -> T {
-        self.flat + T::of(2.0) * cutoff * self.sigma
-    }
-
-    fn wide(&self) -> SlopeDensity<f64> {
-        SlopeDensity {
-            variable: self.variable.wide(),
-            flat: self.flat.wide(),
-            sigma: self.sigma.wide(),
-            mass: self.mass.wide(),
-        }
+    fn end(&self, cutoff: f64) -> f64 {
+        self.flat + 2.0 * cutoff * self.sigma
     }
 
     /// Returns the density per unit of the variable.
     #[inline(always)]
-    fn in_variable(&self, v: T) -> T {
-        let density = if self.flat <= T::ZERO {
+    fn in_variable(&self, v: f64) -> f64 {
+        let density = if self.flat <= 0.0 {
             normal_density(v, self.sigma)
-        } else if self.sigma > T::ZERO {
-            T::of(self.wide().rolled_off(v.wide()))
+        } else if self.sigma > 0.0 {
+            self.rolled_off(v)
         } else if v.abs() <= self.flat {
-            T::of(0.5) / self.flat
+            0.5 / self.flat
         } else {
-            T::ZERO
+            0.0
         };
         density / self.mass
     }
 }
 
-impl SlopeDensity<f64> {
+impl SlopeDensity {
     /// The uniform density with its roll-off.
     fn rolled_off(&self, v: f64) -> f64 {
         let scale = 1.0 / (SQRT_2 * self.sigma);
@@ -299,6 +289,6 @@ impl SlopeDensity<f64> {
 
 /// Returns `√(1 + u²)`, the secant of the angle whose slope is `u`.
 #[inline(always)]
-pub(crate) fn secant<T: Real>(u: T) -> T {
-    (T::ONE + u * u).sqrt()
+pub(crate) fn secant(u: f64) -> f64 {
+    (1.0 + u * u).sqrt()
 }

@@ -18,14 +18,14 @@ fn profiles() -> [LineProfile; 8] {
     ]
 }
 
-fn densities() -> Vec<SlopeDensity<f64>> {
+fn densities() -> Vec<SlopeDensity> {
     let all = FAN_ANGLES.map(|angle| profiles().map(|p| p.slope_density(angle).unwrap()));
     all.concat()
 }
 
 /// ∫ f dθ over the slopes [a, b] by the midpoint rule, in a coordinate t that resolves both the top
 /// and the edges of the density: its variable for a Gaussian or uniform one, tan θ for Powell's.
-fn integrate(density: SlopeDensity<f64>, a: f64, b: f64) -> f64 {
+fn integrate(density: SlopeDensity, a: f64, b: f64) -> f64 {
     const INTERVALS: u32 = 20_000;
     let at = |t: f64| match density.variable {
         // dθ = dt / (1 + t²) and f (1 + t²)⁻¹ = g
@@ -48,7 +48,7 @@ fn integrate(density: SlopeDensity<f64>, a: f64, b: f64) -> f64 {
 }
 
 /// The slope beyond which less than 1e−30 of the power lies, or the last one of all.
-fn end(density: SlopeDensity<f64>) -> f64 {
+fn end(density: SlopeDensity) -> f64 {
     density.largest_slope(6.0)
 }
 
@@ -113,8 +113,7 @@ fn the_edges_of_the_fan_are_where_the_profiles_say() {
         let edge = (0.5 * fan_angle).tan();
         let [tan, angle, sine, flat_tan, flat_angle, _, powell, _] =
             profiles().map(|profile| profile.slope_density(fan_angle).unwrap());
-        let fall =
-            |density: SlopeDensity<f64>, u: f64| density.per_slope(u) / density.per_slope(0.0);
+        let fall = |density: SlopeDensity, u: f64| density.per_slope(u) / density.per_slope(0.0);
         let sec = 1.0_f64.hypot(edge);
         let in_variable = [
             fall(tan, edge),

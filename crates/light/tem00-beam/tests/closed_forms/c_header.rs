@@ -103,7 +103,7 @@ fn only_the_include_guard_is_left_defined() {
     assert_eq!(ours, ["#define TEM00_BEAM_H "], "macros after the header");
 }
 
-fn agree<L: Emitter<f64>>(kind: &str, precision: Precision, samples: &[Sample<L>]) {
+fn agree<L: Emitter>(kind: &str, precision: Precision, samples: &[Sample<L>]) {
     let program = program(precision, kind);
     let epsilon = match precision {
         Precision::Single => f64::from(f32::EPSILON),

@@ -7,7 +7,7 @@ use super::samples::Sample;
 /// The irradiance, then the next event: point, distance, `wi` and `e_perp`. All 0 where it is dark.
 pub(crate) type Answer = [f64; 9];
 
-fn answer(light: &impl Emitter<f64>, p: [f64; 3]) -> Answer {
+fn answer(light: &impl Emitter, p: [f64; 3]) -> Answer {
     let irradiance = light.irradiance(p);
     match light.next_event(p) {
         Some(NextEvent {
@@ -31,7 +31,7 @@ pub(crate) struct Judge<'a, L> {
     on_the_edge: usize,
 }
 
-impl<'a, L: Emitter<f64>> Judge<'a, L> {
+impl<'a, L: Emitter> Judge<'a, L> {
     pub(crate) fn new(sample: &'a Sample<L>, epsilon: f64) -> Self {
         Self {
             sample,

@@ -27,7 +27,7 @@ pub(crate) struct Sample<L> {
     pub(crate) points: Vec<[f64; 3]>,
 }
 
-impl<L: Emitter<f64>> Sample<L> {
+impl<L: Emitter> Sample<L> {
     /// `local_from` makes a local point at the distance z from two numbers in [−1.1, 1.1), which
     /// stand for the cut-off at ±1.
     fn new(
@@ -64,12 +64,9 @@ fn wide<const N: usize>(rows: [[f32; 4]; N]) -> [[f64; 4]; N] {
 }
 
 /// A wide beam, a beam with a tight waist, and an elliptic one with two waists.
-pub(crate) fn spots() -> Vec<Sample<SpotLight<f64>>> {
-    let place = |waist, distance| {
-        SpotLight::place(&beam(waist), distance, &PLACEMENT, 5e-3)
-            .and_then(|light| light.to_f32())
-            .unwrap()
-    };
+pub(crate) fn spots() -> Vec<Sample<SpotLight>> {
+    let place =
+        |waist, distance| SpotLight::place(&beam(waist), distance, &PLACEMENT, 5e-3).unwrap();
     let mut elliptic = place(30e-6, 0.2);
     elliptic.y = place(90e-6, -0.05).y;
     let lights = [
@@ -77,11 +74,11 @@ pub(crate) fn spots() -> Vec<Sample<SpotLight<f64>>> {
         ("tight", place(5e-6, 0.25)),
         ("elliptic", elliptic),
     ];
-    let sample = |(name, light): (&str, SpotLight<f32>)| {
-        let rows = light.to_rows();
+    let sample = |(name, light): (&str, SpotLight)| {
+        let rows = light.to_rows_f32();
         let light = SpotLight::from_rows(wide(rows));
         Sample::new(name.to_owned(), light, &rows, |z, [x, y]| {
-            let reach = |axis: tem00_beam::Axis<f64>| light.cutoff * axis.radius_sq_at(z).sqrt();
+            let reach = |axis: tem00_beam::Axis| light.cutoff * axis.radius_sq_at(z).sqrt();
             [x * reach(light.x), y * reach(light.y)]
         })
     };
@@ -89,7 +86,7 @@ pub(crate) fn spots() -> Vec<Sample<SpotLight<f64>>> {
 }
 
 /// All profiles that are not tables, focused on a circle and on a plane.
-pub(crate) fn lines() -> Vec<Sample<LineLight<f64>>> {
+pub(crate) fn lines() -> Vec<Sample<LineLight>> {
     let profiles = [
         LineProfile::GaussianTan,
         LineProfile::GaussianAngle,
@@ -106,7 +103,7 @@ pub(crate) fn lines() -> Vec<Sample<LineLight<f64>>> {
         .collect()
 }
 
-fn line(profile: &LineProfile, focus_curve: FocusCurve) -> Sample<LineLight<f64>> {
+fn line(profile: &LineProfile, focus_curve: FocusCurve) -> Sample<LineLight> {
     let fan = FanGeometry {
         // So wide that the tails in θ and sin θ are truncated.
         fan_angle: 100_f64.to_radians(),
@@ -115,10 +112,8 @@ fn line(profile: &LineProfile, focus_curve: FocusCurve) -> Sample<LineLight<f64>
         focus_curve,
     };
     let line = LaserLine::new(beam(60e-6), fan, profile.clone()).unwrap();
-    let rows = LineLight::place(&line, &PLACEMENT, 5e-3)
-        .and_then(|light| light.to_f32())
-        .unwrap()
-        .to_rows();
+    let light = LineLight::place(&line, &PLACEMENT, 5e-3).unwrap();
+    let rows = light.to_rows_f32();
     let light = LineLight::from_rows(wide(rows));
     let name = format!("{profile:?}, {focus_curve:?}");
     Sample::new(name, light, &rows, |z, [v, y]| {

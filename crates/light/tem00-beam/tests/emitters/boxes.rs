@@ -11,7 +11,7 @@ const PLACES: usize = 400;
 const RAYS: usize = 4000;
 
 /// Whether a ray, followed without end, passes through a box.
-fn passes(ray: &RaySample<f64>, min: DVec3, max: DVec3) -> bool {
+fn passes(ray: &RaySample, min: DVec3, max: DVec3) -> bool {
     let (origin, direction) = (DVec3::from(ray.origin), DVec3::from(ray.direction));
     let [a, b] = [min, max].map(|corner| (corner - origin) / direction);
     let (near, far) = (a.min(b).max_element(), a.max(b).min_element());
@@ -19,17 +19,17 @@ fn passes(ray: &RaySample<f64>, min: DVec3, max: DVec3) -> bool {
 }
 
 /// The fraction of rays that pass through a box.
-fn fraction(rays: &[RaySample<f64>], min: DVec3, max: DVec3) -> f64 {
+fn fraction(rays: &[RaySample], min: DVec3, max: DVec3) -> f64 {
     let met = rays.iter().filter(|ray| passes(ray, min, max)).count();
     met as f64 / rays.len() as f64
 }
 
-fn bound(light: &dyn Emitter<f64>, min: DVec3, max: DVec3) -> f64 {
+fn bound(light: &dyn Emitter, min: DVec3, max: DVec3) -> f64 {
     light.power_bound(min.to_array(), max.to_array()) / POWER
 }
 
 /// Calls `test` with every light, rays of it to place boxes on and others to count.
-fn for_every_light(mut test: impl FnMut(&dyn Emitter<f64>, &[RaySample<f64>], &[RaySample<f64>])) {
+fn for_every_light(mut test: impl FnMut(&dyn Emitter, &[RaySample], &[RaySample])) {
     let lasers: Vec<LaserLine> = fans().collect();
     let mut rng = ChaCha8Rng::seed_from_u64(17);
     for light in lasers.iter().map(place).chain([elliptic()]) {
@@ -41,7 +41,7 @@ fn for_every_light(mut test: impl FnMut(&dyn Emitter<f64>, &[RaySample<f64>], &[
 }
 
 /// A point of a ray, at a distance from 1e−4 m to 1 m.
-fn place_on(rays: &[RaySample<f64>], rng: &mut ChaCha8Rng) -> DVec3 {
+fn place_on(rays: &[RaySample], rng: &mut ChaCha8Rng) -> DVec3 {
     let ray = rays[rng.random_range(0..rays.len())];
     let distance = 10_f64.powf(rng.random_range(-4.0..0.0));
     DVec3::from(ray.origin) + distance * DVec3::from(ray.direction)

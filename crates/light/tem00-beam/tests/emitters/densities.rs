@@ -11,7 +11,7 @@ use crate::lines::slopes;
 /// `σ_b/r`: the angle, on the axis, that the rays of a point of the lens differ by.
 const APEX_ANGLE: f64 = 4.1e-4;
 
-fn pdf(light: &dyn Emitter<f64>, [x, y]: [f64; 2], [s, t]: [f64; 2]) -> RayPdf<f64> {
+fn pdf(light: &dyn Emitter, [x, y]: [f64; 2], [s, t]: [f64; 2]) -> RayPdf {
     let direction = DVec3::new(s, t, 1.0).normalize();
     light.ray_pdf([x, y, 0.0], direction.to_array())
 }
@@ -130,7 +130,7 @@ fn the_density_of_the_position_on_the_lens_integrates_to_one() {
 }
 
 /// χ² of the positions of drawn rays along x, in bins up to ±`half`, against their density there.
-fn chi_square_of_positions(light: &dyn Emitter<f64>, half: f64, y: f64) -> f64 {
+fn chi_square_of_positions(light: &dyn Emitter, half: f64, y: f64) -> f64 {
     const RAYS: u32 = 60_000;
     const FINE: i32 = 10;
     let mut rng = ChaCha8Rng::seed_from_u64(7);

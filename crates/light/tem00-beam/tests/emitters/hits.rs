@@ -34,7 +34,7 @@ impl Lobe {
 
 /// Means and standard errors of the irradiance of a plane square to the axis, from sampled next
 /// events, from rays of the lobe, and from both with the balance heuristic.
-fn estimates(light: &dyn Emitter<f64>, p: [f64; 3], lobe: Lobe) -> [(f64, f64); 3] {
+fn estimates(light: &dyn Emitter, p: [f64; 3], lobe: Lobe) -> [(f64, f64); 3] {
     const COUNT: u32 = 20_000;
     let mut rng = ChaCha8Rng::seed_from_u64(11);
     let mut sums = [[0.0; 2]; 3];
@@ -66,7 +66,7 @@ fn estimates(light: &dyn Emitter<f64>, p: [f64; 3], lobe: Lobe) -> [(f64, f64); 
 
 /// Holds the three estimates against the irradiance within four standard errors, or, where an estimate
 /// has next to no variance, the rounding of coordinates.
-fn check(light: &dyn Emitter<f64>, p: [f64; 3], lobe: Lobe) {
+fn check(light: &dyn Emitter, p: [f64; 3], lobe: Lobe) {
     let expected = light.irradiance(p);
     for (mean, error) in estimates(light, p, lobe) {
         let tolerance = 4.0 * error + 1e-7 * expected;

@@ -33,7 +33,7 @@ pub(crate) fn fans() -> impl Iterator<Item = LaserLine> {
 }
 
 /// Places a line as the light that its profile needs.
-pub(crate) fn place(line: &LaserLine) -> Box<dyn Emitter<f64> + '_> {
+pub(crate) fn place(line: &LaserLine) -> Box<dyn Emitter + '_> {
     match line.profile() {
         LineProfile::Tabulated(_) => {
             Box::new(TabulatedLineLight::place(line, &PLACEMENT, POWER).expect("a valid light"))
@@ -43,7 +43,7 @@ pub(crate) fn place(line: &LaserLine) -> Box<dyn Emitter<f64> + '_> {
 }
 
 /// An elliptic beam with its waists apart.
-pub(crate) fn elliptic() -> Box<dyn Emitter<f64>> {
+pub(crate) fn elliptic() -> Box<dyn Emitter> {
     let axes = [(30e-6, 0.05), (60e-6, -0.02)];
     let axes = axes.map(|(w, z)| LocatedBeam::new(beam(w), z).expect("a valid beam"));
     let beam = AstigmaticBeam::new(axes[0], axes[1]).expect("a valid beam");

@@ -113,7 +113,7 @@ impl Laser {
     }
 
     /// Calls `query` with the light, whatever its kind.
-    pub fn with_emitter<R>(&self, query: impl FnOnce(&dyn Emitter<f64>) -> R) -> R {
+    pub fn with_emitter<R>(&self, query: impl FnOnce(&dyn Emitter) -> R) -> R {
         match &self.source {
             Source::Spot { light, .. } => query(light),
             Source::Line { line, light } => match line.profile() {

@@ -3,7 +3,6 @@ use proptest::prelude::*;
 
 use super::super::{Emitter, Placement, TabulatedLineLight};
 use super::*;
-use crate::real::sealed::Scalar;
 use crate::{AngularProfile, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineProfile};
 
 const POWER: f64 = 5e-3;
@@ -55,7 +54,7 @@ fn lasers(fan_angle: f64) -> Vec<LaserLine> {
     curves.into_iter().flat_map(on).collect()
 }
 
-fn place(line: &LaserLine) -> Box<dyn Emitter<f64> + '_> {
+fn place(line: &LaserLine) -> Box<dyn Emitter + '_> {
     match LineLight::place(line, &placement(), POWER) {
         Ok(light) => Box::new(light),
         Err(_) => Box::new(TabulatedLineLight::place(line, &placement(), POWER).unwrap()),
@@ -101,20 +100,6 @@ fn a_line_without_its_table_is_dark() {
     let knots = &light.knots[..1];
     let dark = TabulatedLineLight { knots, ..light };
     assert!(dark.next_event(p).is_none(), "with one knot");
-}
-
-#[test]
-fn single_precision_is_refused_where_it_cannot_hold_the_light() {
-    let line = laser(table(), FocusCurve::EqualPlane, 0.9);
-    let LineProfile::Tabulated(profile) = line.profile() else {
-        panic!("a table");
-    };
-    let knots = profile.to_f32().unwrap();
-    let accepted = [POWER, 1e36].map(|power| {
-        let light = TabulatedLineLight::place(&line, &placement(), power).unwrap();
-        light.to_f32(&knots).is_ok()
-    });
-    assert_eq!(accepted, [true, false], "a line whose irradiance overflows");
 }
 
 #[test]
@@ -181,11 +166,8 @@ fn bounds_hold_all_that_is_lit() {
 }
 
 /// The direction density of the rays that `light` draws with the outermost variates.
-fn outermost<T: Real>(light: &impl Emitter<T>) -> [f64; 2] {
-    [0.0, 1.0 - 2.0 * T::HALF_SPACING].map(|u| {
-        let [half, u] = [0.5, u].map(T::of);
-        light.sample_ray([half, half, u, half]).pdf.direction.wide()
-    })
+fn outermost(light: &impl Emitter) -> [f64; 2] {
+    [0.0, 1.0 - 2.0 * HALF_SPACING].map(|u| light.sample_ray([0.5, 0.5, u, 0.5]).pdf.direction)
 }
 
 #[test]
@@ -200,18 +182,15 @@ fn rounding_carries_no_drawn_ray_over_the_ends_of_a_profile() {
             (end, 1.0),
         ];
         let profile = AngularProfile::from_pairs(&table).unwrap();
-        let knots = profile.to_f32().unwrap();
         let line = laser(LineProfile::Tabulated(profile), FocusCurve::EqualPlane, 0.9);
         let light = TabulatedLineLight::place(&line, &placement(), POWER).unwrap();
-        let single = light.to_f32(&knots).unwrap();
-        for pdf in outermost(&light).into_iter().chain(outermost(&single)) {
+        for pdf in outermost(&light) {
             assert!(pdf > 0.0, "the table ends at {end}");
         }
         for profile in [LineProfile::UniformTan, LineProfile::UniformAngle] {
             let line = laser(profile, FocusCurve::EqualPlane, 2.0 * end);
             let light = LineLight::place(&line, &placement(), POWER).unwrap();
-            let single = light.to_f32().unwrap();
-            for pdf in outermost(&light).into_iter().chain(outermost(&single)) {
+            for pdf in outermost(&light) {
                 assert!(pdf > 0.0, "the top hat ends at {end}");
             }
         }
@@ -246,20 +225,6 @@ fn the_thickest_point_lies_on_the_bounds() {
 }
 
 #[test]
-fn bounds_are_finite_in_single_precision() {
-    // Gaussian in angle: the default cut-off of 4 half-widths of 30° lies behind the lens.
-    let line = laser(LineProfile::GaussianAngle, FocusCurve::EqualPlane, 1.05);
-    let light = LineLight::place(&line, &placement(), POWER).unwrap();
-    let bounds = light.to_f32().unwrap().bounds(1e6);
-    let corners = bounds.min.into_iter().chain(bounds.max);
-    assert!(corners.into_iter().all(f32::is_finite), "{bounds:?}");
-    assert!(
-        (bounds.half_angle - core::f32::consts::FRAC_PI_2).abs() < 1e-6,
-        "{bounds:?}"
-    );
-}
-
-#[test]
 fn a_ray_that_overflows_passes_the_light() {
     let line = laser(LineProfile::GaussianTan, FocusCurve::EqualDistance, 0.9);
     let upright = Placement {
@@ -288,7 +253,7 @@ fn directions() -> impl Strategy<Value = DVec3> {
         .prop_map(|(x, y, z)| DVec3::new(x, y, z).normalize_or(DVec3::Z))
 }
 
-fn densities<T: Copy>(pdf: RayPdf<T>) -> [T; 4] {
+fn densities(pdf: RayPdf) -> [f64; 4] {
     [
         pdf.position,
         pdf.direction_given_position,
@@ -298,15 +263,10 @@ fn densities<T: Copy>(pdf: RayPdf<T>) -> [T; 4] {
 }
 
 /// Asks a light everything about a point and a direction.
-fn check<T: Real>(
-    light: &impl Emitter<T>,
-    p: [T; 3],
-    d: [T; 3],
-    u: [T; 4],
-) -> Result<(), TestCaseError> {
-    let valid = |x: T| x >= T::ZERO;
+fn check(light: &impl Emitter, p: [f64; 3], d: [f64; 3], u: [f64; 4]) -> Result<(), TestCaseError> {
+    let valid = |x: f64| x >= 0.0;
     prop_assert!(valid(light.irradiance(p)), "irradiance");
-    prop_assert!(light.flux(p).iter().all(|f| f.wide().is_finite()), "flux");
+    prop_assert!(light.flux(p).iter().all(|f| f.is_finite()), "flux");
     if let Some(event) = light.next_event(p) {
         prop_assert!(valid(event.e_perp) && valid(event.distance), "{:?}", event);
     }
@@ -318,13 +278,13 @@ fn check<T: Real>(
     if let Some(hit) = light.hit(p, d) {
         prop_assert!(valid(hit.radiance) && valid(hit.pdf), "{:?}", hit);
     }
-    let end = core::array::from_fn(|i| p[i] + T::of(10.0) * d[i].abs());
+    let end = core::array::from_fn(|i| p[i] + 10.0 * d[i].abs());
     let bound = light.power_bound(p, end);
     prop_assert!(valid(bound) && bound <= light.power(), "{:?}", bound);
     let pdf = light.ray_pdf(p, d);
     prop_assert!(densities(pdf).into_iter().all(valid), "{:?}", pdf);
     let ray = light.sample_ray(u);
-    prop_assert!(ray.origin.iter().all(|x| x.wide().is_finite()), "{:?}", ray);
+    prop_assert!(ray.origin.iter().all(|x| x.is_finite()), "{:?}", ray);
     prop_assert!(densities(ray.pdf).into_iter().all(valid), "{:?}", ray);
     prop_assert!(valid(ray.cos), "{:?}", ray);
     Ok(())
@@ -346,60 +306,15 @@ proptest! {
             direction: DVec3::Z,
             fan_axis: DVec3::X,
         };
-        let single = |numbers: [f64; 3]| numbers.map(<f32 as Scalar>::of);
-        let u_single = u.map(|u| <f32 as Scalar>::of(0.999_999 * u));
         match line.profile() {
-            LineProfile::Tabulated(profile) => {
+            LineProfile::Tabulated(_) => {
                 let light = TabulatedLineLight::place(line, &upright, POWER).unwrap();
                 check(&light, p, direction, u)?;
-                let knots = profile.to_f32().unwrap();
-                let light = light.to_f32(&knots).unwrap();
-                if single(p).iter().all(|x| x.is_finite()) {
-                    check(&light, single(p), single(direction), u_single)?;
-                }
             }
             _ => {
                 let light = LineLight::place(line, &upright, POWER).unwrap();
                 check(&light, p, direction, u)?;
-                if single(p).iter().all(|x| x.is_finite()) {
-                    check(&light.to_f32().unwrap(), single(p), single(direction), u_single)?;
-                }
             }
         }
-    }
-
-    /// Rounding moves a point by ε|p| and that changes ln E by 4 y/w² times as much across the fan,
-    /// y ≤ ρ w; along it, by the change of the density over a length of 1 mm at least.
-    #[test]
-    fn single_precision_errs_by_the_rounding_of_coordinates(
-        index in 0..14_usize,
-        u in -0.4..0.4_f64,
-        rho in -1.5..1.5_f64,
-        z in 0.05..0.5_f64,
-    ) {
-        let line = &lasers(0.9)[index];
-        let depth = z + APEX_OFFSET;
-        let w = line.half_thickness_at_angle(z, u.atan());
-        let p = world(DVec3::new(u * depth, rho * w, z));
-        let single = p.map(<f32 as Scalar>::of);
-        let double = single.map(f64::from);
-        let e64 = place(line).irradiance(double);
-        let e32 = match line.profile() {
-            LineProfile::Tabulated(profile) => {
-                let light = TabulatedLineLight::place(line, &placement(), POWER).unwrap();
-                light.to_f32(&profile.to_f32().unwrap()).unwrap().irradiance(single)
-            }
-            _ => {
-                let light = LineLight::place(line, &placement(), POWER).unwrap();
-                light.to_f32().unwrap().irradiance(single)
-            }
-        };
-        // Origin, three axes and the difference are each rounded by ε/2 of less than 1 m. The
-        // divergence brings the slant distance's own error: ε r w'/w, with w'/w < 1/z_R.
-        let moved = 4.0 * f64::from(f32::EPSILON) * DVec3::from(double).length().max(0.5);
-        let bound = 4.0 * rho.abs().max(0.1) * moved / w + 4.0 * (moved / w).powi(2) + 2e-6
-            + 20.0 * moved / depth;
-        let error = f64::from(e32) / e64 - 1.0;
-        prop_assert!(error.abs() <= bound, "{} > {}", error, bound);
     }
 }

@@ -1,7 +1,12 @@
 //! How far speckle of a broad source moves a laser line.
 
+use std::f64::consts::PI;
+
 use tem00::{
-    coherence::{PolychromaticSpeckle, Rows},
+    DVec3,
+    coherence::{
+        CellGeometry, LineShape, PolychromaticSpeckle, Relief, ResolutionCell, Rows, SpectralLine,
+    },
     wave::Estimate,
 };
 
@@ -90,5 +95,56 @@ fn lines_of_a_broad_source_scatter_as_the_law_says_and_not_as_their_contrast() {
         if rows == Rows::Thin {
             assert_refutes("contrast", waves, law.contrast());
         }
+    }
+}
+
+/// Numbers by the transform of the lens that two discs along the rows share, squared, over all distances of the discs:
+/// the kernel of thin rows.
+#[test]
+fn long_relief_leaves_a_line_its_noise() {
+    const WAVELENGTH: f64 = 450e-9;
+    const SIN_APERTURE: f64 = 0.025;
+    let line = SpectralLine::new(WAVELENGTH, 20e-9, LineShape::Gaussian).expect("a line");
+    let sigma = line.wave_number_spread();
+    let noise = |[spread, tilt, length]: [f64; 3]| {
+        // The tilt is the sine of the incidence, for a camera along the normal.
+        let sine = tilt / sigma * 4.0 * PI * SIN_APERTURE / WAVELENGTH;
+        let cell = ResolutionCell::new(CellGeometry {
+            to_source: DVec3::new(sine, 0.0, (1.0 - sine * sine).sqrt()),
+            to_pupil: DVec3::Z,
+            normal: DVec3::Z,
+            sin_aperture: SIN_APERTURE,
+            wavelength: WAVELENGTH,
+        });
+        let cell = cell.expect("a cell");
+        let relief = Relief {
+            rms_height: spread / sigma / cell.height_factor(),
+            correlation_length: length * cell.speckle_size(),
+        };
+        let cell = cell.with_relief(relief).expect("a relief");
+        let (line, cell) = (&line, &cell);
+        PolychromaticSpeckle { line, cell }.line_noise_ratio(Rows::Thin)
+    };
+    for (case, thin, tolerance) in [
+        ([0.65, 0.0, 0.5], 0.8288, 5e-3),
+        ([0.65, 0.0, 2.0], 0.9328, 5e-3),
+        ([1.5, 0.0, 1.0], 0.7194, 5e-3),
+        ([1.5, 0.0, 4.0], 0.9011, 5e-3),
+        ([0.65, 0.15, 1.0], 0.8129, 1e-2),
+        ([0.65, 0.15, 4.0], 0.8626, 1e-2),
+        ([2.0, 0.1, 0.5], 0.5518, 1e-2),
+        ([2.0, 0.1, 2.0], 0.7540, 1e-2),
+        ([1.0, 0.05, 4.0], 0.9211, 1e-2),
+    ] {
+        let found = noise(case);
+        assert!((found - thin).abs() < tolerance, "{case:?}: {found}");
+    }
+    // Short relief is as none of correlation, long one as none of height.
+    for (case, limit) in [
+        ([0.65, 0.15, 1e-3], [0.65, 0.15, 0.0]),
+        ([0.65, 0.15, 300.0], [0.0, 0.15, 0.0]),
+    ] {
+        let [found, limit] = [case, limit].map(noise);
+        assert!((found - limit).abs() < 2e-3, "{case:?}: {found}, {limit}");
     }
 }

@@ -304,52 +304,6 @@ fn rows_lie_between_thin_and_tall_ones() {
     assert_relative_eq!(between[4], 0.831, epsilon = 4e-3);
 }
 
-/// Numbers by the transform of the lens that two discs along the rows share, squared, over all distances of the discs:
-/// the kernel of thin rows.
-#[test]
-fn long_relief_leaves_a_line_its_noise() {
-    let noise = |rows, [spread, tilt, length]: [f64; 3]| {
-        let line = gaussian(450e-9, 20e-9);
-        let sigma = line.wave_number_spread();
-        // The tilt is the sine of the incidence, for a camera along the normal.
-        let sine = tilt / sigma * 4.0 * PI * 0.025 / 450e-9;
-        let cell = cell(450e-9, sine.asin().to_degrees(), 0.0, 0.0);
-        let relief = Relief {
-            rms_height: spread / sigma / cell.height_factor(),
-            correlation_length: length * cell.speckle_size(),
-        };
-        let cell = cell.with_relief(relief).unwrap();
-        let speckle = PolychromaticSpeckle {
-            line: &line,
-            cell: &cell,
-        };
-        speckle.line_noise_ratio(rows)
-    };
-    for (case, thin) in [
-        ([0.65, 0.0, 0.5], 0.8288),
-        ([0.65, 0.0, 2.0], 0.9328),
-        ([1.5, 0.0, 1.0], 0.7194),
-        ([1.5, 0.0, 4.0], 0.9011),
-    ] {
-        assert_relative_eq!(noise(Rows::Thin, case), thin, epsilon = 5e-3);
-    }
-    for (case, thin) in [
-        ([0.65, 0.15, 1.0], 0.8129),
-        ([0.65, 0.15, 4.0], 0.8626),
-        ([2.0, 0.1, 0.5], 0.5518),
-        ([2.0, 0.1, 2.0], 0.7540),
-        ([1.0, 0.05, 4.0], 0.9211),
-    ] {
-        assert_relative_eq!(noise(Rows::Thin, case), thin, epsilon = 1e-2);
-    }
-    for case in [[0.65, 0.15, 1e-3], [0.65, 0.15, 300.0]] {
-        let [spread, tilt, length] = case;
-        let same = if length < 1.0 { spread } else { 0.0 };
-        let limit = noise(Rows::Thin, [same, tilt, 0.0]);
-        assert_relative_eq!(noise(Rows::Thin, case), limit, epsilon = 2e-3);
-    }
-}
-
 #[test]
 fn the_wings_of_a_lorentzian_end_on_a_long_relief() {
     let relief = Relief {

@@ -14,7 +14,7 @@
 //!   [`AstigmaticBeam`] (elliptic).
 //! - Laser lines: [`LaserLine`] (z = 0 at the lens) with a [`LineProfile`].
 //!
-//! *Renderer*, in `f32` or `f64` and in world coordinates: [`SpotLight`], [`LineLight`] and
+//! *Renderer*, in world coordinates: [`SpotLight`], [`LineLight`] and
 //! [`TabulatedLineLight`], plain structs prepared from the above by a [`Placement`], queried through
 //! the trait [`Emitter`]: next-event estimation, ray sampling, densities, radiance, bounds and batches.
 //! The text of their [closed forms](closed_form) in WGSL and C is for kernels that cannot call a

@@ -20,6 +20,7 @@ pub use line::LineLight;
 pub use record::{
     ApertureHit, Bounds, NextEvent, NextEventSlices, RayPdf, RaySample, SampledEvent,
 };
+pub(crate) use slope::secant;
 pub use spot::SpotLight;
 pub use tabulated::TabulatedLineLight;
 

@@ -7,7 +7,7 @@ mod density;
 
 pub(crate) use angular::AngularTable;
 pub use angular::{AngularKnot, AngularProfile};
-pub(crate) use density::{SlopeDensity, SlopeProfile, Variable, secant};
+pub(crate) use density::{SlopeDensity, SlopeProfile, Variable};
 
 /// Distribution of the power of a laser line along its fan.
 ///

@@ -25,14 +25,13 @@ use super::slope::{aperture_point, direction, secant, slope_of, towards_light};
 /// fraction exp(−2 · cutoff²) of the power of a spot, 1e−14 by default. The power is not raised to
 /// make up for it. Rays are not cut off.
 ///
-/// Uniform variates are expected in [0, 1). One that is 0 acts as half the spacing of such variates
-/// in the type at hand.
+/// Uniform variates are expected in [0, 1). One that is 0 acts as half the spacing of such variates.
 ///
 /// # Validity
 ///
-/// In `f32` the irradiance carries the rounding of the coordinates. Within two beam radii of the axis
-/// its relative error is usually below `4 ε (1 + |p| / w)` and below five times that wherever the
-/// light stands, with ε = 1.2e−7, the larger one `|p|` of the distances of the point and of the light
+/// The irradiance carries the rounding of the coordinates, which is large where they come from `f32`.
+/// Within two beam radii of the axis its relative error is then usually below `4 ε (1 + |p| / w)` and
+/// below five times that wherever the light stands, with ε = 1.2e−7, the larger one `|p|` of the distances of the point and of the light
 /// from the world's origin, and the smaller beam radius `w`. In a line the half-length of the fan and
 /// the width of its roll-off count as radii too; at an abrupt end nothing can be said.
 ///
@@ -231,8 +230,8 @@ pub trait Emitter: PhaseSpace {
     /// along the unit vector `d`; 0 for a ray against the axis.
     ///
     /// Any point `o` of the ray will do: the densities of position are those of the ray's point on the
-    /// aperture plane. In `f32` this needs the coordinates to resolve the source, which for a line
-    /// is about a micrometre wide.
+    /// aperture plane. Coordinates that were rounded to `f32` must still resolve the source, which for a line is
+    /// about a micrometre wide.
     fn ray_pdf(&self, o: [f64; 3], d: [f64; 3]) -> RayPdf {
         let frame = self.frame();
         match slope_of(frame.local_from_world_vector(d)) {

@@ -11,8 +11,9 @@ use super::line::LineLight;
 use super::phase_space::{Batch, Flow, PhaseSpace, Reach, SlopeSample};
 use super::power_bound::{LocalBox, ROUNDING, chance};
 use super::record::RayPdf;
+use super::slope::secant;
 use crate::normal::{HALF_SPACING, normal_density, standard_normal};
-use crate::profile::{SlopeDensity, SlopeProfile, Variable, secant};
+use crate::profile::{SlopeDensity, SlopeProfile, Variable};
 
 /// A laser line with a profile along its fan.
 pub trait Fan {
@@ -42,7 +43,7 @@ pub trait Fan {
 fn position_density(fan: &impl Fan, [x, y]: [f64; 2]) -> f64 {
     let line = fan.line();
     let u = x / line.apex_offset;
-    let sec = secant(u);
+    let sec = secant([u]);
     let r = line.apex_offset * sec;
     let sigma = 0.5 * line.source_radius / r;
     let w_sq = line.axis_towards(sec).radius_sq_at(r);
@@ -71,7 +72,7 @@ impl<F: Fan> PhaseSpace for F {
         let (line, profile) = (self.line(), self.profile());
         let z = z + line.apex_offset;
         let u = x / z;
-        let sec = secant(u);
+        let sec = secant([u]);
         let (axis, r) = (line.axis_towards(sec), z * sec);
         let w_sq = axis.radius_sq_at(r);
         let lit = profile.reaches(u, line.cutoff) & (y * y <= line.cutoff * line.cutoff * w_sq);
@@ -95,17 +96,17 @@ impl<F: Fan> PhaseSpace for F {
         let b = sigma_b * standard_normal(u[0]);
         // The foot of the perpendicular from the apex is at distance b: r' = √(r² − b²) from there.
         let slope = x / z;
-        let r = z * secant(slope);
+        let r = z * secant([slope]);
         let along = (r - b).sqrt() * (r + b).sqrt();
         // tan(θ_p − θ) = b / r', with θ_p the angle of the point.
         let turn = b / along;
         let slope_x = (slope - turn) / (1.0 + slope * turn);
-        let sec_fan = secant(slope_x);
+        let sec_fan = secant([slope_x]);
         let axis = line.axis_towards(sec_fan);
         let (mean, sigma_s) = axis.conditional_slope(y, along);
         let deviation = sigma_s * standard_normal(u[1]);
         let s = mean + deviation;
-        let sec_elevation = secant(s);
+        let sec_elevation = secant([s]);
 
         let f = self.profile().per_angle(slope_x);
         let across = normal_density(y, 0.5 * axis.radius_sq_at(along).sqrt());
@@ -120,9 +121,9 @@ impl<F: Fan> PhaseSpace for F {
     fn slope_pdf(&self, [x, y, z]: [f64; 3], slope: [f64; 2]) -> f64 {
         let line = self.line();
         let z = z + line.apex_offset;
-        let sec_fan = secant(slope[0]);
+        let sec_fan = secant([slope[0]]);
         let s = slope[1] / sec_fan;
-        let sec_elevation = secant(s);
+        let sec_elevation = secant([s]);
         // In the fan plane the ray passes the apex at the distance b, and the point lies `along`
         // behind the foot of the perpendicular.
         let b = (x - slope[0] * z) / sec_fan;
@@ -148,7 +149,7 @@ impl<F: Fan> PhaseSpace for F {
         let b = 0.5 * line.source_radius * standard_normal(u[0]);
         let y_waist = sigma_y * standard_normal(u[1]);
         let s = sigma_s * standard_normal(u[3]);
-        let sec = secant(slope_x);
+        let sec = secant([slope_x]);
         let along = line.apex_offset * sec + b * slope_x;
         let x = line.apex_offset * slope_x + b * sec;
         let y = y_waist + s * (along - line.axis_towards(sec).z0);
@@ -159,9 +160,9 @@ impl<F: Fan> PhaseSpace for F {
     fn densities(&self, [x, y]: [f64; 2], slope: [f64; 2]) -> RayPdf {
         let line = self.line();
         let (sigma_y, sigma_s) = line.y.deviations();
-        let sec_fan = secant(slope[0]);
+        let sec_fan = secant([slope[0]]);
         let s = slope[1] / sec_fan;
-        let sec_elevation = secant(s);
+        let sec_elevation = secant([s]);
         let b = (x - line.apex_offset * slope[0]) / sec_fan;
         let along = (x * slope[0] + line.apex_offset) / sec_fan;
         let y_waist = y - s * (along - line.axis_towards(sec_fan).z0);
@@ -206,7 +207,7 @@ impl<F: Fan> PhaseSpace for F {
         }
         let along = self.profile().between(low, high) + ROUNDING;
         let steepest = low.abs().max(high.abs());
-        let secants = [secant(low.max(-high).max(0.0)), secant(steepest)];
+        let secants = [secant([low.max(-high).max(0.0)]), secant([steepest])];
         let dz = line.distances_from_waist([near, far], secants, source * steepest);
         along.min(1.0) * chance(&line.y, dz, target.y, line.cutoff)
     }
@@ -215,7 +216,7 @@ impl<F: Fan> PhaseSpace for F {
     fn reach(&self, l: f64) -> Reach {
         let slope = self.profile().largest_slope(self.line().cutoff);
         let line = self.line();
-        let sec = secant(slope);
+        let sec = secant([slope]);
         let (near, far) = (line.apex_offset, l + line.apex_offset);
         // w² is convex in the slant distance and in its secant, so it is largest at a corner.
         let corners = [(near, 1.0), (near * sec, sec), (far * sec, sec)];

@@ -1,9 +1,10 @@
 //! Rays as slopes against the axis of a light.
 
-/// Returns `√(1 + s²)`, the length of the ray per distance along the axis.
+/// Returns `√(1 + s²)`, the secant of the angle of a slope: the length of the ray per distance along
+/// the axis.
 #[inline(always)]
-pub(super) fn secant(slope: [f64; 2]) -> f64 {
-    (1.0 + slope[0] * slope[0] + slope[1] * slope[1]).sqrt()
+pub(crate) fn secant<const N: usize>(slope: [f64; N]) -> f64 {
+    slope.iter().fold(1.0, |sum, s| sum + s * s).sqrt()
 }
 
 /// Returns the unit vector of a slope, in the frame of the light.

@@ -4,6 +4,7 @@
 use core::f64::consts::{FRAC_PI_2, SQRT_2};
 
 use crate::normal::{interior, normal_density, standard_normal};
+use crate::placed::secant;
 
 /// The slope of the angle next to π/2 in double precision: no ray of a fan is steeper.
 const STEEPEST: f64 = 1.633_123_935_319_537e16;
@@ -75,7 +76,7 @@ impl Variable {
         match self {
             Self::Tan | Self::Tabulated => u,
             Self::Angle => u.atan(),
-            Self::Sin => u / secant(u),
+            Self::Sin => u / secant([u]),
         }
     }
 
@@ -285,10 +286,4 @@ impl SlopeDensity {
         let (inner, outer) = ((v + self.flat) / self.sigma, (v - self.flat) / self.sigma);
         0.5 * self.sigma / self.flat * (integral(inner) - integral(outer))
     }
-}
-
-/// Returns `√(1 + u²)`, the secant of the angle whose slope is `u`.
-#[inline(always)]
-pub(crate) fn secant(u: f64) -> f64 {
-    (1.0 + u * u).sqrt()
 }

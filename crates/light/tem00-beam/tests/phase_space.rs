@@ -5,15 +5,14 @@
 //! stated where it is used.
 #![expect(clippy::expect_used, reason = "helpers of tests")]
 
-mod lines;
-
-use lines::{profiles, slopes};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tem00_beam::{
     AstigmaticBeam, DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight,
     LineProfile, LocatedBeam, Placement, RaySample, SpotLight, TabulatedLineLight,
 };
+
+use crate::lines::{profiles, slopes};
 
 const WAVELENGTH: f64 = 650e-9;
 const POWER: f64 = 5e-3;

@@ -8,14 +8,13 @@
 //! between them. What lies beyond the range of integration is below 1e−14.
 #![expect(clippy::expect_used, reason = "helpers of tests")]
 
-mod lines;
-
-use lines::{REACH, profiles, slopes};
 use proptest::prelude::*;
 use tem00_beam::{
     AstigmaticBeam, DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight,
     LocatedBeam, Placement, SpotLight, TabulatedLineLight,
 };
+
+use crate::lines::{REACH, profiles, slopes};
 
 const WAVELENGTH: f64 = 650e-9;
 

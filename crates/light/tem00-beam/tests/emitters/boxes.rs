@@ -4,7 +4,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tem00_beam::{DVec3, Emitter, LaserLine, RaySample};
 
-use crate::lights::{POWER, elliptic, end_of, fans, place};
+use super::lights::{POWER, elliptic, end_of, fans, place};
 
 /// Rays that boxes are placed on, and rays that are counted.
 const PLACES: usize = 400;

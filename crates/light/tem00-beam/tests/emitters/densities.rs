@@ -5,7 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tem00_beam::{DVec3, Emitter, LaserLine, RayPdf};
 
-use crate::lights::{elliptic, end_of, fans, place};
+use super::lights::{elliptic, end_of, fans, place};
 use crate::lines::slopes;
 
 /// `σ_b/r`: the angle, on the axis, that the rays of a point of the lens differ by.

@@ -4,7 +4,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tem00_beam::{DVec3, Emitter, GaussianBeam, LaserLine, SpotLight};
 
-use crate::lights::{PLACEMENT, POWER, elliptic, fans, place};
+use super::lights::{PLACEMENT, POWER, elliptic, fans, place};
 
 /// A lobe about the axis: slopes are normal with this deviation.
 #[derive(Clone, Copy)]

@@ -8,5 +8,3 @@ mod boxes;
 mod densities;
 mod hits;
 mod lights;
-#[path = "../lines/mod.rs"]
-mod lines;

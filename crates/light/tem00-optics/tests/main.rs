@@ -1,0 +1,4 @@
+//! Beams through systems, and what is refused.
+
+mod q_law;
+mod refusals;

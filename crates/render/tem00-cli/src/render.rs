@@ -138,6 +138,7 @@ fn report(render: &Render<'_>, Sequence { exposure, finished }: &Sequence) -> Re
     report.data("fingerprint", render.fingerprint.to_string());
     report.data("seed", options.seed);
     report.data("samples_per_pixel", options.samples_per_pixel);
+    report.data("reference", render.args.reference);
     report.data("method", options.method.name());
     report.data("max_depth", options.max_depth);
     let target = match options.sampling {

@@ -44,6 +44,10 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "ERROR", value_parser = relative_error, conflicts_with = "adaptive")]
     pub(crate) target_error: Option<f64>,
 
+    /// Follow one sample at a time, by the reference integrator: slow and plain, to judge a picture by another program.
+    #[arg(long, conflicts_with_all = ["target_error", "adaptive"])]
+    pub(crate) reference: bool,
+
     /// Render nothing: say what the camera will see of each laser and why, and draw camera, lasers and
     /// parts. Ends with the exit code 3 if it will see no light of a laser.
     #[arg(long)]

@@ -11,7 +11,7 @@ use tem00_report::{
     output::{self, note},
 };
 use tem00_speckle::SpeckleError;
-use tem00_tracer::{Scene, TracerError};
+use tem00_tracer::{ReferenceSpeckle, Scene, TracerError};
 
 use super::{record::Fingerprint, report::note_roughness};
 use crate::{
@@ -19,6 +19,12 @@ use crate::{
     frame_files::{FramePaths, check_room},
     inspection::Inspection,
 };
+
+/// The patterns of a scene, for either integrator.
+pub(super) enum Patterns {
+    Engine(SpeckleModel),
+    Reference(ReferenceSpeckle),
+}
 
 /// A render that is set up.
 pub(super) struct Render<'a> {
@@ -48,7 +54,8 @@ impl<'a> Render<'a> {
             .map_err(|error| tracer_failure(&args.common.scene, &error))?;
         // The text as well: standard input is none of the files.
         let changes = args.common.files.reading().changes;
-        let choices = (options, plan.is_some(), args.white_level, text, changes);
+        let by = (args.reference, args.white_level);
+        let choices = (options, plan.is_some(), by, text, changes);
 
         let frames = frames(args.common.frames, scene.frames)?;
         check_room(&args.common.scene, &scene)?;
@@ -109,7 +116,7 @@ impl<'a> Render<'a> {
         Ok(())
     }
 
-    pub(super) fn speckle(&self) -> Result<Option<SpeckleModel>, Failure> {
+    pub(super) fn speckle(&self) -> Result<Option<Patterns>, Failure> {
         let Some(plan) = &self.plan else {
             note("speckle: left out, as asked");
             return Ok(None);
@@ -126,8 +133,12 @@ impl<'a> Render<'a> {
         for line in plan.correlation_notes() {
             note(&format!("speckle: {line}"));
         }
-        let model = SpeckleModel::generate(&self.scene, plan)
-            .map_err(|error| tracer_failure(&self.args.common.scene, &error))?;
+        let model = match self.args.reference {
+            true => ReferenceSpeckle::prepare(&self.scene, self.scene.render.seed)
+                .map(Patterns::Reference),
+            false => SpeckleModel::generate(&self.scene, plan).map(Patterns::Engine),
+        };
+        let model = model.map_err(|error| tracer_failure(&self.args.common.scene, &error))?;
         interrupt::check()?;
         Ok(Some(model))
     }

@@ -2,12 +2,14 @@
 
 use std::{path::Path, time::Instant};
 
-use tem00_engine::{SpeckleModel, render_frame};
+use tem00_engine::render_frame;
 use tem00_report::{failure::Failure, interrupt, output::note, progress::FrameProgress};
-use tem00_tracer::{Filter, Frame, Method, RenderError, Sampling, SurfaceSpeckle};
+use tem00_tracer::{
+    Filter, Frame, Method, RenderError, Sampling, SurfaceSpeckle, render_reference,
+};
 
 use super::{
-    job::{Render, tracer_failure},
+    job::{Patterns, Render, tracer_failure},
     record::{Found, Record, forget, hash_of_file},
 };
 use crate::{
@@ -134,7 +136,7 @@ impl Render<'_> {
     fn frame(
         &self,
         number: u32,
-        model: Option<&SpeckleModel>,
+        patterns: Option<&Patterns>,
         progress: &FrameProgress,
     ) -> Result<Frame, Failure> {
         let advance = progress.begin(match self.scene.frames {
@@ -142,14 +144,19 @@ impl Render<'_> {
             frames => format!("{} frame {number} of 0..{}", self.name, frames - 1),
         });
         let flag = interrupt::flag();
-        let frame = render_frame(
-            &self.scene,
-            model,
-            number,
-            &self.scene.render,
-            advance,
-            flag,
-        );
+        let (scene, options) = (&self.scene, &self.scene.render);
+        let frame = match patterns {
+            Some(Patterns::Reference(speckle)) => {
+                render_reference(scene, Some(speckle), number, options, advance, flag)
+            }
+            None if self.args.reference => {
+                render_reference(scene, None, number, options, advance, flag)
+            }
+            Some(Patterns::Engine(model)) => {
+                render_frame(scene, Some(model), number, options, advance, flag)
+            }
+            None => render_frame(scene, None, number, options, advance, flag),
+        };
         frame.map_err(|error| match error {
             RenderError::Cancelled => Failure::Interrupted,
             RenderError::Scene(error) => tracer_failure(&self.args.common.scene, &error),

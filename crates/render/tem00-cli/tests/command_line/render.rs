@@ -130,6 +130,29 @@ fn what_was_asked_for_is_in_the_summary() {
     assert_eq!(summary["threads"], 1);
 }
 
+#[test]
+fn the_reference_renders_files_of_its_own_with_the_same_power() {
+    let folder = scene_folder();
+    let [engine, reference] = ["", "--reference"].map(|option| {
+        let line = format!("render a.toml -o . --spp 4 {option}");
+        assert_code(&run(folder.path(), &line), 0);
+        let summary = fs::read(folder.path().join("a.json")).expect("a summary");
+        let summary: Value = serde_json::from_slice(&summary).expect("JSON");
+        let layers = fs::read(folder.path().join("a.exr")).expect("layers");
+        assert_eq!(summary["reference"], !option.is_empty());
+        (
+            summary["frames"][0]["lasers"][0]["power_on_target"].clone(),
+            layers,
+        )
+    });
+    assert_ne!(engine.1, reference.1, "random numbers of their own");
+    let [engine, reference] = [engine.0, reference.0].map(|power| power.as_f64().expect("a power"));
+    assert!(
+        (reference / engine - 1.0).abs() < 0.1,
+        "{engine} | {reference}"
+    );
+}
+
 #[cfg(unix)]
 #[test]
 fn ctrl_c_ends_a_render_cleanly() {

@@ -11,6 +11,7 @@ mod line_image;
 mod line_noise;
 mod moving_scenes;
 mod moving_speckle;
+mod reference_and_engine;
 mod step_height;
 mod tilted_sensors;
 mod two_estimators;

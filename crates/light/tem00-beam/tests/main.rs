@@ -1,5 +1,7 @@
 //! Tests of placed lights, through the face that a renderer sees.
 
+#![expect(clippy::expect_used, clippy::unwrap_used, reason = "helpers of tests")]
+
 mod closed_forms;
 mod emitters;
 mod lines;

@@ -3,7 +3,6 @@
 //!
 //! All seeds are fixed. A correct sampler fails a single test with a probability of about 1e−4,
 //! stated where it is used.
-#![expect(clippy::expect_used, reason = "helpers of tests")]
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

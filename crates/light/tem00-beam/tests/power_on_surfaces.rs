@@ -6,7 +6,6 @@
 //! for a Gaussian: with a spacing of half a standard deviation the error is exp(−2π² · 4) ≈ 1e−34.
 //! Along a line, where a profile may have edges and kinks, it is summed by Gauss's rule on pieces
 //! between them. What lies beyond the range of integration is below 1e−14.
-#![expect(clippy::expect_used, reason = "helpers of tests")]
 
 use proptest::prelude::*;
 use tem00_beam::{

@@ -12,11 +12,6 @@
 //! ε/1e−5 = 2e−11. Oblique views amplify both by a few powers of the inverse cosines (at most 5
 //! here), hence the tolerance of 1e−7 relative to the motion.
 
-#![expect(
-    clippy::unwrap_used,
-    reason = "the helpers of a test stop it as the test itself would"
-)]
-
 use glam::{DMat2, EulerRot};
 use tem00_decorrelation::{
     CameraFrame, Configuration, ConfigurationData, DMat3, DVec2, DVec3, Illumination,

@@ -3,11 +3,6 @@
 //! A scene here is a list of positions: scatterers fixed to a body, a source, a pupil. Paths are
 //! distances, the phase is 2π/λ times the path, and the law is found by looking where phases agree.
 
-#![expect(
-    clippy::unwrap_used,
-    reason = "the helpers of a test stop it as the test itself would"
-)]
-
 use core::f64::consts::TAU;
 
 use glam::{DMat2, DMat3, DQuat, DVec2, DVec3};

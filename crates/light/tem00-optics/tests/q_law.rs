@@ -1,7 +1,5 @@
 //! Beams, rays and second moments through the same optics.
 
-#![expect(clippy::unwrap_used, reason = "helpers of tests")]
-
 use core::f64::consts::PI;
 
 use proptest::prelude::*;

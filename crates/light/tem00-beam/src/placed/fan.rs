@@ -260,7 +260,7 @@ impl Fan for LineLight {
     fn run_batch(&self, batch: Batch<'_>) {
         const TAN: f64 = Variable::Tan.code();
         const SIN: f64 = Variable::Sin.code();
-        let is_gaussian_in = |code: f64| self.flat == 0.0 && self.variable == code;
+        let is_gaussian_in = |code: f64| self.flat == 0.0 && (self.variable - code).abs() < 0.5;
         if is_gaussian_in(TAN) {
             vectorised(
                 #[inline(always)]

@@ -160,6 +160,7 @@ impl SlopeProfile for SlopeDensity {
     }
 
     /// Normal distributions add their variances.
+    #[expect(clippy::imprecise_flops, reason = "no square is out of range")]
     fn spread_per_angle(&self, u: f64, sigma: f64) -> f64 {
         let sec_sq = 1.0 + u * u;
         let added = match self.variable() {

@@ -2,10 +2,6 @@
 //!
 //! Here the WGSL is only parsed: its answers are those of a card. The C header is compiled by the
 //! system's compiler.
-#![expect(
-    clippy::unwrap_used,
-    reason = "a test stops at what it does not expect"
-)]
 
 mod c_header;
 mod comparison;

@@ -2,7 +2,6 @@
 //! in boxes.
 //!
 //! All seeds are fixed.
-#![expect(clippy::expect_used, reason = "helpers of tests")]
 
 mod boxes;
 mod densities;

@@ -13,12 +13,28 @@ use tem00_triangulation::{DVec3, UncertaintySource};
 pub(super) struct Term {
     /// The source of the error.
     pub(super) name: &'static str,
+    /// What lowers it.
+    remedy: &'static str,
     /// The standard uncertainty of a line's position, in pixels; none of the calibration.
     pub(super) position: Option<f64>,
     /// The standard uncertainty of a height, in metres.
     pub(super) height: f64,
     /// The part of the variance of a height that it makes, from 0 to 1.
     pub(super) variance_fraction: f64,
+}
+
+impl Term {
+    fn new(source: Option<UncertaintySource>, position: Option<f64>, variance: f64) -> Self {
+        let indirect =
+            "another pose, a duller surface or a smaller window lower it; averages do not";
+        Self {
+            name: source.map_or("indirect light", UncertaintySource::name),
+            remedy: source.map_or(indirect, UncertaintySource::remedy),
+            position,
+            height: variance.sqrt(),
+            variance_fraction: 0.0,
+        }
+    }
 }
 
 /// The terms, as root mean squares over the valid points.
@@ -46,22 +62,20 @@ const COVERAGE: f64 = 1.96;
 /// A term of the variance of a position, in square pixels.
 type Variance = fn(&MeasuredPoint) -> f64;
 
-/// The terms of the variance of a position, by name.
-const OF_POSITION: [(&str, Variance); 7] = [
-    ("speckle", |point| point.noise.speckle),
-    ("shot noise", |point| point.noise.shot),
-    ("dark noise", |point| point.noise.dark),
-    ("quantisation", |point| point.noise.quantisation),
-    ("PRNU", |point| point.noise.prnu),
-    ("DSNU", |point| point.noise.dsnu),
-    (INDIRECT, |point| point.indirect.shift.powi(2)),
+/// The terms of the variance of a position; light that met a second surface is no noise.
+const OF_POSITION: [(Option<UncertaintySource>, Variance); 7] = [
+    (Some(UncertaintySource::Speckle), |point| {
+        point.noise.speckle
+    }),
+    (Some(UncertaintySource::ShotNoise), |point| point.noise.shot),
+    (Some(UncertaintySource::DarkNoise), |point| point.noise.dark),
+    (Some(UncertaintySource::Quantisation), |point| {
+        point.noise.quantisation
+    }),
+    (Some(UncertaintySource::Prnu), |point| point.noise.prnu),
+    (Some(UncertaintySource::Dsnu), |point| point.noise.dsnu),
+    (None, |point| point.indirect.shift.powi(2)),
 ];
-
-/// The term of light that met a second surface, which is no noise.
-const INDIRECT: &str = "indirect light";
-
-/// The term that is not of a position.
-const CALIBRATION: &str = "calibration";
 
 /// The part of indirect light in a line from which on a point is counted.
 const MUCH: f64 = 0.1;
@@ -84,24 +98,18 @@ impl Terms {
         };
         let mut terms: Vec<Term> = OF_POSITION
             .iter()
-            .map(|(name, of)| {
+            .map(|(source, of)| {
                 let per_pixel = |point: &MeasuredPoint| point.per_pixel.dot(height).powi(2);
                 let variance = mean(&|point| of(point) * per_pixel(point));
-                Term {
-                    name,
-                    position: Some(mean(of).sqrt()),
-                    height: variance.sqrt(),
-                    variance_fraction: 0.0,
-                }
+                Term::new(*source, Some(mean(of).sqrt()), variance)
             })
             .collect();
         let calibration = mean(&|point| point.calibration_uncertainty_along(height).powi(2));
-        terms.push(Term {
-            name: CALIBRATION,
-            position: None,
-            height: calibration.sqrt(),
-            variance_fraction: 0.0,
-        });
+        terms.push(Term::new(
+            Some(UncertaintySource::Calibration),
+            None,
+            calibration,
+        ));
         let variance: f64 = terms.iter().map(|term| term.height.powi(2)).sum();
         for term in terms.iter_mut().filter(|_| variance > 0.0) {
             term.variance_fraction = term.height.powi(2) / variance;
@@ -136,7 +144,7 @@ impl Terms {
                 " What dominates is {}, with {:.0} % of the variance: {}.",
                 term.name,
                 100.0 * term.variance_fraction,
-                remedy(term.name)
+                term.remedy
             )
         });
         format!(
@@ -202,16 +210,6 @@ fn quantile(ascending: &[f64], part: f64) -> f64 {
     ascending[rank.clamp(1, ascending.len()) - 1]
 }
 
-/// Returns what lowers a term.
-fn remedy(name: &str) -> &'static str {
-    if name == INDIRECT {
-        return "another pose, a duller surface or a smaller window lower it; averages do not";
-    }
-    let mut sources = UncertaintySource::ALL.into_iter();
-    let source = sources.find(|source| source.name() == name);
-    source.map_or("", UncertaintySource::remedy)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -240,13 +238,5 @@ mod tests {
                 "{part} of {count}"
             );
         }
-    }
-
-    #[test]
-    fn every_term_has_a_remedy() {
-        for (name, _) in OF_POSITION {
-            assert!(!remedy(name).is_empty(), "{name}");
-        }
-        assert!(!remedy(CALIBRATION).is_empty(), "{CALIBRATION}");
     }
 }

@@ -37,75 +37,27 @@ pub(crate) fn run(args: &SpeckleArgs, out: &mut impl Write) -> Result<(), Failur
 #[derive(Debug)]
 struct Speckle {
     geometry: ImagingGeometry,
-    pixel: Option<Pixel>,
-    decorrelation: Vec<Decorrelation>,
+    decorrelation: [Decorrelation; 5],
 }
 
-/// The speckle in a square pixel without gaps.
-#[derive(Debug)]
-struct Pixel {
-    pitch: f64,
-    /// In pixels.
-    speckle_size: f64,
-    /// The contrast of polarised light, and of light that the surface has depolarised.
-    contrast: f64,
-    contrast_depolarised: f64,
-}
-
-impl Pixel {
-    fn new(pitch: f64, speckle_size: f64) -> Self {
-        let contrast = pixel_contrast(pitch / speckle_size);
-        Self {
-            pitch,
-            speckle_size: speckle_size / pitch,
-            contrast,
-            // Two patterns of half the power each.
-            contrast_depolarised: contrast * core::f64::consts::FRAC_1_SQRT_2,
-        }
-    }
-}
-
-/// The amounts of a change that leave half of the pattern and none, in SI units.
+/// A change that decorrelates speckle, and its amounts that leave half of the pattern and none, in SI units.
 #[derive(Debug)]
 struct Decorrelation {
-    by: Change,
+    by: &'static str,
+    words: &'static str,
     /// `None` where the change does not decorrelate the pattern at first order.
     half: Option<f64>,
     none: Option<f64>,
 }
 
-/// The changes that decorrelate speckle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Change {
-    /// The surface moves across the line of sight, and a pixel stays where it is.
-    AcrossInAPixel,
-    /// The same, and the image of the surface is followed.
-    Across,
-    /// The surface moves along the line of sight.
-    Along,
-    /// The surface tilts about an axis across the plane of light and sight.
-    Tilt,
-    /// The wavelength changes.
-    Wavelength,
-}
-
-impl Change {
-    fn name(self) -> Cell {
-        let (key, words) = match self {
-            Self::AcrossInAPixel => ("across_in_a_pixel", "surface across the sight, in a pixel"),
-            Self::Across => ("across", "surface across the sight, followed"),
-            Self::Along => ("along", "surface along the sight"),
-            Self::Tilt => ("tilt", "surface tilted"),
-            Self::Wavelength => ("wavelength", "wavelength"),
-        };
-        Cell::new(key, words)
-    }
-
-    fn cell(self, value: Option<f64>) -> Cell {
-        Cell::or_dash(value.map(|value| match self {
-            Self::Tilt => DEGREES.quantity(value),
+impl Decorrelation {
+    fn row(&self) -> [Cell; 3] {
+        let amount = |value| match self.by {
+            "tilt" => DEGREES.quantity(value),
             _ => length(value),
-        }))
+        };
+        let [half, none] = [self.half, self.none].map(|value| Cell::or_dash(value.map(amount)));
+        [Cell::new(self.by, self.words), half, none]
     }
 }
 
@@ -121,9 +73,6 @@ impl Speckle {
             pixel_pitch: args.pixel_pitch.unwrap_or(args.wavelength),
         })?;
         Ok(Self {
-            pixel: args
-                .pixel_pitch
-                .map(|pitch| Pixel::new(pitch, geometry.speckle_size())),
             decorrelation: decorrelation(&geometry, args.angle)?,
             geometry,
         })
@@ -138,23 +87,28 @@ impl Speckle {
         );
         report.section("What changes it").table(self.changes());
         let section = report.section("Its size").table(self.sizes());
-        if let Some(pixel) = &self.pixel {
+        if let Some(pitch) = args.pixel_pitch {
+            let size = self.geometry.speckle_size() / pitch;
+            let contrast = pixel_contrast(size.recip());
+            // Light that the surface has depolarised makes two patterns of half the power each.
+            let depolarised = contrast * core::f64::consts::FRAC_1_SQRT_2;
+            let contrast_of = |value| NUMBER.with_digits(3).quantity(value);
             section
-                .fact("pixel_pitch", "pixel pitch", length(pixel.pitch))
+                .fact("pixel_pitch", "pixel pitch", length(pitch))
                 .fact(
                     "speckle_size_pixels",
                     "size h in pixels",
-                    NUMBER.quantity(pixel.speckle_size),
+                    NUMBER.quantity(size),
                 )
                 .fact(
                     "contrast",
                     "contrast in a pixel, polarised",
-                    NUMBER.with_digits(3).quantity(pixel.contrast),
+                    contrast_of(contrast),
                 )
                 .fact(
                     "contrast_depolarised",
                     "contrast in a pixel, depolarised",
-                    NUMBER.with_digits(3).quantity(pixel.contrast_depolarised),
+                    contrast_of(depolarised),
                 );
         }
         let geometry = &self.geometry;
@@ -231,8 +185,8 @@ impl Speckle {
             Column::new("none", "none is left at"),
         ];
         let mut table = Table::new("What decorrelates the speckle", columns).under("decorrelation");
-        for Decorrelation { by, half, none } in &self.decorrelation {
-            table.row([by.name(), by.cell(*half), by.cell(*none)]);
+        for change in &self.decorrelation {
+            table.row(change.row());
         }
         table
     }
@@ -251,38 +205,39 @@ fn length(metres: f64) -> Cell {
 fn decorrelation(
     geometry: &ImagingGeometry,
     angle: f64,
-) -> Result<Vec<Decorrelation>, tem00_decorrelation::Refusal> {
+) -> Result<[Decorrelation; 5], tem00_decorrelation::Refusal> {
     let cell = geometry.object_speckle_size();
     let axial = geometry.axial_decorrelation_length();
     let [across, tilt, wavelength] = pupil_shifts(geometry, angle)?;
     let halving = equivalent_pupil_shift(0.5)?;
-    let sliding = |by: Change, pupil_shift: f64| {
-        // What rounding leaves of a shift is none.
-        let reach = (pupil_shift > 1e-9).then(|| geometry.pupil_diameter() / pupil_shift);
-        Decorrelation {
-            by,
-            half: reach.map(|reach| halving * reach),
-            none: reach,
-        }
+    // What rounding leaves of a shift is none.
+    let reach = |shift: f64| (shift > 1e-9).then(|| geometry.pupil_diameter() / shift);
+    let change = |by, words, half, none| Decorrelation {
+        by,
+        words,
+        half,
+        none,
     };
-    let mut wavelength = sliding(Change::Wavelength, wavelength);
-    for length in [&mut wavelength.half, &mut wavelength.none] {
-        *length = length.map(|share| share * geometry.wavelength());
-    }
-    Ok(vec![
-        Decorrelation {
-            by: Change::AcrossInAPixel,
-            half: Some(AIRY_HALF_WIDTH * cell),
-            none: Some(AIRY_FIRST_ZERO * cell),
-        },
-        sliding(Change::Across, across),
-        Decorrelation {
-            by: Change::Along,
-            half: Some(equivalent_axial_shift(0.5)? * axial),
-            none: Some(axial),
-        },
-        sliding(Change::Tilt, tilt),
-        wavelength,
+    let sliding = |by, words, reach: Option<f64>| {
+        change(by, words, reach.map(|reach| halving * reach), reach)
+    };
+    let by_wavelength = reach(wavelength).map(|share| share * geometry.wavelength());
+    let along = equivalent_axial_shift(0.5)? * axial;
+    Ok([
+        change(
+            "across_in_a_pixel",
+            "surface across the sight, in a pixel",
+            Some(AIRY_HALF_WIDTH * cell),
+            Some(AIRY_FIRST_ZERO * cell),
+        ),
+        sliding(
+            "across",
+            "surface across the sight, followed",
+            reach(across),
+        ),
+        change("along", "surface along the sight", Some(along), Some(axial)),
+        sliding("tilt", "surface tilted", reach(tilt)),
+        sliding("wavelength", "wavelength", by_wavelength),
     ])
 }
 
@@ -349,7 +304,7 @@ mod tests {
     }
 
     /// Returns what leaves nothing of the pattern.
-    fn none(speckle: &Speckle, change: Change) -> Option<f64> {
+    fn none(speckle: &Speckle, change: &str) -> Option<f64> {
         let mut changes = speckle.decorrelation.iter();
         changes
             .find(|found| found.by == change)
@@ -370,10 +325,10 @@ mod tests {
             let close = |found: Option<f64>, expected: f64| {
                 assert_relative_eq!(found.expect("a length"), expected, max_relative = 2e-6);
             };
-            close(found(Change::Across), d);
-            close(found(Change::Tilt), d / (l * (1.0 + theta.cos())));
-            close(found(Change::Along), 8.0 * lambda * (l / d).powi(2));
-            match found(Change::Wavelength) {
+            close(found("across"), d);
+            close(found("tilt"), d / (l * (1.0 + theta.cos())));
+            close(found("along"), 8.0 * lambda * (l / d).powi(2));
+            match found("wavelength") {
                 None => assert!(degrees == 0.0, "{degrees}°"),
                 length => close(length, lambda * d / (l * theta.sin())),
             }
@@ -384,7 +339,7 @@ mod tests {
     fn half_is_left_where_the_overlap_of_discs_has_the_square_one_half() {
         let speckle = Speckle::new(&args(0.0)).expect("a lens");
         let overlap = |s: f64| core::f64::consts::FRAC_2_PI * (s.acos() - s * (1.0 - s * s).sqrt());
-        for change in [Change::Across, Change::Tilt] {
+        for change in ["across", "tilt"] {
             let mut found = speckle.decorrelation.iter();
             let found = found.find(|found| found.by == change).expect("listed");
             let shift = found.half.expect("a length") / found.none.expect("a length");

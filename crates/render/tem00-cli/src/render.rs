@@ -10,13 +10,12 @@ use std::io::Write;
 use tem00_report::{
     digits::si_prefixed,
     failure::Failure,
-    image::{self, check_inside},
     kind::{Kind, wrong_or},
     output,
     report::Report,
 };
 use tem00_scene::SceneFile;
-use tem00_tracer::{Crop, Sampling, Scene};
+use tem00_tracer::{Sampling, Scene};
 
 pub use self::job::{frames, tracer_failure};
 use self::{
@@ -36,11 +35,10 @@ use crate::{
 ///
 /// Returns a failure if the input is not valid, a file cannot be written or the user ends it.
 pub(crate) fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let read = SceneFile::read_with(
-        &args.common.scene,
-        args.common.files.reading(),
-        |document, _| Ok(document.text().to_owned()),
-    );
+    let files = args.common.files.with(args.crop.as_ref());
+    let read = SceneFile::read_with(&args.common.scene, files.reading(), |document, _| {
+        Ok(document.text().to_owned())
+    });
     let (file, text) = read.map_err(|error| {
         wrong_or(&args.common.scene, Kind::Scene, || {
             let needed = "a scene needs a laser, a camera and a surface";
@@ -54,7 +52,7 @@ pub(crate) fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure
         ..
     } = file;
     notes.iter().for_each(|line| output::note(line));
-    let scene = overruled(scene, args)?;
+    let scene = overruled(scene, args);
     if args.check {
         return check(args, &scene, out);
     }
@@ -100,17 +98,8 @@ fn check(args: &RenderArgs, scene: &Scene, out: &mut impl Write) -> Result<(), F
     }
 }
 
-const fn tracer_crop(crop: image::Crop) -> Crop {
-    Crop {
-        x: crop.x,
-        y: crop.y,
-        width: crop.width,
-        height: crop.height,
-    }
-}
-
 /// Returns the scene with what the command line overrules.
-fn overruled(mut scene: Scene, args: &RenderArgs) -> Result<Scene, Failure> {
+fn overruled(mut scene: Scene, args: &RenderArgs) -> Scene {
     let options = &mut scene.render;
     args.common.overrule(options);
     options.method = args.method.unwrap_or(options.method);
@@ -118,16 +107,7 @@ fn overruled(mut scene: Scene, args: &RenderArgs) -> Result<Scene, Failure> {
     if let Some(error) = args.target_error {
         options.sampling = Sampling::TargetError(error);
     }
-    options.crop = args.crop.map(tracer_crop).or(options.crop);
-    if let Some(crop) = args.crop {
-        check_inside(crop, [scene.camera.width(), scene.camera.height()]).map_err(|error| {
-            Failure::input(
-                error.to_string(),
-                "the first two numbers are the upper left pixel, the others the size",
-            )
-        })?;
-    }
-    Ok(scene)
+    scene
 }
 
 /// Returns the report of the frames of a render.

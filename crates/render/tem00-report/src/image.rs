@@ -12,7 +12,7 @@ mod saturation;
 mod selection;
 
 pub use self::{
-    common::{Crop, Format, ImageError, Transfer, check_inside, open},
+    common::{Crop, Format, ImageError, Transfer, open},
     exr_file::{Layer, Window, write_exr},
     png_file::{write_grey_png, write_rgb_png},
 };

@@ -4,10 +4,8 @@ use clap::{
     Args,
     builder::{PossibleValuesParser, TypedValueParser},
 };
-use tem00_report::{
-    args::{crop, positive},
-    image::Crop,
-};
+use tem00_config::Change;
+use tem00_report::args::{crop, positive};
 use tem00_tracer::Method;
 
 use super::SceneArgs;
@@ -27,8 +25,8 @@ pub(crate) struct RenderArgs {
     pub(crate) resume: bool,
 
     /// Only this part of the image, in pixels from the upper left corner [default: from the scene].
-    #[arg(long, value_name = "X,Y,WIDTH,HEIGHT", value_parser = crop)]
-    pub(crate) crop: Option<Crop>,
+    #[arg(long, value_name = "X,Y,WIDTH,HEIGHT", value_parser = crop_of_scene)]
+    pub(crate) crop: Option<Change>,
 
     /// The direction in which light is traced: `path` from the camera, `light` from the lasers
     /// [default: from the scene].
@@ -97,66 +95,8 @@ fn radiance(text: &str) -> Result<f64, String> {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use clap::Parser;
-
-    use super::*;
-    use crate::args::{Cli, Command};
-
-    fn parse(line: &str) -> Result<RenderArgs, clap::Error> {
-        let cli = Cli::try_parse_from(line.split_whitespace())?;
-        match cli.command {
-            Command::Render(args) => Ok(args),
-            other => panic!("{other:?} is not render"),
-        }
-    }
-
-    #[test]
-    fn every_option_of_render_is_understood() {
-        let line = "tem00 render a.toml --white-level 1e3 --resume --crop 1,2,30,40 \
-                    --method light --max-depth 5 --target-error 0.01 --check";
-        let args = parse(line).expect("the line is valid");
-        assert!(args.resume && args.check, "all are on");
-        assert_eq!(args.white_level, Some(1e3));
-        let crop = Crop {
-            x: 1,
-            y: 2,
-            width: 30,
-            height: 40,
-        };
-        assert_eq!(args.crop, Some(crop));
-        assert_eq!(args.method, Some(Method::Light));
-        assert_eq!(args.max_depth, Some(5));
-        assert_eq!(args.target_error, Some(0.01));
-    }
-
-    #[test]
-    fn a_scene_is_all_that_render_needs() {
-        let args = parse("tem00 render a.toml").expect("the line is valid");
-        assert!(!args.resume && !args.check, "{args:?}");
-        assert!(args.crop.is_none(), "{args:?}");
-    }
-
-    #[test]
-    fn bad_values_are_usage_errors_that_name_them() {
-        for (line, part) in [
-            ("--spp 0", "0"),
-            ("--threads 0", "1..=1024"),
-            ("--threads 1000000", "1..=1024"),
-            ("--white-level -1", "-1"),
-            ("--white-level=nan", "nan"),
-            ("--see 3", "--seed"),
-            ("--frames 7..3", "after the last"),
-            ("--crop 1,2,3", "X,Y,WIDTH,HEIGHT"),
-            ("--crop 0,0,0,5", "0,0,0,5"),
-            ("--method photon", "light"),
-            ("--max-depth 0", "0"),
-            ("--target-error 2", "between 1e-6 and 1"),
-        ] {
-            let error = parse(&format!("tem00 render a.toml {line}")).expect_err("it is wrong");
-            assert_eq!(error.exit_code(), 2, "{line}");
-            assert!(error.to_string().contains(part), "{line}: {error}");
-        }
-    }
+/// Returns what a part of the image changes in the scene, whose reader sees that it lies in the image.
+fn crop_of_scene(text: &str) -> Result<Change, String> {
+    crop(text)?;
+    format!("render.crop=[{text}]").parse()
 }

@@ -18,6 +18,13 @@ pub struct FileArgs {
 }
 
 impl FileArgs {
+    /// Returns the options with one more change, if there is one.
+    pub fn with(&self, change: Option<&Change>) -> Self {
+        let mut more = self.clone();
+        more.changes.extend(change.cloned());
+        more
+    }
+
     /// Returns how the file is read.
     pub fn reading(&self) -> Reading<'_> {
         Reading {

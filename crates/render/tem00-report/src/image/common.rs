@@ -172,7 +172,7 @@ pub enum ImageError {
 }
 
 /// Makes sure that a rectangle lies in an image.
-pub fn check_inside(crop: Crop, [width, height]: [usize; 2]) -> Result<(), ImageError> {
+pub(super) fn check_inside(crop: Crop, [width, height]: [usize; 2]) -> Result<(), ImageError> {
     let inside = |start: usize, length: usize, size: usize| {
         start.checked_add(length).is_some_and(|end| end <= size)
     };

@@ -1,4 +1,4 @@
-"""The program `tem00` that the package brings: what it says, and how it ends, is as without Python."""
+"""The programs that the package brings: what `tem00` says, and how it ends, is as without Python."""
 
 import os
 import signal
@@ -19,9 +19,10 @@ def run(*arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, check=False)
 
 
-def test_it_has_the_version_of_the_package() -> None:
-    ended = run("--version")
-    assert (ended.returncode, ended.stdout) == (0, f"tem00 {tem00.__version__}\n")
+@pytest.mark.parametrize("name", ["tem00", "tem00-inspect"])
+def test_it_has_the_version_of_the_package(name: str) -> None:
+    ended = subprocess.run([PROGRAM.with_name(name), "--version"], capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stdout) == (0, f"{name} {tem00.__version__}\n")
 
 
 def test_what_it_computes_is_printed_to_the_end() -> None:

@@ -6,8 +6,6 @@
 //! values scaled up to 16 bits, and is undone in the files of others.
 
 mod bmp_frame;
-#[cfg(test)]
-mod camera_formats;
 mod curve;
 mod frame;
 mod jpeg_frame;
@@ -16,8 +14,6 @@ mod pnm_frame;
 mod samples;
 #[cfg(test)]
 mod tests;
-#[cfg(test)]
-mod tiff_flavours;
 mod tiff_frame;
 mod tiff_packed;
 mod tiff_pixels;

@@ -1,3 +1,6 @@
+mod camera_formats;
+mod tiff_flavours;
+
 use std::{fs, io::Cursor, path::PathBuf};
 
 use png::{BitDepth, ColorType, Encoder};

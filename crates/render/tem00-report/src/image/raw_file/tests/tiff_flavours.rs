@@ -2,9 +2,9 @@
 
 use std::io::Cursor;
 
-use super::super::{LoadedImage, Reading};
 use super::{RawFormat, decode};
 use crate::image::ImageError;
+use crate::image::{LoadedImage, Reading};
 
 /// An entry of a directory: its tag, and its numbers of 16 bits.
 type Entry = (u16, Vec<u16>);

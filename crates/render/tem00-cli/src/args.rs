@@ -170,10 +170,6 @@ mod tests {
 
     use super::*;
 
-    fn parse(line: &str) -> Result<Command, clap::Error> {
-        Cli::try_parse_from(line.split_whitespace()).map(|cli| cli.command)
-    }
-
     #[test]
     fn the_command_line_is_consistent() {
         Cli::command().debug_assert();
@@ -203,18 +199,6 @@ mod tests {
                 let private = PRIVATE.iter().find(|word| text.contains(**word));
                 assert_eq!(private, None, "{name}: {text}");
             }
-        }
-    }
-
-    #[test]
-    fn bad_values_are_usage_errors_that_name_them() {
-        for (line, part) in [
-            ("tem00 patern -o a.png", "pattern"),
-            ("tem00 pattern", "--output"),
-        ] {
-            let error = parse(line).expect_err("the line is wrong");
-            assert_eq!(error.exit_code(), 2, "{line}");
-            assert!(error.to_string().contains(part), "{line}: {error}");
         }
     }
 }

@@ -5,34 +5,7 @@ use serde_json::Value;
 use super::{assert_code, files, folder, message, run, tem00, text};
 
 /// A set-up of the usual parts, with few rows.
-pub(super) const SETUP: &str = r#"
-[laser]
-wavelength = "650 nm"
-power = "5 mW"
-line_thickness = "0.2 mm"
-line_length = "50 mm"
-
-[camera]
-focal_length = "25 mm"
-f_number = 8
-pixel_pitch = "3.45 um"
-resolution = [640, 64]
-distance = "300 mm"
-angle = "30 deg"
-
-[sensor]
-quantum_efficiency = 0.6
-exposure = "0.1 ms"
-
-[surface]
-reflectance = 0.5
-
-[detector]
-window = 21
-
-[calibration]
-uncertainty = "2 um"
-"#;
+pub(super) const SETUP: &str = include_str!("../cmd/files/setup.toml");
 
 fn setup_folder(from: &str, to: &str) -> tempfile::TempDir {
     assert!(SETUP.contains(from), "{from} is in the set-up");
@@ -143,93 +116,6 @@ fn a_page_has_name_day_checksum_and_every_input_and_the_json_no_day() {
         assert_code(&output, 2);
         assert!(message(&output).contains("SOURCE_DATE_EPOCH"), "{wrong}");
     }
-}
-
-#[test]
-fn all_that_is_out_of_range_is_told_at_once_in_the_units_that_were_typed() {
-    let folder = setup_folder("[laser]", "[laser]");
-    let set = [
-        (
-            "laser.line_thickness=0.5 um",
-            "line_thickness must be from 1 um to 1000000 um, got 0.5 um",
-        ),
-        (
-            "camera.f_number=2000",
-            "f_number must be from 0.5 to 1000, got 2000",
-        ),
-        (
-            "camera.distance=1 cm",
-            "distance must be from 1.001 focal lengths to 100000 cm, got 1 cm",
-        ),
-        (
-            "camera.angle=1.7 rad",
-            "angle must be from 0.01745 rad to 1.553 rad, got 1.7 rad",
-        ),
-        (
-            "laser.tilt=800 mrad",
-            "tilt must be from -785.4 mrad to 785.4 mrad, got 800 mrad",
-        ),
-    ];
-    let mut command = tem00(folder.path(), "budget a.toml --trials 0");
-    for (change, _) in set {
-        command.args(["--set", change]);
-    }
-    let output = command.output().expect("the program starts");
-    assert_code(&output, 2);
-    let told = message(&output);
-    for (_, part) in set {
-        assert!(told.contains(part), "`{part}` is not in {told}");
-    }
-}
-
-#[test]
-fn json_is_the_same_for_any_number_of_threads() {
-    let folder = setup_folder("[laser]", "[laser]");
-    let with = |threads: u32| {
-        let line = format!("budget a.toml --json --trials 10 --seed 3 -o x --threads {threads}");
-        run(folder.path(), &line).stdout
-    };
-    let one = with(1);
-    assert_eq!(json(&one)["trials"]["seed"], 3, "{}", text(&one));
-    assert_eq!(text(&one), text(&with(3)), "one thread and three");
-}
-
-#[test]
-fn trials_can_be_left_out() {
-    let folder = setup_folder("[laser]", "[laser]");
-    let output = run(folder.path(), "budget a.toml --trials 0");
-    assert!(output.status.success(), "{}", text(&output.stderr));
-    let table = text(&output.stdout);
-    assert!(!table.contains("by trials"), "{table}");
-}
-
-#[test]
-fn what_is_wrong_with_a_setup_is_told_at_its_place() {
-    for (from, to, part) in [
-        ("wavelength", "wavelenght", "did you mean `wavelength`?"),
-        ("\"650 nm\"", "\"650 m\"", "from 100 nm to 100 µm"),
-        ("power = \"5 mW\"", "power = 1e300", "at most"),
-        ("window = 21", "window = 20", "odd"),
-        ("window = 21", "window = 101", "rows of the image"),
-        ("[surface]\nreflectance = 0.5", "", "[surface]"),
-    ] {
-        let folder = setup_folder(from, to);
-        let output = run(folder.path(), "budget a.toml --trials 0");
-        let told = message(&output);
-        assert_eq!(output.status.code(), Some(2), "{to}: {told}");
-        assert!(
-            told.contains(part) && told.contains("a.toml"),
-            "{to}: {told}"
-        );
-        assert!(output.stdout.is_empty(), "{to}");
-    }
-    let output = run(folder().path(), "budget missing.toml");
-    assert_eq!(output.status.code(), Some(2), "{}", message(&output));
-    assert!(
-        message(&output).contains("missing.toml"),
-        "{}",
-        message(&output)
-    );
 }
 
 /// Asserts that a set-up gets no number: in no stream, in no file.
@@ -452,17 +338,6 @@ fn what_dominates_is_of_the_answer_to_quote() {
 }
 
 #[test]
-fn a_set_up_that_is_known_exactly_has_no_answers() {
-    let folder = setup_folder("[laser]", "[laser]");
-    let output = run(folder.path(), "budget a.toml --trials 0 --json");
-    assert!(
-        json(&output.stdout).get("measurement").is_none(),
-        "{}",
-        text(&output.stdout)
-    );
-}
-
-#[test]
 fn correlated_values_have_no_parts_of_the_variance() {
     let both = "distance = { value = \"300 mm\", uncertainty = \"1 mm\" }\n\
                 angle = { value = \"30 deg\", uncertainty = \"0.3 deg\" }";
@@ -631,67 +506,4 @@ fn a_certificate_states_the_height_to_quote() {
         !path.exists(),
         "that of another run would be taken for one of this"
     );
-}
-
-#[test]
-fn certificates_that_cannot_be_are_refused() {
-    let certificate = format!("{CERTIFICATE}[budget]\nheight = 0\n");
-    for (from, to, expected) in [
-        (
-            "responsible = ",
-            "responsable = ",
-            "did you mean `responsible`?",
-        ),
-        (
-            "responsible = \"A. Example\"",
-            "",
-            "[certificate] needs the key `responsible`",
-        ),
-        (
-            "[certificate.customer]",
-            "[certificate.costumer]",
-            "did you mean `customer`?",
-        ),
-        (
-            "country = \"DE\"",
-            "country = \"de\"",
-            "two capital letters",
-        ),
-        (
-            "identifier = \"A-1\"",
-            "identifier = \" A-1\"",
-            "without spaces at its ends",
-        ),
-        (
-            "to = 2026-11-23",
-            "to = 2026-11-19",
-            "`performed_from` or later",
-        ),
-        (
-            "issued = \"2026-11-23\"",
-            "issued = \"23.11.2026\"",
-            "a date such as",
-        ),
-        (
-            "at = \"laboratory\"",
-            "at = \"lab\"",
-            "one of \"laboratory\"",
-        ),
-        (
-            "issuer = \"customer\"",
-            "issuer = \"me\"",
-            "one of \"manufacturer\"",
-        ),
-        ("height = 0", "", "needs a height that is measured"),
-    ] {
-        assert!(certificate.contains(from), "{from}");
-        let folder = setup_folder("[laser]", "[laser]");
-        let setup = format!("{SETUP}{}", certificate.replacen(from, to, 1));
-        fs::write(folder.path().join("a.toml"), setup).expect("the set-up is written");
-        let output = run(folder.path(), "budget a.toml --trials 0");
-        assert_code(&output, 2);
-        let why = message(&output);
-        assert!(why.contains(expected), "{from}: {why}");
-        assert!(!folder.path().join("out").exists(), "nothing is written");
-    }
 }

@@ -37,32 +37,3 @@ fn a_changed_set_up_has_the_budget_of_an_edited_one() {
     assert_eq!(changed, edited);
     assert_ne!(changed, budget(SETUP, &[]), "the change counts");
 }
-
-#[test]
-fn changes_that_cannot_be_are_told() {
-    let folder = folder();
-    fs::write(folder.path().join("a.toml"), triangulate::SCAN).expect("written");
-    fs::write(folder.path().join("b.toml"), SETUP).expect("written");
-    for (command, change, part) in [
-        (
-            "triangulate a.toml",
-            "sensor.exposur=1",
-            "did you mean `exposure`?",
-        ),
-        ("budget b.toml", "lasr.power=1", "did you mean `laser`?"),
-        (
-            "design b.toml",
-            "design.vary.f_numbr=[8]",
-            "did you mean `f_number`?",
-        ),
-    ] {
-        let mut command = tem00(folder.path(), command);
-        let output = command.args(["--set", change]).output().expect("it starts");
-        assert_code(&output, 2);
-        assert!(
-            message(&output).contains(part),
-            "{change}: {}",
-            message(&output)
-        );
-    }
-}

@@ -6,35 +6,7 @@ use tem00_triangulation::{Budget, read_setup};
 
 use super::{assert_code, files, folder, message, run, text};
 
-pub(super) const SETUP: &str = r#"
-[laser]
-wavelength = "660 nm"
-power = "10 mW"
-line_thickness = "0.2 mm"
-line_length = "60 mm"
-
-[camera]
-focal_length = "25 mm"
-f_number = 8
-pixel_pitch = "3.45 um"
-resolution = [640, 480]
-distance = "300 mm"
-angle = "30 deg"
-
-[sensor]
-quantum_efficiency = 0.6
-exposure = "0.05 ms"
-
-[surface]
-reflectance = 0.4
-
-[detector]
-window = 21
-
-[design.vary]
-f_number = { from = 4, to = 16, steps = 3, scale = "log" }
-angle = ["25 deg", "40 deg"]
-"#;
+pub(super) const SETUP: &str = include_str!("../cmd/files/design.toml");
 
 fn setup_folder(require: &str) -> tempfile::TempDir {
     let folder = folder();
@@ -151,25 +123,6 @@ fn a_search_writes_its_files_and_a_winner_that_reads_back() {
 }
 
 #[test]
-fn the_files_do_not_depend_on_the_number_of_threads() {
-    let folder = setup_folder("saturation = 0.9");
-    for threads in [1, 3] {
-        let line = format!("design a.toml -o {threads} --threads {threads}");
-        assert_code(&run(folder.path(), &line), 0);
-    }
-    for name in [
-        "best.toml",
-        "design.csv",
-        "trade_off.png",
-        "sensitivity.png",
-    ] {
-        let read = |threads: &str| fs::read(folder.path().join(threads).join(name));
-        let [one, three] = ["1", "3"].map(|threads| read(threads).expect("the file is there"));
-        assert!(one == three, "{name} is the same");
-    }
-}
-
-#[test]
 fn where_no_set_up_will_do_there_is_no_winner() {
     let folder = setup_folder("field_width = \"2 m\"");
     fs::create_dir_all(folder.path().join("out/a")).expect("a folder");
@@ -237,54 +190,4 @@ fn what_a_search_finds_best_has_good_light_in_its_budget() {
         let is_long = |word: &str| word.bytes().filter(u8::is_ascii_digit).count() > 6;
         assert!(!best.split_whitespace().any(is_long), "{best}");
     }
-}
-
-#[test]
-fn bad_searches_are_one_message_and_no_file() {
-    let folder = setup_folder("rnage = \"2 mm\"");
-    let plain = SETUP.split("[design").next().unwrap_or_default();
-    let write = |name: &str, text: &str| {
-        fs::write(folder.path().join(name), text).expect("the set-up is written");
-    };
-    write("plain.toml", plain);
-    write(
-        "none.toml",
-        &format!("{plain}\n[design.vary]\ndistance = [\"20 mm\"]\n"),
-    );
-    write(
-        "many.toml",
-        &format!("{SETUP}exposure = {{ from = 1, to = 2, steps = 9999 }}\n"),
-    );
-    let before = files(folder.path());
-    for (line, part) in [
-        ("design missing.toml", "missing.toml"),
-        ("design a.toml", "did you mean `range`?"),
-        ("design plain.toml", "no section [design]"),
-        ("design many.toml", "59994"),
-        ("design a.toml --best 0", "--best"),
-    ] {
-        let output = run(folder.path(), line);
-        assert_code(&output, 2);
-        assert!(
-            message(&output).contains(part),
-            "{line}: {}",
-            message(&output)
-        );
-        assert!(output.stdout.is_empty(), "{line}: nothing is data");
-        assert_eq!(files(folder.path()), before, "{line}");
-    }
-    let some = plain.to_owned() + "\n[design.vary]\ndistance = [\"20 mm\", \"300 mm\"]\n";
-    write("some.toml", &some);
-    let output = run(folder.path(), "design some.toml");
-    assert_code(&output, 0);
-    let told = text(&output.stdout);
-    assert!(
-        told.contains("1 not possible; the first, number 0: distance"),
-        "{told}"
-    );
-    let output = run(folder.path(), "design none.toml");
-    assert_code(&output, 3);
-    let told = message(&output);
-    assert!(told.contains("none of the 1 set-ups is possible"), "{told}");
-    assert!(told.contains("distance"), "{told}");
 }

@@ -7,36 +7,7 @@ use serde_json::Value;
 use super::{assert_code, files, folder, message, run, tem00, text};
 
 /// Two plates, a millimetre apart, that move under a line in four frames.
-pub(super) const SCAN: &str = r#"
-[camera]
-position = [0, "-150 mm", "259.8 mm"]
-look_at = [0, 0, "0.5 mm"]
-up = [0, 0, 1]
-f_number = 5.6
-resolution = [48, 56]
-[[laser]]
-wavelength = "650 nm"
-power = "5 mW"
-position = [0, 0, "300 mm"]
-line_direction = [1, 0, 0]
-line = { fan_angle = "20 deg", thickness = "0.3 mm", profile = "uniform" }
-[[surface]]
-displacement_per_frame = [0, "0.2 mm", 0]
-rectangle = { centre = ["-10 mm", 0, 0], size = ["20 mm", "20 mm"] }
-lambertian.reflectance = 0.5
-[[surface]]
-displacement_per_frame = [0, "0.2 mm", 0]
-rectangle = { centre = ["10 mm", 0, "1 mm"], size = ["20 mm", "20 mm"] }
-lambertian.reflectance = 0.5
-[sensor]
-quantum_efficiency = 0.6
-exposure = "0.1 ms"
-[detector]
-window = 25
-[render]
-samples_per_pixel = 4
-frames = 4
-"#;
+pub(super) const SCAN: &str = include_str!("../cmd/files/scan.toml");
 
 fn written(scene: &str) -> tempfile::TempDir {
     let folder = folder();
@@ -168,40 +139,6 @@ fn results_do_not_depend_on_the_threads_but_on_the_seed() {
     assert_ne!(one, cloud("--seed 5", "other"));
     assert_ne!(one, cloud("--no-speckle", "quiet"));
     assert!(record(&folder.path().join("quiet"))["speckle"].is_null());
-}
-
-#[test]
-fn scenes_that_cannot_be_measured_are_refused_in_words() {
-    for (good, bad, part) in [
-        ("[sensor]", "[sensr]", "did you mean `sensor`?"),
-        ("quantum_efficiency = 0.6", "", "quantum_efficiency"),
-        ("window = 25", "window = 24", "window"),
-        (
-            "line_direction = [1, 0, 0]",
-            "line_direction = [0, 1, 0]",
-            "left to right",
-        ),
-        (
-            "[render]",
-            "[scan]\nsurface = \"lid\"\n[render]",
-            "\"surface 1\", \"surface 2\"",
-        ),
-        ("[render]", "[scan]\npitch = \"1 nm\"\n[render]", "pitch"),
-        ("frames = 4", "frames = 4\ncrop = [0, 0, 9, 9]", "`crop`"),
-    ] {
-        let folder = written(&SCAN.replace(good, bad));
-        let output = run(folder.path(), "triangulate a.toml");
-        assert_code(&output, 2);
-        assert!(
-            message(&output).contains(part),
-            "{bad}: {}",
-            message(&output)
-        );
-    }
-    let folder = written(SCAN);
-    let output = run(folder.path(), "triangulate a.toml --frames 2..9");
-    assert_code(&output, 2);
-    assert!(message(&output).contains("0..3"), "{}", message(&output));
 }
 
 #[test]

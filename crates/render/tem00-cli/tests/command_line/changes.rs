@@ -44,41 +44,6 @@ fn a_changed_scene_is_rendered_as_if_its_file_said_so() {
 }
 
 #[test]
-fn changes_that_cannot_be_are_told() {
-    let folder = scene_folder();
-    for (command, change, part) in [
-        (
-            "render a.toml",
-            "camera.f_nmber=8",
-            "did you mean `f_number`?",
-        ),
-        ("render a.toml", "camera.f_number=0.1", "at least 0.5"),
-        (
-            "render a.toml",
-            "laser[1].power=1",
-            "there is no `laser[1]`",
-        ),
-        ("render a.toml", "laser.power=1", "`laser` has no keys"),
-        (
-            "render a.toml",
-            "camera.focal_length=0 mm",
-            "at least 1e-9 mm, got \"0 mm\"",
-        ),
-        ("render a.toml", "f_number", "camera.f_number=8"),
-        ("render a.toml", "include=[]", "`include` cannot be changed"),
-    ] {
-        let mut command = tem00(folder.path(), command);
-        let output = command.args(["--set", change]).output().expect("it starts");
-        assert_code(&output, 2);
-        assert!(
-            message(&output).contains(part),
-            "{change}: {}",
-            message(&output)
-        );
-    }
-}
-
-#[test]
 fn a_render_of_other_values_is_another_render() {
     let folder = folder();
     fs::write(folder.path().join("a.toml"), format!("{SCENE}frames = 2\n")).expect("written");

@@ -58,3 +58,55 @@ pub(crate) fn interrupt(child: &std::process::Child) {
     let sent = Command::new("sh").args(["-c", &interrupt]).status();
     assert!(sent.expect("a shell").success(), "the signal is sent");
 }
+
+/// Returns the words of a command, of which some may be in quotation marks.
+pub(crate) fn words(command: &str) -> Vec<String> {
+    let (mut words, mut word, mut quote) = (Vec::new(), None::<String>, None);
+    for c in command.chars() {
+        match (c, quote) {
+            ('\'' | '"', None) => {
+                quote = Some(c);
+                word.get_or_insert_default();
+            }
+            (_, Some(open)) if c == open => quote = None,
+            (_, None) if c.is_whitespace() => words.extend(word.take()),
+            _ => word.get_or_insert_default().push(c),
+        }
+    }
+    words.extend(word);
+    words
+}
+
+/// Plays the transcript `tests/cmd/NAME.txt`: runs its commands one after the other beside the files of `tests/cmd/files`
+/// and those that `prepare` makes, and compares what they say. `SNAPSHOTS=overwrite cargo test` writes what they say now.
+#[track_caller]
+pub(crate) fn play(name: &str, prepare: impl FnOnce(&Path)) -> tempfile::TempDir {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cmd");
+    let folder = folder();
+    for file in files(&here.join("files")) {
+        fs::copy(here.join("files").join(&file), folder.path().join(&file)).expect("copied");
+    }
+    prepare(folder.path());
+    let path = here.join(name).with_extension("txt");
+    let script = fs::read_to_string(&path).expect("the transcript");
+    let mut found = String::new();
+    for line in script.lines() {
+        if let Some(command) = line.strip_prefix("$ ") {
+            let mut program = tem00(folder.path(), "");
+            let output = program.args(&words(command)[1..]).output();
+            let output = output.expect("the program starts");
+            let said = text(&output.stdout) + &text(&output.stderr);
+            found.push_str(&format!("{line}\n{said}"));
+            if let Some(code @ 1..) = output.status.code() {
+                found.push_str(&format!("=> {code}\n"));
+            }
+            found.push('\n');
+        } else if line.starts_with("# ") {
+            found.push_str(&format!("{line}\n"));
+        }
+    }
+    let expected = snapbox::Data::read_from(&path, Some(snapbox::data::DataFormat::Text));
+    let assert = snapbox::Assert::new().action_env("SNAPSHOTS");
+    assert.eq(found, expected);
+    folder
+}

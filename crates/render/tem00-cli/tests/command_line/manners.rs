@@ -8,68 +8,6 @@ use std::{
 
 use super::*;
 
-const SETUP: &str = "[laser]\nwavelength = \"650 nm\"\n[camera]\n[surface]\nreflectance = 0.5\n";
-
-#[test]
-fn a_file_of_another_kind_is_told_with_the_command_that_takes_it() {
-    let folder = scene_folder();
-    let path = folder.path();
-    fs::write(path.join("b.toml"), SETUP).expect("written");
-    let grid = "[sweep]\ncommand = \"budget\"\nfile = \"b.toml\"\n[[sweep.vary]]\nkey = \"camera.f_number\"\n";
-    fs::write(path.join("g.toml"), grid).expect("written");
-    let is_grid = [
-        "this is the grid file of a sweep",
-        "tem00-inspect sweep g.toml",
-    ];
-    assert_code(&run(path, "pattern -o c.png --size 64"), 0);
-    for (line, parts) in [
-        (
-            "render b.toml",
-            ["this is a set-up file", "tem00-inspect budget b.toml"],
-        ),
-        ("render g.toml", is_grid),
-        ("render c.png", ["this is an image", "tem00 stats c.png"]),
-        (
-            "stats a.toml",
-            ["this is a scene file", "tem00 render a.toml"],
-        ),
-    ] {
-        let output = run(path, line);
-        assert_code(&output, 2);
-        let told = message(&output);
-        for part in parts {
-            assert!(told.contains(part), "{line}: {told}");
-        }
-    }
-}
-
-#[test]
-fn numbers_come_back_in_the_unit_that_was_typed() {
-    for (from, to, part) in [
-        ("\"25 mm\"", "\"0 mm\"", "at least 1e-9 mm, got \"0 mm\""),
-        ("\"25 mm\"", "\"1e20 mm\"", "at most 1e12 mm"),
-        // The focus, 300 mm away, must lie beyond the focal length.
-        (
-            "f_number = 8",
-            "f_number = 8\nfocus_distance = \"20 mm\"",
-            "greater than the focal length, got 20 mm",
-        ),
-        (
-            "\"0.2 mm\"",
-            "\"0.1 um\"",
-            "0.4138 um to be paraxial, got 0.1 um",
-        ),
-    ] {
-        let folder = folder();
-        assert!(SCENE.contains(from), "{from} is in the scene");
-        fs::write(folder.path().join("a.toml"), SCENE.replacen(from, to, 1)).expect("written");
-        let output = run(folder.path(), "render a.toml");
-        assert_code(&output, 2);
-        let told = message(&output);
-        assert!(told.contains(part), "{to}: {told}");
-    }
-}
-
 #[test]
 fn darkness_is_called_so() {
     let folder = folder();
@@ -80,6 +18,14 @@ fn darkness_is_called_so() {
     let said = text(&output.stderr);
     assert!(said.contains("laser 0: no light on target"), "{said}");
     assert!(!said.contains("0.0000e0"), "{said}");
+    let warned = said.find("misses every surface").expect("the reason");
+    let rendered = said.find("a.png: laser 0").expect("the result");
+    assert!(warned < rendered, "{said}");
+    let written = files(&folder.path().join("out/a"));
+    assert!(
+        written.contains(&"a_overview.svg".to_owned()),
+        "{written:?}"
+    );
 }
 
 #[test]

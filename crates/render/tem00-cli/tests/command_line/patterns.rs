@@ -116,21 +116,6 @@ fn fields_that_are_not_fields_are_refused_by_their_name() {
 }
 
 #[test]
-fn a_size_that_cannot_be_measured_costs_no_file() {
-    let folder = folder();
-    let output = run(folder.path(), "pattern -o a.npy --pupil rectangle:0.001");
-    assert_code(&output, 0);
-    assert_eq!(files(folder.path()), ["a.npy"]);
-    assert!(text(&output.stdout).contains("speckle size x"), "one axis");
-    assert!(!text(&output.stdout).contains("speckle size y"), "no other");
-    let said = message(&output);
-    assert!(
-        said.contains("size along y could not be measured"),
-        "{said}"
-    );
-}
-
-#[test]
 fn a_page_of_plots_is_drawn_where_it_was_asked_for() {
     let folder = folder();
     assert_code(&run(folder.path(), "pattern -o a.npy --size 64"), 0);

@@ -284,19 +284,6 @@ fn ctrl_c_keeps_the_finished_frames() {
 }
 
 #[test]
-fn frames_that_the_scene_has_not_are_refused() {
-    let folder = moving_folder(4, FRAMES);
-    let output = run(folder.path(), "render a.toml --frames 1..3");
-    assert_code(&output, 2);
-    assert!(
-        message(&output).contains("the scene has the frames 0..2"),
-        "{}",
-        message(&output)
-    );
-    assert!(!folder.path().join("out").exists(), "no folder is left");
-}
-
-#[test]
 fn mistakes_in_included_files_are_shown_there() {
     let folder = moving_folder(4, FRAMES);
     let part = PART.replace("position", "positoin");

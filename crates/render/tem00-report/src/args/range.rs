@@ -21,3 +21,28 @@ impl core::str::FromStr for IndexRange {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_one_or_a_range() {
+        let range = |text: &str| text.parse::<IndexRange>();
+        assert_eq!(range("4"), Ok(IndexRange { first: 4, last: 4 }));
+        assert_eq!(range("0..9"), Ok(IndexRange { first: 0, last: 9 }));
+        for bad in [
+            "",
+            "..",
+            "3..",
+            "..3",
+            "5..3",
+            "-1",
+            "1.5",
+            "1..2..3",
+            "99999999999",
+        ] {
+            assert!(range(bad).is_err(), "{bad} is no range");
+        }
+    }
+}

@@ -24,18 +24,6 @@ fn a_budget_is_a_table_and_five_files() {
     let folder = setup_folder("[laser]", "[laser]");
     let output = run(folder.path(), "budget a.toml --trials 10");
     assert!(output.status.success(), "{}", text(&output.stderr));
-    let table = text(&output.stdout);
-    for part in [
-        "Speckle dominates",
-        "by trials",
-        "quantisation",
-        "calibration",
-        "k = 1.96",
-        "Dorsch",
-        "budget.html",
-    ] {
-        assert!(table.contains(part), "{part} is not in\n{table}");
-    }
     let out = folder.path().join("out/a");
     let expected = [
         "budget.html",
@@ -209,19 +197,6 @@ fn an_uncertain_set_up_has_three_answers_and_one_to_quote() {
     let angle = "angle = { value = \"30 deg\", uncertainty = \"0.3 deg\" }\n\
                  principal_row = { value = 32, uncertainty = 0.5, distribution = \"rectangular\" }";
     let folder = setup_folder("angle = \"30 deg\"", angle);
-    let output = run(folder.path(), "budget a.toml --trials 40 --seed 3");
-    assert_code(&output, 0);
-    let table = text(&output.stdout);
-    for part in [
-        "law of propagation",
-        "propagation of distributions",
-        "virtual experiment",
-        "camera.principal_row",
-        "quote it",
-        "at the reference plane, of a set-up that is known exactly",
-    ] {
-        assert!(table.contains(part), "{part} is not in\n{table}");
-    }
     let record = json(&run(folder.path(), "budget a.toml --trials 40 --seed 3 --json").stdout);
     let found = &record["measurement"];
     let height = found["height"].as_f64().expect("a height");

@@ -4,7 +4,7 @@ use std::{fs, path::Path};
 
 use tem00_triangulation::{Budget, read_setup};
 
-use super::{assert_code, files, folder, message, run, text};
+use super::{assert_code, files, folder, run, text};
 
 pub(super) const SETUP: &str = include_str!("../cmd/files/design.toml");
 
@@ -73,15 +73,6 @@ fn a_search_writes_its_files_and_a_winner_that_reads_back() {
     let folder = setup_folder("saturation = 0.9\ndepth_of_field = \"15 mm\"");
     let output = run(folder.path(), "design a.toml --best 2");
     assert_code(&output, 0);
-    let table = text(&output.stdout);
-    for part in [
-        "6 set-ups tried",
-        "f-number",
-        "depth of field (mm)",
-        "out/a/best.toml",
-    ] {
-        assert!(table.contains(part), "{part}: {table}");
-    }
     let out = folder.path().join("out/a");
     let mut expected = vec!["best.toml", "design.csv", "design.html", "design.json"];
     let drawings = [
@@ -130,19 +121,7 @@ fn where_no_set_up_will_do_there_is_no_winner() {
     fs::write(&best, "the winner of another search").expect("written");
     let output = run(folder.path(), "design a.toml");
     assert_code(&output, 3);
-    let told = message(&output);
-    for part in [
-        "a.toml: none of the 6 set-ups that are possible keeps every constraint",
-        "field width ≥ 2000 mm excludes 6",
-        "relax [design.require]",
-    ] {
-        assert!(told.contains(part), "{part}: {told}");
-    }
-    let table = text(&output.stdout);
-    for part in ["0 keep every constraint", "nearest", "design.html"] {
-        assert!(table.contains(part), "{part}: {table}");
-    }
-    assert!(!table.contains("best.toml") && !best.exists(), "{table}");
+    assert!(!best.exists(), "the winner of another search");
     let page = fs::read_to_string(folder.path().join("out/a/design.html")).expect("text");
     assert!(!page.contains("best.toml"), "{page}");
     let printed = run(folder.path(), "design a.toml --json");

@@ -2,58 +2,21 @@
 
 use std::{fs, path::Path};
 
-use png::{BitDepth, ColorType, Encoder};
+use png::BitDepth;
 use serde_json::Value;
 
-use super::{assert_code, folder, message, run};
+use super::{
+    assert_code, folder,
+    helpers::{noise, rounded, write_png},
+    message, run,
+};
 
 const SIZE: usize = 64;
-
-/// Noise of a pixel, uniform from −1 to 1.
-fn noise(x: usize, y: usize) -> f64 {
-    let seed = (y * SIZE + x) as u64 + 1;
-    let mixed = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    (mixed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-}
 
 /// The light of a line of 8 pixels full width, with noise, 1 at its brightest.
 fn line(x: usize, y: usize) -> f64 {
     let distance = y as f64 + 0.5 - 31.3 - 0.02 * x as f64;
     0.05 + (0.9 + 0.02 * noise(x, y)) * (-2.0 * (distance / 4.0).powi(2)).exp()
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "rounded to 16 bits"
-)]
-fn rounded(value: f64) -> u16 {
-    value.round().clamp(0.0, 65_535.0) as u16
-}
-
-/// Writes a PNG of grey or RGB values of 8 or 16 bits.
-fn write_png<const C: usize>(
-    path: &Path,
-    [width, height]: [usize; 2],
-    depth: BitDepth,
-    pixel: impl Fn(usize, usize) -> [u16; C],
-) {
-    let size = [width, height].map(|side| u32::try_from(side).expect("a small image"));
-    let file = fs::File::create(path).expect("the file");
-    let mut encoder = Encoder::new(file, size[0], size[1]);
-    encoder.set_color(if C == 1 {
-        ColorType::Grayscale
-    } else {
-        ColorType::Rgb
-    });
-    encoder.set_depth(depth);
-    let pixel = &pixel;
-    let values = (0..height).flat_map(|y| (0..width).flat_map(move |x| pixel(x, y)));
-    let bytes = |value: u16| value.to_be_bytes()[usize::from(depth == BitDepth::Eight)..].to_vec();
-    let data: Vec<u8> = values.flat_map(bytes).collect();
-    let mut writer = encoder.write_header().expect("a header");
-    writer.write_image_data(&data).expect("an image");
 }
 
 fn write_grey(path: &Path, value: impl Fn(usize, usize) -> u16) {

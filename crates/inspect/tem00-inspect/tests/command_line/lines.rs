@@ -2,9 +2,9 @@
 
 use std::{f64::consts::PI, fs, path::Path};
 
-use png::{BitDepth, ColorType, Encoder};
+use png::BitDepth;
 
-use super::{assert_code, files, folder, message, run, text};
+use super::{assert_code, files, folder, helpers, message, run, text};
 
 const SIZE: [usize; 2] = [60, 48];
 
@@ -25,17 +25,8 @@ fn grey(from_middle: f64) -> u16 {
 }
 
 /// Writes a PNG of 16 bits.
-fn write_png(path: &Path, [width, height]: [usize; 2], value: impl Fn(usize, usize) -> u16) {
-    let size = [width, height].map(|side| u32::try_from(side).expect("a small image"));
-    let file = fs::File::create(path).expect("the file");
-    let mut encoder = Encoder::new(file, size[0], size[1]);
-    encoder.set_color(ColorType::Grayscale);
-    encoder.set_depth(BitDepth::Sixteen);
-    let value = &value;
-    let values = (0..height).flat_map(|y| (0..width).map(move |x| value(x, y)));
-    let data: Vec<u8> = values.flat_map(u16::to_be_bytes).collect();
-    let mut writer = encoder.write_header().expect("a header");
-    writer.write_image_data(&data).expect("an image");
+fn write_png(path: &Path, size: [usize; 2], value: impl Fn(usize, usize) -> u16) {
+    helpers::write_png(path, size, BitDepth::Sixteen, |x, y| [value(x, y)]);
 }
 
 /// Writes an image of a line at the places.

@@ -8,6 +8,8 @@ use std::{
     process::{Command, Output, Stdio},
 };
 
+use png::{BitDepth, ColorType, Encoder};
+
 pub(crate) fn tem00(folder: &Path, line: &str) -> Command {
     let mut command = Command::new(super::PROGRAM);
     command
@@ -109,4 +111,45 @@ pub(crate) fn play(name: &str, prepare: impl FnOnce(&Path)) -> tempfile::TempDir
     let assert = snapbox::Assert::new().action_env("SNAPSHOTS");
     assert.eq(found, expected);
     folder
+}
+
+/// Noise of a pixel, uniform from −1 to 1.
+pub(crate) fn noise(x: usize, y: usize) -> f64 {
+    let seed = (y * 64 + x) as u64 + 1;
+    let mixed = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    (mixed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "rounded to 16 bits"
+)]
+pub(crate) fn rounded(value: f64) -> u16 {
+    value.round().clamp(0.0, 65_535.0) as u16
+}
+
+/// Writes a PNG of grey or RGB values of 8 or 16 bits.
+pub(crate) fn write_png<const C: usize>(
+    path: &Path,
+    [width, height]: [usize; 2],
+    depth: BitDepth,
+    pixel: impl Fn(usize, usize) -> [u16; C],
+) {
+    let size = [width, height].map(|side| u32::try_from(side).expect("a small image"));
+    let file = fs::File::create(path).expect("the file");
+    let mut encoder = Encoder::new(file, size[0], size[1]);
+    encoder.set_color(if C == 1 {
+        ColorType::Grayscale
+    } else {
+        ColorType::Rgb
+    });
+    encoder.set_depth(depth);
+    let pixel = &pixel;
+    let values = (0..height).flat_map(|y| (0..width).flat_map(move |x| pixel(x, y)));
+    let bytes = |value: u16| value.to_be_bytes()[usize::from(depth == BitDepth::Eight)..].to_vec();
+    let data: Vec<u8> = values.flat_map(bytes).collect();
+    let mut writer = encoder.write_header().expect("a header");
+    writer.write_image_data(&data).expect("an image");
 }

@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from tem00.beam import FanGeometry, GaussianBeam, LaserLine, LineLight, LineProfile, Placement
-from tem00.decorrelation import ImagingGeometry, LensData
-from tem00.speckle import StackNeeds, StackOptions, StackPlan
+from tem00.beam import FanGeometry, GaussianBeam, LaserLine, Light, LineProfile, Placement
+from tem00.decorrelation import ImagingGeometry
+from tem00.speckle import StackPlan
 from tem00.statistics import Contrast, pixel_contrast
 
 Floats = npt.NDArray[np.float64]
@@ -98,13 +98,11 @@ def render(parameters: Parameters) -> Frame:
 def camera_with(f_number: float) -> ImagingGeometry:
     """Return the camera, in focus at the origin."""
     return ImagingGeometry.from_lens(
-        LensData(
-            wavelength=WAVELENGTH,
-            focal_length=25e-3,
-            f_number=f_number,
-            surface_to_pupil=DISTANCE,
-            pixel_pitch=3.45e-6,
-        )
+        wavelength=WAVELENGTH,
+        focal_length=25e-3,
+        f_number=f_number,
+        surface_to_pupil=DISTANCE,
+        pixel_pitch=3.45e-6,
     )
 
 
@@ -133,7 +131,7 @@ def surface_points(parameters: Parameters, camera: ImagingGeometry) -> tuple[Flo
     return s * u, s * v, DISTANCE - s * c
 
 
-def laser_line(thickness: float) -> LineLight:
+def laser_line(thickness: float) -> Light:
     """Return the laser, in focus at the origin."""
     line = LaserLine(
         GaussianBeam.from_waist(WAVELENGTH, 0.5 * thickness),
@@ -144,13 +142,13 @@ def laser_line(thickness: float) -> LineLight:
     placement = Placement(
         origin=DISTANCE * towards, direction=-towards, fan_axis=np.array([0.0, 1.0, 0.0])
     )
-    return LineLight.place(line, placement, POWER)
+    return Light.line(line, placement, POWER)
 
 
 def speckle_of_pixels(parameters: Parameters, speckle_size: float) -> Floats:
     """Return the speckle, with mean 1, over each pixel; `speckle_size` is in pixels."""
     image = (float(parameters.columns), float(parameters.rows))
-    needs = StackNeeds(
+    plan = StackPlan(
         image=image,
         region=image,
         speckle_size=speckle_size,
@@ -158,7 +156,7 @@ def speckle_of_pixels(parameters: Parameters, speckle_size: float) -> Floats:
         frames=1,
         memory_limit=1 << 30,
     )
-    stack = StackPlan(needs).stack(parameters.seed, StackOptions())
+    stack = plan.stack(parameters.seed)
     samples = stack.speckle_size / speckle_size
     columns, rows = samples * np.arange(parameters.columns), samples * np.arange(parameters.rows)
     x, y = np.meshgrid(columns, rows)

@@ -6,21 +6,20 @@
 
 mod blocks;
 mod columns;
-mod floats;
 mod images;
 mod numbers;
 mod results;
 mod whole;
 
-use pyo3::prelude::*;
+use numpy::Complex64;
+use pyo3::{prelude::*, types::PyComplex};
 
 pub(crate) use columns::{Column, columns, evaluate};
-pub(crate) use floats::{Floats, fill_in_kind};
-pub(crate) use images::{ComplexImage, Image, image_array};
-pub(crate) use numbers::{
-    Components, Named, Numbers, Samples, Table, Vectors, length, wavelength_of_light,
+pub(crate) use images::{ComplexImage, Image, ImageArray};
+pub(crate) use numbers::{Components, Named, Numbers, Vectors, length};
+pub(crate) use results::{
+    Array, List, Matrix, Values, Vector, add_named, named_class, named_tuple,
 };
-pub(crate) use results::{Array, Matrix, Values, Vector, array, vector_array};
 pub(crate) use whole::Whole;
 
 /// Applies `f` to `N` arguments broadcast together, without the interpreter's lock: a float for
@@ -87,4 +86,34 @@ pub(crate) fn fill<'py, const N: usize, const M: usize>(
     f: impl FnMut([&[f64]; N], [&mut [f64]; M]) + Send,
 ) -> PyResult<[Values<'py>; M]> {
     evaluate(py, columns(arguments, f64::MAX)?, [&[]; M], f)
+}
+
+/// Applies `f` to columns; its values lie in the shape `inner` in the last axes of the result.
+pub(crate) fn map_inner<'py, const N: usize, const K: usize>(
+    py: Python<'py>,
+    columns: [Column<'_>; N],
+    inner: &[usize],
+    f: impl Fn([f64; N]) -> [f64; K] + Send + Sync,
+) -> PyResult<Values<'py>> {
+    let [values] = evaluate(py, columns, [inner], |columns, [out]| {
+        for (i, out) in out.chunks_exact_mut(K).enumerate() {
+            out.copy_from_slice(&f(columns.map(|column| column[i])));
+        }
+    })?;
+    Ok(values)
+}
+
+/// As [`map_inner`], for complex values by their real and imaginary parts: a complex number for numbers.
+pub(crate) fn map_complex<'py, const N: usize>(
+    py: Python<'py>,
+    columns: [Column<'_>; N],
+    f: impl Fn([f64; N]) -> Complex64 + Send + Sync,
+) -> PyResult<Values<'py>> {
+    let [re, im] = evaluate(py, columns, [&[]; 2], |columns, [re, im]| {
+        for i in 0..re.len() {
+            let value = f(columns.map(|column| column[i]));
+            (re[i], im[i]) = (value.re, value.im);
+        }
+    })?;
+    re.add(im.mul(PyComplex::from_doubles(py, 0.0, 1.0))?)
 }

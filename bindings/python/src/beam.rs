@@ -1,29 +1,21 @@
-//! Bindings of tem00-beam.
+//! Bindings of `tem00-beam`, the module `tem00.beam`.
 
 mod abcd;
-mod arguments;
 mod astigmatic;
 mod closed_form;
-mod complex_parameter;
 mod cross_section;
-mod emitter;
 mod fit;
 mod gaussian;
-mod laser;
 mod light;
-mod lights;
 mod line;
-mod line_lights;
-mod located;
-mod placement;
+mod map;
 mod profile;
-pub(crate) mod records;
-mod rows;
 
 use pyo3::prelude::*;
 
 pub(crate) use self::{
-    emitter::Emitter, laser::light_of, profile::LineProfile, records::NextEvent,
+    light::{Light, named},
+    profile::LineProfile,
 };
 
 /// Gaussian beams, laser lines, and the lights that a renderer places.
@@ -37,26 +29,29 @@ pub(crate) mod beam {
 
     #[pymodule_export]
     use super::{
-        abcd::{AbcdMatrix, ThickLens},
+        abcd::AbcdMatrix,
         astigmatic::AstigmaticBeam,
         closed_form::closed_form,
-        complex_parameter::ComplexBeamParameter,
         cross_section::CrossSection,
-        emitter::Emitter,
         fit::{CausticFit, FitError, KnifeEdgeFit},
-        gaussian::GaussianBeam,
-        lights::SpotLight,
+        gaussian::{GaussianBeam, LocatedBeam},
+        light::{Light, Placement},
         line::{FanGeometry, LaserLine},
-        line_lights::{LineLight, TabulatedLineLight},
-        located::LocatedBeam,
-        placement::{Axis, Placement},
-        profile::{AngularProfile, LineProfile},
-        records::{ApertureHit, Bounds, NextEvent, RayPdf, RaySample, SampledEvent},
+        profile::LineProfile,
     };
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        let records = [
+            "ApertureHit",
+            "Bounds",
+            "NextEvent",
+            "RayPdf",
+            "RaySample",
+            "SampledEvent",
+        ];
+        crate::arrays::add_named(module, &records)?;
         // A subclass of float, which the stable interface cannot make.
-        module.add("Estimate", super::fit::estimate_class(module.py())?)
+        crate::arrays::add_named(module, &["Estimate"])
     }
 }

@@ -1,3 +1,5 @@
+//! Bindings of `tem00-coherence`, the module `tem00.coherence`.
+
 mod cell;
 mod line;
 mod mixed;

@@ -1,13 +1,10 @@
+//! Bindings of `tem00-decorrelation`, the module `tem00.decorrelation`.
+
 mod configuration;
 mod correlations;
-mod frame;
 mod geometry;
-mod illumination;
-mod lens;
+mod light;
 mod rigid;
-mod speckle_motion;
-mod vectors;
-mod wavefront;
 
 use pyo3::prelude::*;
 
@@ -20,19 +17,22 @@ pub(crate) use self::rigid::RigidMotion;
 /// intensity.
 #[pymodule(submodule)]
 pub(crate) mod decorrelation {
+    use pyo3::prelude::*;
+
     #[pymodule_export]
     use super::{
-        configuration::Configuration,
+        configuration::{Configuration, speckle_motion},
         correlations::{
-            CorrelationLaw, axial_correlation, equivalent_axial_shift, equivalent_pupil_shift,
-            pupil_overlap_correlation,
+            axial_correlation, correlation_at_image_displacement, correlation_at_peak,
+            equivalent_axial_shift, equivalent_pupil_shift, pupil_overlap_correlation,
         },
-        frame::{CameraFrame, LineOfSight},
         geometry::ImagingGeometry,
-        illumination::Illumination,
-        lens::{Focus, LensData, PupilDistances, ThickLensData},
-        rigid::{RigidMotion, RigidMotions},
-        speckle_motion::SpeckleMotion,
-        wavefront::Wavefront,
+        light::{Illumination, Wavefront},
+        rigid::{CameraFrame, RigidMotion},
     };
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        crate::arrays::add_named(module, &["SpeckleMotion"])
+    }
 }

@@ -4,6 +4,7 @@ use pyo3::{
     prelude::*,
 };
 use tem00_numerics::Refusal;
+use tem00_shading::ShadingError;
 use tem00_speckle::SpeckleError;
 use tem00_statistics::StatisticsError;
 
@@ -40,6 +41,12 @@ pub(crate) trait IntoPython {
     fn into_python(self) -> PyErr;
 }
 
+impl IntoPython for PyErr {
+    fn into_python(self) -> PyErr {
+        self
+    }
+}
+
 impl IntoPython for Refusal {
     fn into_python(self) -> PyErr {
         refused(self.parameter(), self.to_string())
@@ -63,6 +70,16 @@ impl IntoPython for SpeckleError {
     }
 }
 
+impl IntoPython for ShadingError {
+    fn into_python(self) -> PyErr {
+        match self {
+            Self::Speckle(source) => source.into_python(),
+            Self::BeyondPoses { .. } => refused("surface", self.to_string()),
+            _ => refused(self.parameter().unwrap_or("camera"), self.to_string()),
+        }
+    }
+}
+
 /// `?` for results of the physics crates.
 pub(crate) trait OrRaise<T> {
     /// Returns the value, or the error as an exception.
@@ -81,7 +98,8 @@ impl<T, E: IntoPython> OrRaise<T> for Result<T, E> {
     fn or_raise_renamed(self, from: &[&str], to: &'static str) -> PyResult<T> {
         self.or_raise().map_err(|error| match parameter_of(&error) {
             Some(name) if from.contains(&name.as_str()) => {
-                Python::attach(|py| refused(to, error.value(py).to_string()))
+                let message = Python::attach(|py| error.value(py).to_string());
+                refused(to, format!("{to}: {message}"))
             }
             _ => error,
         })

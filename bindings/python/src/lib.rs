@@ -7,6 +7,7 @@
 #[macro_use]
 mod methods;
 
+mod arguments;
 mod arrays;
 mod beam;
 mod coherence;

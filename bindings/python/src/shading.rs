@@ -1,11 +1,14 @@
-mod arguments;
+//! Bindings of `tem00-shading`, the module `tem00.shading`.
+
 mod camera;
-mod error;
 mod frame;
 mod laser;
 mod speckle;
 
 use pyo3::prelude::*;
+use tem00_shading::DVec3;
+
+use crate::arrays::{Column, Components, Vectors};
 
 /// One call per hit: the factor by which speckle that moves multiplies the light of a laser.
 ///
@@ -14,11 +17,32 @@ use pyo3::prelude::*;
 /// last axis holds a vector; image points are in pixels, with y down.
 #[pymodule(submodule)]
 pub(crate) mod shading {
+    use pyo3::prelude::*;
+
     #[pymodule_export]
-    use super::{
-        camera::Camera,
-        frame::{SpeckleFrame, SpeckleShift},
-        laser::Laser,
-        speckle::Speckle,
-    };
+    use super::{camera::Camera, frame::SpeckleFrame, laser::Laser, speckle::Speckle};
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        crate::arrays::add_named(module, &["SpeckleShift"])
+    }
+}
+
+/// A vector of finite components, or what stands for one that is left out.
+fn vector<const K: usize>(
+    name: &'static str,
+    given: Option<&Components<'_>>,
+    default: [f64; K],
+) -> PyResult<[f64; K]> {
+    given.map_or(Ok(default), |given| given.vector(name))
+}
+
+/// The components of vectors, whatever they are: the laws have an answer for NaN.
+fn any<'a>(name: &'static str, vectors: &'a Vectors<'_>) -> PyResult<[Column<'a>; 3]> {
+    Column::components((name, vectors), &[3], f64::INFINITY)
+}
+
+/// The vectors with these components.
+fn vectors([x, y, z]: [&[f64]; 3]) -> Vec<DVec3> {
+    (0..x.len()).map(|i| DVec3::new(x[i], y[i], z[i])).collect()
 }

@@ -2,37 +2,33 @@
 
 use pyo3::prelude::*;
 
-mod arguments;
-mod exposure;
 mod field;
 mod images;
-mod options;
 mod path;
 mod pattern;
 mod plan;
 mod pupil;
-mod seed;
-mod slice_law;
 mod stack;
-mod sum;
 
 /// Pupil fields, patterns, stacks and their look-up.
 ///
 /// Images are indexed [row, column]; sizes and positions are (x, y), width before height.
 #[pymodule(submodule)]
 pub(crate) mod speckle {
+    use pyo3::prelude::*;
+
     #[pymodule_export]
     use super::{
-        exposure::Exposure,
-        field::PupilField,
-        options::StackOptions,
+        field::{PupilField, derived_seed, incoherent_fractions},
         path::SlicePath,
         pattern::{SpeckleField, SpecklePattern},
-        plan::{StackNeeds, StackPlan},
-        pupil::{Pupil, Transmission},
-        seed::derived_seed,
-        slice_law::SliceLaw,
+        plan::StackPlan,
+        pupil::Pupil,
         stack::SpeckleStack,
-        sum::incoherent_fractions,
     };
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        crate::arrays::add_named(module, &["SliceLaw"])
+    }
 }

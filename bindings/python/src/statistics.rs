@@ -1,14 +1,12 @@
+//! Bindings of `tem00-statistics`, the module `tem00.statistics`.
+
 mod contrasts;
 mod estimators;
 mod hypotheses;
 mod images;
-mod joint;
 mod laws;
 mod lines;
 mod objective;
-mod phasors;
-mod rounded;
-mod singularities;
 mod space;
 
 use pyo3::prelude::*;
@@ -16,9 +14,12 @@ use pyo3::prelude::*;
 /// Closed forms of speckle theory, estimators and hypothesis tests.
 ///
 /// Intensities of the closed forms are in units of their mean, lengths in units of the speckle size
-/// h = λ d / D. Estimates from images are in pixels; images are arrays [row, column].
+/// h = λ d / D. Estimates from images are in pixels; images are arrays [row, column], taken in single
+/// precision. Samples are arrays of any shape.
 #[pymodule(submodule)]
 pub(crate) mod statistics {
+    use pyo3::prelude::*;
+
     #[pymodule_export]
     use super::{
         contrasts::{
@@ -26,25 +27,21 @@ pub(crate) mod statistics {
             gaussian_filter_contrast, pixel_contrast, rectangular_pixel_contrast,
             translation_contrast,
         },
-        estimators::{Contrast, GammaFit, Moments, pearson_correlation},
-        hypotheses::{TestOutcome, chi_squared, kolmogorov_smirnov, t_test_mean},
+        estimators::{Contrast, GammaFit, VortexDensity, pearson_correlation, phase_singularities},
+        hypotheses::{GoodnessOfFit, GreyLevels, t_test_mean},
         images::{
-            Ring, SpeckleSize, autocovariance, decorrelated_samples, local_contrast,
-            power_spectrum, radial_average,
+            SpeckleSize, autocovariance, decorrelated_samples, local_contrast, power_spectrum,
+            radial_average,
         },
-        joint::JointIntensity,
         laws::{
-            CoherentBackground, GammaIntensity, IncoherentSum, PartiallyPolarised,
-            exponential_cumulative, exponential_density,
+            CoherentBackground, GammaIntensity, IncoherentSum, JointIntensity, PartiallyPolarised,
+            PhasorSum, exponential_cumulative, exponential_density, moment_of_phasor_sum,
         },
         lines::{
             disc_spot_centroid_deviation, gaussian_spot_centroid_deviation,
             imaged_line_centroid_deviation, line_centroid_deviation, speckle_length,
         },
-        objective::{LitArea, ObjectiveSpeckle},
-        phasors::{PhasorSum, contrast_of_phasor_sum, moment_of_phasor_sum},
-        rounded::{GoodnessOfFit, GreyLevels},
-        singularities::{Singularity, VortexDensity, phase_singularities},
+        objective::ObjectiveSpeckle,
         space::{
             airy_autocovariance, airy_power_spectrum, area_fraction_above, level_crossings,
             size_before_pixels,
@@ -63,4 +60,9 @@ pub(crate) mod statistics {
     const SPECKLE_DENSITY: f64 = tem00_statistics::SPECKLE_DENSITY;
     #[pymodule_export]
     const VORTEX_DENSITY: f64 = tem00_statistics::VORTEX_DENSITY;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        crate::arrays::add_named(module, &["Ring", "Singularity", "TestOutcome"])
+    }
 }

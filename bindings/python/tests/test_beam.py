@@ -25,8 +25,10 @@ def test_radius_and_curvature_follow_from_the_complex_parameter() -> None:
     phase = np.angle(1j * inverse)
     np.testing.assert_allclose(laser.gouy_phase_at(z), phase, rtol=ROUNDING, atol=1e-15)
     q = beam.LocatedBeam(laser, 0.1).complex_parameter
-    assert q.to_complex() == pytest.approx(complex(-0.1, z_r), rel=ROUNDING)
-    assert complex(q) == q.to_complex()
+    assert q == pytest.approx(complex(-0.1, z_r), rel=ROUNDING)
+    again = beam.LocatedBeam.from_complex_parameter(q, WAVELENGTH, 1.3)
+    assert again.radius_at(0.0) == pytest.approx(laser.radius_at(0.1), rel=1e-13)
+    assert laser.encircled_power(laser.radius_at(0.2), 0.2) == pytest.approx(1 - np.exp(-2), rel=1e-14)
 
 
 def test_constants_of_a_beam_are_those_of_its_waist() -> None:
@@ -49,31 +51,6 @@ def test_constants_of_a_beam_are_those_of_its_waist() -> None:
     assert narrow.waist_radius == pytest.approx(WAVELENGTH / (np.pi * 1e-3), rel=ROUNDING)
 
 
-@pytest.mark.parametrize("degrees", [0, 30, 60, 75])
-def test_a_tilted_plane_receives_the_whole_power(degrees: float) -> None:
-    laser = round_beam()
-    tilt = np.deg2rad(degrees)
-    # exp(-2 · 4²) = 1e-14 of the power lies beyond four radii; the beam widens by less than 1.2.
-    reach = 4.8 * laser.radius_at(0.3)
-    along, s = np.linspace(-reach / np.cos(tilt), reach / np.cos(tilt), 401, retstep=True)
-    across, t = np.linspace(-reach, reach, 401, retstep=True)
-    p, q = np.meshgrid(along, across)
-    flux = laser.flux_per_watt(p * np.cos(tilt), q, 0.3 + p * np.sin(tilt))
-    normal = np.array([np.sin(tilt), 0, -np.cos(tilt)])
-    power = integrate.simpson(integrate.simpson(-flux @ normal, dx=s), dx=t)
-    # Simpson's rule on a smooth bell is exact beyond the cut-off's 1e-10 at the far end.
-    assert power == pytest.approx(1, abs=1e-9)
-
-
-def test_encircled_power_is_the_integral_of_the_irradiance() -> None:
-    laser = round_beam()
-    for radius in (20e-6, 80e-6, 300e-6):
-        integral, _ = integrate.quad(
-            lambda r: 2 * np.pi * r * laser.irradiance_per_watt(r, 0.05), 0, radius, epsabs=1e-13
-        )
-        assert laser.encircled_power(radius, 0.05) == pytest.approx(integral, abs=1e-12)
-
-
 def test_apertures_pass_what_error_functions_say() -> None:
     spot = beam.CrossSection((1e-3, 2e-3))
     x = np.linspace(-2e-3, 2e-3, 17)
@@ -84,9 +61,7 @@ def test_apertures_pass_what_error_functions_say() -> None:
     slit = (special.erf(root * (x + 5e-4) / 1e-3) - special.erf(root * (x - 5e-4) / 1e-3)) / 2
     np.testing.assert_allclose(spot.power_in_slit(x, 1e-3), slit, rtol=1e-10, atol=1e-12)
     square = special.erf(1e-3 / root / 1e-3) * special.erf(1e-3 / root / 2e-3)
-    assert spot.power_in_square(1e-3) == pytest.approx(square, rel=1e-11)
     assert spot.power_in_rectangle((0, 0), (1e-3, 1e-3)) == pytest.approx(square, rel=1e-11)
-    assert spot.transposed.radii.tolist() == [2e-3, 1e-3]
     assert spot.effective_area == pytest.approx(np.pi * 2e-6, rel=ROUNDING)
     np.testing.assert_allclose(spot.knife_edge_width, special.ndtri(0.9) * spot.radii, rtol=1e-14)
 
@@ -112,7 +87,7 @@ def matrix(system: beam.AbcdMatrix) -> np.ndarray:
 
 
 def test_systems_multiply_as_matrices_do() -> None:
-    lens = beam.AbcdMatrix.thick_lens(beam.ThickLens(1.5, 20.0, -10.0, 5e-3))
+    lens = beam.AbcdMatrix.thick_lens(1.5, 20.0, -10.0, 5e-3)
     surfaces = [
         np.array([[1, 0], [-(1.5 - 1) / 1.5 * 20, 1 / 1.5]]),
         np.array([[1, 5e-3], [0, 1]]),
@@ -134,15 +109,15 @@ def test_systems_multiply_as_matrices_do() -> None:
 def test_a_beam_passes_a_system_by_the_law_of_its_complex_parameter() -> None:
     system = beam.AbcdMatrix.free_space(0.3).then(beam.AbcdMatrix.thin_lens(0.12))
     before = beam.LocatedBeam(round_beam(), 0.05)
-    q = before.complex_parameter.to_complex()
+    q = before.complex_parameter
     expected = (system.a * q + system.b) / (system.c * q + system.d)
     after = system.transform(before)
-    assert after.complex_parameter.to_complex() == pytest.approx(expected, rel=1e-13)
+    assert after.complex_parameter == pytest.approx(expected, rel=1e-13)
     parameter = system.transform_parameter(before.complex_parameter)
-    assert parameter.to_complex() == pytest.approx(expected, rel=1e-13)
+    assert parameter == pytest.approx(expected, rel=1e-13)
     assert after.beam.m_squared == 1.3
     lens = before.through_lens(0.12)
-    assert lens.complex_parameter.to_complex() == pytest.approx(1 / (1 / q - 1 / 0.12), rel=1e-13)
+    assert lens.complex_parameter == pytest.approx(1 / (1 / q - 1 / 0.12), rel=1e-13)
 
 
 def test_the_eigenmode_of_a_resonator_is_the_fixed_point_of_its_round_trip() -> None:
@@ -150,7 +125,7 @@ def test_the_eigenmode_of_a_resonator_is_the_fixed_point_of_its_round_trip() -> 
     trip = arm.then(beam.AbcdMatrix.curved_mirror(1.0)).then(arm)
     assert trip.is_stable
     assert trip.half_trace == pytest.approx(2 * (1 - 0.3) - 1, rel=1e-14)
-    q = trip.eigenmode().to_complex()
+    q = trip.eigenmode()
     assert (trip.a * q + trip.b) / (trip.c * q + trip.d) == pytest.approx(q, rel=1e-13)
 
 

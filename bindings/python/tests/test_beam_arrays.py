@@ -13,7 +13,7 @@ from tem00 import ParameterError, beam
 LASER = beam.GaussianBeam.from_waist(650e-9, 1e-4)
 ELLIPTIC = beam.AstigmaticBeam.from_divergences(650e-9, (1e-3, 2e-3))
 PLACEMENT = beam.Placement((0.1, 0.2, 0.3), (0, 0.1, -1), (1, 0, 0))
-SPOT = beam.SpotLight.place(LASER, 0.1, PLACEMENT, 1e-3)
+SPOT = beam.Light.spot(LASER, 0.1, PLACEMENT, 1e-3)
 LINE = beam.LaserLine(LASER, beam.FanGeometry(0.5, 2e-3, 0.2), beam.LineProfile.gaussian_tan())
 SECTION = LASER.cross_section_at(0.1)
 
@@ -78,7 +78,7 @@ def test_extreme_points_of_lights_give_numbers_or_an_error(profile: str) -> None
     made = getattr(beam.LineProfile, profile)()
     line = beam.LaserLine(LASER, beam.FanGeometry(3.0, 2e-3, 0.2), made)
     values = (0.0, 1e-300, 1e-30, -1.0, 1e30, -1e30)
-    for light in (SPOT, beam.LineLight.place(line, PLACEMENT, 1e100)):
+    for light in (SPOT, beam.Light.line(line, PLACEMENT, 1e100)):
         x, y, z = (a.ravel() for a in np.meshgrid(values, values, values))
         u = np.array([0.0, np.nextafter(1, 0)])
         d = np.array([0.0, 0, -1])

@@ -66,7 +66,7 @@ def test_absolute_errors_fit_the_radius(known: bool) -> None:
         model, Z, radii / 1e-6, p0=[0.8, 3, 6], ftol=1e-15, xtol=1e-15,
         sigma=deviations / 1e-6 if known else None, absolute_sigma=known,
     )
-    fit = beam.CausticFit.with_errors(WAVELENGTH, Z, radii, deviations if known else "equal")
+    fit = beam.CausticFit(WAVELENGTH, Z, radii, deviations if known else "equal")
     estimates = (fit.waist_radius, fit.waist_position, fit.divergence)
     np.testing.assert_allclose([e.value for e in estimates], found * scale, rtol=1e-6)
     errors = np.sqrt(np.diag(covariance)) * scale
@@ -86,8 +86,7 @@ def test_knife_edges_fit_the_error_function(floor: float, sign: int) -> None:
         return knife(sign * x, power, centre * 1e-4, radius * 1e-4, *rest)
 
     found, covariance = optimize.curve_fit(model, x, powers, p0=start, ftol=1e-15, xtol=1e-15)
-    new = beam.KnifeEdgeFit.with_background if floor else beam.KnifeEdgeFit
-    fit = new(x, powers)
+    fit = beam.KnifeEdgeFit(x, powers, with_background=floor != 0)
     values = [fit.power.value, sign * fit.centre.value / 1e-4, fit.radius.value / 1e-4]
     errors = [e.standard_error for e in (fit.power, fit.centre, fit.radius)]
     np.testing.assert_allclose(values, found[:3], rtol=1e-6)
@@ -130,7 +129,7 @@ def test_bad_data_are_refused_by_name(parameter: str, change: dict[str, object])
         "errors": "relative",
     }
     with pytest.raises(ParameterError) as refusal:
-        beam.CausticFit.with_errors(**(good | change))  # type: ignore[arg-type]
+        beam.CausticFit(**(good | change))  # type: ignore[arg-type]
     assert refusal.value.parameter == parameter
 
 
@@ -139,5 +138,5 @@ def test_bad_traces_are_refused_by_name() -> None:
         beam.KnifeEdgeFit([0, 1, 2, 3], [0, 1, np.inf, 1])
     assert refusal.value.parameter == "powers"
     with pytest.raises(ParameterError) as refusal:
-        beam.KnifeEdgeFit.with_background([0, 1, 2, 3], [0, 1, 2, 3])
+        beam.KnifeEdgeFit([0, 1, 2, 3], [0, 1, 2, 3], with_background=True)
     assert refusal.value.parameter == "positions"

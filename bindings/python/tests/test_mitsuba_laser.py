@@ -87,9 +87,9 @@ def library_light(properties: Properties) -> Any:
         origin=tuple(ORIGIN), direction=tuple(direction), fan_axis=tuple(np.cross(UP, direction))
     )
     if properties.get("shape") == "line":
-        return beam.LineLight.place(library_line(properties), placement, properties["power"])
+        return beam.Light.line(library_line(properties), placement, properties["power"])
     axes = [located(properties, suffix) for suffix in ("", "_y")]
-    return beam.SpotLight.place_astigmatic(
+    return beam.Light.elliptic(
         beam.AstigmaticBeam(*axes), placement, properties["power"]
     )
 

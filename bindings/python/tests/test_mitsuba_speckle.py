@@ -105,7 +105,7 @@ def settings(**properties: Any) -> PatternSettings:
 
 def stack_of(number: int = 0, seed: int = 0, image: tuple[int, int] = (WIDTH, HEIGHT)) -> Any:
     """Return the stack of a laser as the documentation describes it."""
-    needs = speckle.StackNeeds(
+    plan = speckle.StackPlan(
         image=image,
         region=image,
         speckle_size=SPECKLE_SIZE,
@@ -113,7 +113,7 @@ def stack_of(number: int = 0, seed: int = 0, image: tuple[int, int] = (WIDTH, HE
         frames=1,
         memory_limit=1 << 30,
     )
-    field = speckle.StackPlan(needs).field(speckle.derived_seed(seed, "laser", number))
+    field = plan.field(speckle.derived_seed(seed, "laser", number))
     return speckle.SpeckleStack.generate(field, speckle.SlicePath.still())
 
 
@@ -170,7 +170,7 @@ def errors_of(pattern: Pattern, pupil: float) -> tuple[Array, Array]:
 
 def test_amplitudes_behind_an_asymmetric_pupil_have_its_law() -> None:
     ramp = np.linspace(0.0, 1.0, 32) ** 2
-    pupil = speckle.Pupil.sampled(speckle.Transmission(np.outer(ramp, ramp)))
+    pupil = speckle.Pupil.sampled(np.outer(ramp, ramp))
     field = speckle.PupilField(128, 64, 5).with_pupil(pupil)
     stack = speckle.SpeckleStack.generate(field, speckle.SlicePath.circle(half_period=3))
     error, _ = errors_of(Pattern([Part(1.0, stack, (0.0, 0.0))], SPECKLE_SIZE, "amplitude"), 0.2)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import tem00
 from tem00 import statistics as st
-from tem00.beam import AstigmaticBeam, GaussianBeam, LocatedBeam
+from tem00.beam import AstigmaticBeam
 
 
 def test_every_module_can_be_imported_by_its_name() -> None:
@@ -94,7 +94,7 @@ def test_results_that_memory_does_not_hold_are_a_memory_error() -> None:
 def test_results_that_no_address_counts_are_a_memory_error() -> None:
     long = np.ones(1 << 22)
     x, y, z = np.ix_(long, long, long)
-    beam = AstigmaticBeam.stigmatic(LocatedBeam(GaussianBeam.from_waist(650e-9, 1e-3), 0.0))
+    beam = AstigmaticBeam.from_divergences(650e-9, (1e-3, 1e-3))
     with pytest.raises(MemoryError, match="shape"):
         beam.irradiance_per_watt(x, y, z)
 
@@ -155,10 +155,9 @@ LAWS = [
     st.CoherentBackground.from_contrast(0.7),
     st.PhasorSum(12),
     st.JointIntensity(0.3),
-    st.LitArea.disc(1e-3),
-    st.LitArea.rectangle(1e-3, 2e-3),
-    st.LitArea.gaussian_spot(1e-3),
-    st.ObjectiveSpeckle(650e-9, 2.0, st.LitArea.gaussian_spot(1e-3)),
+    st.ObjectiveSpeckle.disc(650e-9, 2.0, 1e-3),
+    st.ObjectiveSpeckle.rectangle(650e-9, 2.0, 1e-3, 2e-3),
+    st.ObjectiveSpeckle.gaussian_spot(650e-9, 2.0, 1e-3),
 ]
 
 

@@ -15,22 +15,17 @@ from numpy.typing import NDArray
 
 from tem00 import speckle
 from tem00.speckle import (
-    Exposure,
     Pupil,
     PupilField,
     SlicePath,
     SpeckleStack,
-    StackNeeds,
-    StackOptions,
     StackPlan,
-    Transmission,
     derived_seed,
 )
 from tem00.statistics import autocovariance
 
 FIELD = PupilField(64, 16, 7)
-STACK = SpeckleStack.generate(FIELD, SlicePath.circle(half_period=2))
-NEEDS = StackNeeds(
+PLAN = StackPlan(
     image=(640, 480),
     region=(640, 480),
     speckle_size=2.5,
@@ -38,8 +33,9 @@ NEEDS = StackNeeds(
     frames=10,
     memory_limit=256 << 20,
 )
+SAMPLED = Pupil.sampled(np.ones((4, 4)))
+STACK = SpeckleStack.generate(FIELD, SlicePath.circle(half_period=2))
 MEASURED = PupilField.from_samples(np.full((40, 40), 1 + 2j), (160, 160), 4.0)
-TRANSMISSION = Transmission(np.ones((4, 4)))
 
 VIEWS: list[Callable[[], tuple[object, NDArray[np.generic] | None]]] = [
     lambda: (pattern := FIELD.pattern(), pattern.values),
@@ -49,7 +45,7 @@ VIEWS: list[Callable[[], tuple[object, NDArray[np.generic] | None]]] = [
         stack.coefficients(1),
     ),
     lambda: (MEASURED, MEASURED.samples),
-    lambda: (TRANSMISSION, TRANSMISSION.values),
+    lambda: (SAMPLED, SAMPLED.values),
 ]
 
 
@@ -114,23 +110,19 @@ PICKLED = [
     FIELD.with_phasors("gaussian").with_pupil(Pupil.annulus(inner=0.3)),
     PupilField(100, 30, 2**64 - 1),
     PupilField.from_speckle_size((640, 480), 3.3, 7),
-    MEASURED.with_pupil(Pupil.sampled(TRANSMISSION)),
+    MEASURED.with_pupil(SAMPLED),
     Pupil.circle(),
     Pupil.rectangle(height=0.3),
     Pupil.gaussian(radius=0.5),
-    TRANSMISSION,
+    SAMPLED,
     SlicePath.still(),
     SlicePath.circle(half_period=3),
     SlicePath.straight(half_period=8, length=4),
-    StackOptions(memory_limit=10**9),
-    NEEDS,
-    StackPlan(NEEDS),
-    *StackPlan.candidates(NEEDS),
-    StackPlan(NEEDS).with_square(64, 16).with_half_period(2),
+    PLAN,
+    PLAN.with_square(64, 16),
     STACK,
     SpeckleStack.generate(FIELD, SlicePath.straight(half_period=2, length=3)),
     SpeckleStack.generate(MEASURED, SlicePath.still()),
-    Exposure().with_image_drift((1.0, 2.0)).with_pupil_drift((0.1, 0.2)),
 ]
 
 
@@ -139,15 +131,8 @@ def test_pickles_are_equal_to_what_was_pickled(thing: object) -> None:
     again = pickle.loads(pickle.dumps(thing))
     assert again == thing
     assert repr(again) == repr(thing)
-    if "<" not in repr(thing):
+    if "<" not in repr(thing) and "array" not in repr(thing):
         assert eval(repr(thing), vars(speckle)) == thing
-
-
-def test_what_numbers_make_has_a_repr_that_makes_it() -> None:
-    # What holds samples or slices is shown in angle brackets.
-    shown = [thing for thing in PICKLED if "<" in repr(thing)]
-    assert {type(thing) for thing in shown} == {PupilField, Transmission, SpeckleStack}
-    assert all(thing.samples is not None for thing in shown if isinstance(thing, PupilField))
 
 
 def test_pickled_fields_have_the_same_bits_in_another_process() -> None:
@@ -188,28 +173,23 @@ def test_long_work_leaves_the_interpreter_free() -> None:
 
 
 def test_plans_have_the_sizes_of_their_needs() -> None:
-    plan = StackPlan(NEEDS)
+    plan = PLAN
     # 640 / 2.5 and 480 / 2.5 speckles, two samples each, and 32 slices per diameter.
     assert (plan.diameter, plan.size) == ((256, 192), (512, 384))
     assert plan.path == SlicePath.straight(half_period=32, length=2)
     assert plan.memory_bytes == 64 * 512 * 384 * 8
     assert (plan.slices_per_diameter, plan.reach) == (32.0, 1.0)
-    assert plan.holds_region(NEEDS)
-    assert plan.holds_motion(NEEDS)
-    assert plan in StackPlan.candidates(NEEDS)
-    half = StackPlan.first_within(StackPlan.candidates(NEEDS), plan.memory_bytes // 2)
-    assert half.memory_bytes == plan.memory_bytes // 2
-    square = plan.with_square(64, 16).with_half_period(2)
-    assert square.stack(7, StackOptions()).field.size == (64, 64)
+    square = plan.with_square(64, 16)
+    assert square.stack(7).size == (64, 64)
     assert square.field(7) == FIELD
-    assert plan.on_circle().path == SlicePath.circle(half_period=32)
+    with pytest.raises(MemoryError):
+        square.stack(7, 1000)
 
 
 def test_objects_know_their_equals() -> None:
     assert FIELD == PupilField(64, 16, 7)
     assert FIELD != PupilField(64, 16, 8)
     assert FIELD.pattern() == FIELD.pattern()
-    assert STACK.slice_law(0) == STACK.slice_law(0)
     assert STACK.path != SlicePath.still()
     with pytest.raises(TypeError, match="unhashable"):
         hash(FIELD)

@@ -24,7 +24,7 @@ def numbers_and_arrays() -> None:
     law.density(1j)  # type: ignore[call-overload]
     law.density(None)  # type: ignore[call-overload]
     law.shape = 3.0  # type: ignore[misc]
-    statistics.Moments(2.0)  # type: ignore[call-arg]
+    statistics.Contrast(2.0)  # type: ignore[call-arg]
     statistics.rectangular_pixel_contrast(1.0)  # type: ignore[call-overload]
 
 
@@ -33,16 +33,15 @@ def literals() -> None:
     image = np.ones((8, 8), dtype=np.float32)
     statistics.autocovariance(image, "periodic")
     statistics.autocovariance(image, "wrap")  # type: ignore[arg-type]
-    statistics.SpeckleSize.along("z", image)  # type: ignore[arg-type]
     statistics.decorrelated_samples(image, 2.5)  # type: ignore[arg-type]
 
 
 def callbacks() -> None:
     """Distribution functions take an array, correlations a number."""
     law = statistics.GammaIntensity(2.0)
-    statistics.kolmogorov_smirnov(INTENSITIES, law.cumulative)
-    statistics.kolmogorov_smirnov(INTENSITIES, lambda x: 1 - np.exp(-x))
-    statistics.kolmogorov_smirnov(INTENSITIES, 0.5)  # type: ignore[arg-type]
+    statistics.GoodnessOfFit(INTENSITIES, law.cumulative)
+    statistics.GoodnessOfFit(INTENSITIES, lambda x: 1 - np.exp(-x))
+    statistics.GoodnessOfFit(INTENSITIES, 0.5)  # type: ignore[arg-type]
     statistics.contrast_of_exposure(lambda t: 1.0 - t)
     statistics.contrast_of_exposure(lambda t: "none")  # type: ignore[arg-type, return-value]
 
@@ -52,27 +51,24 @@ def optional_results() -> None:
     levels = statistics.GreyLevels.from_values([0.0, 0.0, 1.0, 1.0])
     levels.count  # type: ignore[union-attr]
     if levels is not None:
-        assert_type(levels.cell(0), tuple[float, float])
+        assert_type(levels.exponential_mean(0.5), float)
 
 
 def structures() -> None:
-    """Structures take all fields, by name."""
-    lens = decorrelation.LensData(
+    """Cameras and lights take all their values."""
+    camera = decorrelation.ImagingGeometry.from_lens(
         wavelength=650e-9,
         focal_length=25e-3,
         f_number=8,
         surface_to_pupil=0.3,
         pixel_pitch=3.45e-6,
     )
-    decorrelation.LensData(650e-9, 25e-3, 8, 0.3, 3.45e-6)  # type: ignore[call-arg]
-    decorrelation.LensData(wavelength=650e-9)  # type: ignore[call-arg]
-    camera = decorrelation.ImagingGeometry.from_lens(lens)
-    decorrelation.ImagingGeometry.from_distances(lens)  # type: ignore[arg-type]
+    decorrelation.ImagingGeometry.from_lens(wavelength=650e-9)  # type: ignore[call-arg]
+    decorrelation.ImagingGeometry.from_distances(camera)  # type: ignore[call-arg, arg-type]
     assert_type(camera.speckle_size, float)
     frame = decorrelation.CameraFrame.look_at([0, 0, 1], np.zeros(3), (0.0, 1.0, 0.0))
     decorrelation.CameraFrame.look_at(1.0, [0, 0, 0], [0, 1, 0])  # type: ignore[arg-type]
-    assert_type(frame.right, FloatArray)
-    decorrelation.RigidMotions(surfaces=None)  # type: ignore[call-arg]
+    assert_type(frame.axes, FloatArray)
 
 
 def errors() -> None:

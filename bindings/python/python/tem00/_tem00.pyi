@@ -11,6 +11,7 @@ __all__ = [
     "beam",
     "coherence",
     "decorrelation",
+    "inspect",
     "main",
     "shading",
     "speckle",

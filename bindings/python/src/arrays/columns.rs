@@ -1,7 +1,4 @@
-use numpy::{
-    Element,
-    ndarray::{ArrayViewD, Axis},
-};
+use numpy::ndarray::{ArrayViewD, Axis};
 use pyo3::{exceptions::PyRuntimeError, prelude::*};
 
 use super::{
@@ -11,18 +8,12 @@ use super::{
 };
 use crate::error::refused;
 
-/// The numbers of arrays: `f32` and `f64`.
-pub(crate) trait Float: Element + Copy + Default + Into<f64> + Send + Sync {}
-
-impl Float for f32 {}
-impl Float for f64 {}
-
 /// The values of an argument, or of one component of an argument that holds vectors.
-pub(crate) struct Column<'a, T = f64> {
+pub(crate) struct Column<'a> {
     /// The name of the argument.
     pub(crate) name: &'static str,
     /// The values, in a shape that broadcasts with the others.
-    pub(crate) values: ArrayViewD<'a, T>,
+    pub(crate) values: ArrayViewD<'a, f64>,
     /// The largest magnitude that is allowed; infinite where any value is, also one that is no number.
     pub(crate) limit: f64,
 }
@@ -62,17 +53,16 @@ impl<'a> Column<'a> {
     }
 }
 
-impl<T: Float> Column<'_, T> {
+impl Column<'_> {
     /// Refuses values beyond the limit, and such that are not finite.
-    fn check(&self, values: &[T]) -> PyResult<()> {
+    fn check(&self, values: &[f64]) -> PyResult<()> {
         if self.limit == f64::INFINITY {
             return Ok(());
         }
-        let allowed = |value: &T| (*value).into().abs() <= self.limit;
+        let allowed = |value: &f64| value.abs() <= self.limit;
         match values.iter().find(|value| !allowed(value)) {
             None => Ok(()),
             Some(&value) => {
-                let value: f64 = value.into();
                 let (name, limit) = (self.name, self.limit);
                 let within = match limit {
                     f64::MAX => String::new(),
@@ -110,11 +100,11 @@ pub(crate) fn columns<'a, const N: usize>(
 ///
 /// Refuses values beyond their limit or not finite, shapes that do not fit together, and what memory
 /// does not hold.
-pub(crate) fn evaluate<'py, T: Float, const N: usize, const M: usize>(
+pub(crate) fn evaluate<'py, const N: usize, const M: usize>(
     py: Python<'py>,
-    columns: [Column<'_, T>; N],
+    columns: [Column<'_>; N],
     inner: [&[usize]; M],
-    mut f: impl FnMut([&[T]; N], [&mut [T]; M]) + Send,
+    mut f: impl FnMut([&[f64]; N], [&mut [f64]; M]) + Send,
 ) -> PyResult<[results::Values<'py>; M]> {
     let names = columns.each_ref().map(|column| column.name);
     let blocks = Blocks::new(names, columns.each_ref().map(|column| column.values.view()))?;
@@ -153,15 +143,15 @@ pub(crate) fn evaluate<'py, T: Float, const N: usize, const M: usize>(
 }
 
 /// Refuses results that are not numbers.
-fn check_numbers<T: Float, const N: usize>(
+fn check_numbers<const N: usize>(
     names: [&'static str; N],
-    values: [&[T]; N],
-    results: &[&mut [T]],
+    values: [&[f64]; N],
+    results: &[&mut [f64]],
 ) -> PyResult<()> {
     for result in results {
-        if let Some(place) = result.iter().position(|&value| value.into().is_nan()) {
+        if let Some(place) = result.iter().position(|&value| value.is_nan()) {
             let index = place * values[0].len() / result.len();
-            return Err(nan_result(names, values.map(|column| column[index].into())));
+            return Err(nan_result(names, values.map(|column| column[index])));
         }
     }
     Ok(())

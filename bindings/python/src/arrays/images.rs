@@ -119,11 +119,23 @@ impl ComplexImage<'_> {
     }
 }
 
-/// Moves a grid into an array [row, column].
-pub(crate) fn image_array<T: Element>(
-    py: Python<'_>,
-    grid: Grid<T>,
-) -> PyResult<Bound<'_, PyArray2<T>>> {
-    let shape = [grid.height(), grid.width()];
-    PyArray1::from_vec(py, grid.into_values()).reshape(shape)
+/// An image as a result, in Python an array [row, column].
+#[derive(Debug)]
+pub(crate) struct ImageArray<T>(Grid<T>);
+
+impl<T> From<Grid<T>> for ImageArray<T> {
+    fn from(grid: Grid<T>) -> Self {
+        Self(grid)
+    }
+}
+
+impl<'py, T: Element> IntoPyObject<'py> for ImageArray<T> {
+    type Target = PyArray2<T>;
+    type Output = Bound<'py, PyArray2<T>>;
+    type Error = PyErr;
+
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Self::Output> {
+        let shape = [self.0.height(), self.0.width()];
+        PyArray1::from_vec(py, self.0.into_values()).reshape(shape)
+    }
 }

@@ -31,12 +31,6 @@ pub(crate) type Named<'a, 'py> = (&'static str, &'a Numbers<'py>);
 /// An array of one axis: the components of a vector, or a list.
 pub(crate) type Components<'py> = Numbers<'py>;
 
-/// An array of two axes.
-pub(crate) type Table<'py> = Numbers<'py>;
-
-/// An array of any shape, never a number.
-pub(crate) type Samples<'py> = Numbers<'py>;
-
 /// An array whose last axes hold vectors.
 pub(crate) type Vectors<'py> = Numbers<'py>;
 
@@ -152,19 +146,6 @@ pub(crate) fn length(name: &'static str, value: f64) -> PyResult<f64> {
         return Ok(value);
     }
     let message = format!("{name} must be positive and finite, got {value:?} m");
-    Err(refused(name, message))
-}
-
-/// Returns the wavelength of light in metres.
-///
-/// # Errors
-///
-/// Refuses the argument of this name if it is none, as one in nanometres or micrometres.
-pub(crate) fn wavelength_of_light(name: &'static str, value: f64) -> PyResult<f64> {
-    if (10e-9..=1e-3).contains(&value) {
-        return Ok(value);
-    }
-    let message = format!("{name} must be from 10 nm to 1 mm, in metres, got {value:?} m");
     Err(refused(name, message))
 }
 

@@ -120,6 +120,26 @@ impl<'py, const K: usize> IntoPyObject<'py> for Vector<K> {
     }
 }
 
+/// A list of numbers, in Python an array of shape (n,).
+#[derive(Clone, Debug)]
+pub(crate) struct List(Vec<f64>);
+
+impl From<Vec<f64>> for List {
+    fn from(values: Vec<f64>) -> Self {
+        Self(values)
+    }
+}
+
+impl<'py> IntoPyObject<'py> for List {
+    type Target = PyArray1<f64>;
+    type Output = Bound<'py, PyArray1<f64>>;
+    type Error = Infallible;
+
+    fn into_pyobject(self, py: Python<'py>) -> Result<Self::Output, Infallible> {
+        Ok(PyArray1::from_vec(py, self.0))
+    }
+}
+
 /// A matrix by its rows, in Python an array of shape (3, 3).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Matrix([[f64; 3]; 3]);
@@ -158,4 +178,44 @@ pub(super) fn array_or_float<'py, T: Element + Copy + Into<f64>>(
         ([], [value]) => Ok(PyFloat::new(py, (*value).into()).into_any()),
         _ => Ok(array(py, shape, values)?.into_any()),
     }
+}
+
+/// Defines a result without methods: in Python a named tuple of this name in `tem00._results`.
+macro_rules! named_tuple {
+    ($name:ident($inner:ty) as $this:ident: $fields:expr) => {
+        pub(crate) struct $name($inner);
+
+        impl From<$inner> for $name {
+            fn from(inner: $inner) -> Self {
+                Self(inner)
+            }
+        }
+
+        impl<'py> pyo3::IntoPyObject<'py> for $name {
+            type Target = pyo3::PyAny;
+            type Output = pyo3::Bound<'py, pyo3::PyAny>;
+            type Error = pyo3::PyErr;
+
+            fn into_pyobject(self, py: pyo3::Python<'py>) -> pyo3::PyResult<Self::Output> {
+                let $this = self.0;
+                let class = $crate::arrays::named_class(py, stringify!($name))?;
+                pyo3::types::PyAnyMethods::call1(&class, $fields)
+            }
+        }
+    };
+}
+
+pub(crate) use named_tuple;
+
+/// The class of a result without methods.
+pub(crate) fn named_class<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    py.import("tem00._results")?.getattr(name)
+}
+
+/// Adds classes of results without methods to the module that they belong to.
+pub(crate) fn add_named(module: &Bound<'_, PyModule>, names: &[&str]) -> PyResult<()> {
+    for name in names {
+        module.add(*name, named_class(module.py(), name)?)?;
+    }
+    Ok(())
 }

@@ -29,16 +29,6 @@ impl<'py> Whole<'py> {
         self.extract_as(name, "from -2**63 to 2**63 - 1")
     }
 
-    /// Returns a count that lies between two others, which count too.
-    pub(crate) fn between(&self, name: &str, [min, max]: [usize; 2]) -> PyResult<usize> {
-        let value = self.unsigned(name)?;
-        if (min..=max).contains(&value) {
-            return Ok(value);
-        }
-        let message = format!("{name} must lie between {min} and {max}, got {value}");
-        Err(refused(name, message))
-    }
-
     fn extract_as<T: FromPyObjectOwned<'py>>(&self, name: &str, allowed: &str) -> PyResult<T> {
         self.0.extract().map_err(|_| {
             let message = format!("{name} must be a whole number {allowed}, got {}", self.0);

@@ -1,92 +1,34 @@
 //! Elliptic beams with simple astigmatism.
 
 use pyo3::prelude::*;
-use tem00_beam as physics;
-use tem00_beam::DVec3;
+use tem00_beam::{self as physics, DVec3, LocatedBeam as Beam};
 
 use super::{
     abcd::AbcdMatrix,
-    arguments::{OrRaiseAs, coordinate, coordinates, map, map_inner, map_vector},
     cross_section::CrossSection,
-    located::LocatedBeam,
+    gaussian::LocatedBeam,
+    map::{map, map_vector},
 };
 use crate::{
-    arrays::{Array, Numbers, wavelength_of_light},
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
 
-/// An elliptic Gaussian beam with simple astigmatism.
-///
-/// Two principal axes at right angles, each with its own waist, place of the waist and M². The beam
-/// travels along +z from the reference plane z = 0, the aperture.
-///
-/// Parameters
-/// ----------
-/// x, y : LocatedBeam
-///     The beams along x and along y, of one wavelength.
-#[pyclass(frozen, eq, module = "tem00.beam")]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct AstigmaticBeam(pub(super) physics::AstigmaticBeam);
+class! {
+    /// An elliptic Gaussian beam with simple astigmatism.
+    ///
+    /// Two principal axes at right angles, each with its own waist, place of the waist and M². The beam
+    /// travels along +z from the reference plane z = 0, the aperture.
+    ///
+    /// Parameters
+    /// ----------
+    /// x, y : LocatedBeam
+    ///     The beams along x and along y, of one wavelength.
+    "tem00.beam" AstigmaticBeam(physics::AstigmaticBeam): Copy
+}
 
 #[pymethods]
 impl AstigmaticBeam {
-    #[new]
-    fn new(x: &LocatedBeam, y: &LocatedBeam) -> PyResult<Self> {
-        let beam = physics::AstigmaticBeam::new(x.0, y.0);
-        Ok(Self(beam.or_raise_as(&[("wavelength", "y")])?))
-    }
-
-    /// Return the circular beam that is ``beam`` in both axes.
-    ///
-    /// Parameters
-    /// ----------
-    /// beam : LocatedBeam
-    #[staticmethod]
-    fn stigmatic(beam: &LocatedBeam) -> Self {
-        Self(physics::AstigmaticBeam::stigmatic(beam.0))
-    }
-
-    /// Return the diffraction-limited beam of two divergences, with both waists at z = 0.
-    ///
-    /// Data sheets of laser diodes give the full width at half maximum θ: ``δ = θ / √(2 ln 2)``.
-    ///
-    /// Parameters
-    /// ----------
-    /// wavelength : float
-    ///     Wavelength in metres.
-    /// divergences : (float, float)
-    ///     Far-field half-angles (1/e²) along x and y, in radians, in (0, 0.5].
-    #[staticmethod]
-    fn from_divergences(wavelength: f64, divergences: [f64; 2]) -> PyResult<Self> {
-        let wavelength = wavelength_of_light("wavelength", wavelength)?;
-        let beam = physics::AstigmaticBeam::from_divergences(wavelength, divergences);
-        Ok(Self(beam.or_raise_as(&[("divergence", "divergences")])?))
-    }
-
-    /// Return this beam with its waists at other distances from the reference plane.
-    ///
-    /// Parameters
-    /// ----------
-    /// waist_distances : (float, float)
-    ///     Signed distances along the first and the second axis, in metres.
-    fn with_waist_distances(&self, waist_distances: [f64; 2]) -> PyResult<Self> {
-        let beam = self.0.with_waist_distances(waist_distances);
-        Ok(Self(
-            beam.or_raise_as(&[("waist_distance", "waist_distances")])?,
-        ))
-    }
-
-    /// Return this beam with its first principal axis at another angle.
-    ///
-    /// Parameters
-    /// ----------
-    /// rotation : float
-    ///     Angle in radians, from x towards y.
-    fn with_rotation(&self, rotation: f64) -> PyResult<Self> {
-        Ok(Self(self.0.with_rotation(rotation).or_raise()?))
-    }
-
     /// Return the beam behind a system whose matrices act along the principal axes of the beam.
     ///
     /// Parameters
@@ -100,23 +42,66 @@ impl AstigmaticBeam {
     ///     The beam seen from the output plane.
     fn through_axes(&self, systems: [PyRef<'_, AbcdMatrix>; 2]) -> PyResult<Self> {
         let beam = tem00_optics::through_axes(&self.0, systems.map(|system| system.0));
-        Ok(Self(beam.or_raise_as(&[("determinant", "systems")])?))
+        Ok(Self(beam.or_raise_renamed(&["determinant"], "systems")?))
     }
 
-    /// Return the beam radii (1/e²) along the principal axes, in metres.
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        let (x, y) = slf.get().axes();
+        let [x, y] = [x, y].map(|axis| Bound::new(slf.py(), axis).and_then(|axis| axis.repr()));
+        let rotation = slf.get().0.rotation();
+        Ok(format!(
+            "AstigmaticBeam({}, {}).with_rotation({rotation:?})",
+            x?, y?
+        ))
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        let (x, y) = self.axes();
+        by_constructor::<Self>(py, "_restored", (x, y, self.rotation()))
+    }
+}
+
+methods! {
+    impl AstigmaticBeam as this: this.0;
+
+    make new(x: Beam, y: Beam) =
+        physics::AstigmaticBeam::new(x, y).or_raise_renamed(&["wavelength"], "y");
+
+    /// Constructor that pickle calls.
+    make _restored(x: Beam, y: Beam, rotation: f64) =
+        physics::AstigmaticBeam::new(x, y).and_then(|beam| beam.with_rotation(rotation));
+
+    /// Return the diffraction-limited beam of two divergences, with both waists at z = 0.
+    ///
+    /// Data sheets of laser diodes give the full width at half maximum θ: ``δ = θ / √(2 ln 2)``.
     ///
     /// Parameters
     /// ----------
-    /// z : float or array_like
-    ///     Distance from the reference plane, in metres.
+    /// wavelength : float
+    ///     Wavelength in metres.
+    /// divergences : (float, float)
+    ///     Far-field half-angles (1/e²) along x and y, in radians, in (0, 0.5].
+    make from_divergences(wavelength: f64, divergences: [f64; 2]) =
+        physics::AstigmaticBeam::from_divergences(wavelength, divergences)
+            .or_raise_renamed(&["divergence"], "divergences");
+
+    /// Return this beam with its waists at other distances from the reference plane.
     ///
-    /// Returns
-    /// -------
-    /// ndarray, shape (..., 2)
-    ///     Radii in metres, with the axes last.
-    fn radii_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Array<'py>> {
-        map_vector(py, [("z", &z)], |[z]| self.0.radii_at(z))
-    }
+    /// Parameters
+    /// ----------
+    /// waist_distances : (float, float)
+    ///     Signed distances along the first and the second axis, in metres.
+    try with_waist_distances(waist_distances: [f64; 2]) -> AstigmaticBeam =
+        this.0.with_waist_distances(waist_distances)
+            .or_raise_renamed(&["waist_distance"], "waist_distances");
+
+    /// Return this beam with its first principal axis at another angle.
+    ///
+    /// Parameters
+    /// ----------
+    /// rotation : float
+    ///     Angle in radians, from x towards y.
+    try with_rotation(rotation: f64) -> AstigmaticBeam = this.0.with_rotation(rotation);
 
     /// Return the distribution of the irradiance over a plane, along the principal axes.
     ///
@@ -124,25 +109,24 @@ impl AstigmaticBeam {
     /// ----------
     /// z : float
     ///     Distance from the reference plane, in metres.
-    fn cross_section_at(&self, z: f64) -> PyResult<CrossSection> {
-        let z = coordinate("z", z)?;
-        CrossSection::of(self.0.radii_at(z))
-    }
+    try cross_section_at(z: f64) -> CrossSection =
+        CrossSection::at("z", z, |z| this.0.radii_at(z));
 
-    /// Return the wavefront curvatures along the principal axes, in 1/m, positive where diverging.
+    /// Return the beam radii (1/e²) along the principal axes, in metres, in the last axis.
     ///
     /// Parameters
     /// ----------
     /// z : float or array_like
     ///     Distance from the reference plane, in metres.
+    vectors radii_at(z) -> 2 = this.0.radii_at(z);
+
+    /// Return the wavefront curvatures along the principal axes, in 1/m, in the last axis; positive where diverging.
     ///
-    /// Returns
-    /// -------
-    /// ndarray, shape (..., 2)
-    ///     Curvatures in 1/m, with the axes last.
-    fn curvatures_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Array<'py>> {
-        map_vector(py, [("z", &z)], |[z]| self.0.curvatures_at(z))
-    }
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Distance from the reference plane, in metres.
+    vectors curvatures_at(z) -> 2 = this.0.curvatures_at(z);
 
     /// Return the energy-flow vector per watt of beam power, in 1/m².
     ///
@@ -158,42 +142,14 @@ impl AstigmaticBeam {
     /// -------
     /// ndarray, shape (..., 3)
     ///     Energy flow per watt, with its components in the last axis.
-    fn flux_per_watt<'py>(
-        &self,
-        py: Python<'py>,
-        x: Numbers<'py>,
-        y: Numbers<'py>,
-        z: Numbers<'py>,
-    ) -> PyResult<Array<'py>> {
-        let points = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
-        map_inner(py, points, &[3], |p| {
-            self.0.flux_per_watt(DVec3::from(p)).to_array()
-        })
-    }
-
-    fn __repr__(&self) -> String {
-        let (x, y) = self.axes();
-        let (x, y, rotation) = (x.__repr__(), y.__repr__(), self.0.rotation());
-        format!("AstigmaticBeam(x={x}, y={y}).with_rotation({rotation:?})")
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        let (x, y) = self.axes();
-        by_constructor::<Self>(py, "_restored", (x, y, self.rotation()))
-    }
-
-    /// Constructor that pickle calls.
-    #[staticmethod]
-    fn _restored(x: &LocatedBeam, y: &LocatedBeam, rotation: f64) -> PyResult<Self> {
-        Self::new(x, y)?.with_rotation(rotation)
-    }
-}
-
-methods! {
-    impl AstigmaticBeam as this: this.0;
+    vectors flux_per_watt(x, y, z) -> 3 =
+        this.0.flux_per_watt(DVec3::new(x, y, z)).to_array();
 
     /// The beams along the first and the second principal axis.
-    get axes -> (LocatedBeam, LocatedBeam) = this.0.axes().map(LocatedBeam).into();
+    get axes -> (LocatedBeam, LocatedBeam) = {
+        let [x, y] = this.0.axes().map(LocatedBeam);
+        (x, y)
+    };
 
     /// Angle from x to the first principal axis, in radians.
     get rotation -> f64;

@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 
 /// The closed forms of irradiance and next event, as source text for kernels and for C.
 ///
-/// A kernel on a GPU copies the rows of a placed light, ``light.to_rows("float32")``, and evaluates it
+/// A kernel on a GPU copies the rows of a placed light, ``light.to_rows()``, and evaluates it
 /// itself: the structs have the same layout on both sides.
 #[pymodule(submodule)]
 pub(crate) mod closed_form {

@@ -1,55 +1,41 @@
 //! The irradiance over a plane across a beam.
 
 use pyo3::prelude::*;
+use tem00_optics as physics;
 
-use super::arguments::{OrRaiseAs, components, map, map_inner, try_map};
-use crate::arrays::{Numbers, Values, Vector, Vectors};
+use super::map::{components, coordinate, map, try_map};
+use crate::{
+    arrays::{Values, Vector, Vectors, map_inner},
+    error::OrRaise,
+};
 
-/// The irradiance of a Gaussian beam of 1 W over a plane across it.
-///
-/// The principal axes of the distribution are x and y, its centre is the origin. Powers are fractions
-/// of the whole, from 0 to 1; an aperture of negative size holds nothing.
-///
-/// Parameters
-/// ----------
-/// radii : (float, float)
-///     Principal radii (1/e²) along x and y, in metres, from 1e-30 to 1e30.
-#[pyclass(frozen, eq, module = "tem00.beam")]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct CrossSection(pub(super) tem00_optics::CrossSection);
+class! {
+    /// The irradiance of a Gaussian beam of 1 W over a plane across it.
+    ///
+    /// The principal axes of the distribution are x and y, its centre is the origin. Powers are fractions
+    /// of the whole, from 0 to 1; an aperture of negative size holds nothing.
+    ///
+    /// Parameters
+    /// ----------
+    /// radii : (float, float)
+    ///     Principal radii (1/e²) along x and y, in metres, from 1e-30 to 1e30.
+    "tem00.beam" CrossSection(physics::CrossSection): Copy
+}
 
 impl CrossSection {
-    /// The cross-section of a beam that has these radii there.
-    pub(super) fn of(radii: [f64; 2]) -> PyResult<Self> {
-        let section = tem00_optics::CrossSection::new(radii);
-        Ok(Self(section.or_raise_as(&[("radius", "z")])?))
+    /// The cross-section of a beam that has radii at a coordinate `z`.
+    pub(super) fn at(
+        name: &'static str,
+        z: f64,
+        radii: impl Fn(f64) -> [f64; 2],
+    ) -> PyResult<physics::CrossSection> {
+        let section = physics::CrossSection::new(radii(coordinate(name, z)?));
+        section.or_raise_renamed(&["radius"], name)
     }
 }
 
 #[pymethods]
 impl CrossSection {
-    #[new]
-    fn new(radii: [f64; 2]) -> PyResult<Self> {
-        let section = tem00_optics::CrossSection::new(radii);
-        Ok(Self(section.or_raise_as(&[("radius", "radii")])?))
-    }
-
-    /// Return the radius of the centred circle that holds a fraction of the power, in metres.
-    ///
-    /// Parameters
-    /// ----------
-    /// fraction : float or array_like
-    ///     Fraction of the power, in [0, 1).
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Radius in metres, in the shape of ``fraction``.
-    fn circle_radius<'py>(&self, py: Python<'py>, fraction: Numbers<'py>) -> PyResult<Values<'py>> {
-        let argument = ("fraction", &fraction);
-        try_map(py, argument, |fraction| self.0.circle_radius(fraction))
-    }
-
     /// Return the fraction of the power within a rectangle.
     ///
     /// Parameters
@@ -80,11 +66,24 @@ impl CrossSection {
 methods! {
     impl CrossSection as this: this.0;
 
+    make new(radii: [f64; 2]) =
+        physics::CrossSection::new(radii).or_raise_renamed(&["radius"], "radii");
+
+    /// Return the radius of the centred circle that holds a fraction of the power, in metres.
+    ///
+    /// Parameters
+    /// ----------
+    /// fraction : float or array_like
+    ///     Fraction of the power, in [0, 1).
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Radius in metres, in the shape of ``fraction``.
+    try_map circle_radius(fraction);
+
     /// Principal radii (1/e²), in metres, shape (2,).
     get radii -> Vector<2>;
-
-    /// This cross-section with its axes exchanged.
-    get transposed -> Self = Self(this.0.transposed());
 
     /// Full widths at half maximum along x and y, in metres, shape (2,).
     get fwhm -> Vector<2>;
@@ -114,14 +113,6 @@ methods! {
     /// radius : float or array_like
     ///     Radius of the circle, in metres.
     map power_in_circle(radius);
-
-    /// Return the fraction of the power within a centred square, the ensquared power.
-    ///
-    /// Parameters
-    /// ----------
-    /// side : float or array_like
-    ///     Length of the sides, in metres.
-    map power_in_square(side);
 
     /// Return the fraction of the power that passes a slit across x.
     ///

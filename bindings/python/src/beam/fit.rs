@@ -1,15 +1,10 @@
 //! Beams fitted to measured data.
 
 use pyo3::{exceptions::PyRuntimeError, prelude::*};
+use tem00_optics::{self as physics, RadiusErrors};
 
-use super::{
-    arguments::{list, map},
-    located::LocatedBeam,
-};
-use crate::{
-    arrays::{Components, Numbers, wavelength_of_light},
-    error::{OrRaise, refused},
-};
+use super::{gaussian::LocatedBeam, map::map};
+use crate::{arguments::Take, arrays::named_class, error::refused};
 
 pyo3::create_exception!(
     tem00.beam,
@@ -18,11 +13,11 @@ pyo3::create_exception!(
     "Measured data that are valid each, but do not determine a beam together."
 );
 
-/// A fitted value and its standard error, in the same unit: `tem00._estimate.Estimate` in Python, a number.
-pub(crate) struct Estimate(tem00_optics::Estimate);
+/// A fitted value and its standard error, in the same unit: `tem00._results.Estimate` in Python, a number.
+pub(crate) struct Estimate(physics::Estimate);
 
-impl From<tem00_optics::Estimate> for Estimate {
-    fn from(estimate: tem00_optics::Estimate) -> Self {
+impl From<physics::Estimate> for Estimate {
+    fn from(estimate: physics::Estimate) -> Self {
         Self(estimate)
     }
 }
@@ -33,46 +28,15 @@ impl<'py> IntoPyObject<'py> for Estimate {
     type Error = PyErr;
 
     fn into_pyobject(self, py: Python<'py>) -> PyResult<Self::Output> {
-        estimate_class(py)?.call1((self.0.value, self.0.standard_error))
+        named_class(py, "Estimate")?.call1((self.0.value, self.0.standard_error))
     }
 }
 
-/// The class of fitted values.
-pub(super) fn estimate_class(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
-    py.import("tem00._estimate")?.getattr("Estimate")
-}
-
-/// A Gaussian beam fitted to its radius measured at several positions: its caustic.
-///
-/// The model is ``w(z) = √(w₀² + δ² (z − z₀)²)``, and ``M² = π w₀ δ / λ``. The radii count with errors
-/// proportional to the radius; ``with_errors`` takes other assumptions. M² is not confined to 1 and
-/// above: noise may bring it below.
-///
-/// Parameters
-/// ----------
-/// wavelength : float
-///     Wavelength in metres.
-/// positions : array_like, shape (n,)
-///     Positions along the beam, in metres; at least 4.
-/// radii : array_like, shape (n,)
-///     Second-moment radii there, half of D4σ, in metres.
-///
-/// Raises
-/// ------
-/// FitError
-///     If the data do not determine a beam.
-#[pyclass(frozen, eq, module = "tem00.beam")]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct CausticFit(tem00_optics::CausticFit);
-
-#[pymethods]
-impl CausticFit {
-    #[new]
-    fn new(wavelength: f64, positions: Components<'_>, radii: Components<'_>) -> PyResult<Self> {
-        Self::with_errors(wavelength, positions, radii, Errors::Relative)
-    }
-
-    /// Return the fit with errors of the radii as stated.
+class! {
+    /// A Gaussian beam fitted to its radius measured at several positions: its caustic.
+    ///
+    /// The model is ``w(z) = √(w₀² + δ² (z − z₀)²)``, and ``M² = π w₀ δ / λ``. M² is not confined to 1 and
+    /// above: noise may bring it below.
     ///
     /// Parameters
     /// ----------
@@ -82,52 +46,48 @@ impl CausticFit {
     ///     Positions along the beam, in metres; at least 4.
     /// radii : array_like, shape (n,)
     ///     Second-moment radii there, half of D4σ, in metres.
-    /// errors : {"relative", "equal"} or array_like, shape (n,)
-    ///     ``"relative"``: proportional to the radius; ``"equal"``: the same for all. The size of both
-    ///     follows from the scatter of the data. Numbers: the known standard deviations, in metres.
+    /// errors : {"relative", "equal"} or array_like, shape (n,), optional
+    ///     ``"relative"``, the default: proportional to the radius; ``"equal"``: the same for all. The size of
+    ///     both follows from the scatter of the data. Numbers: the known standard deviations, in metres.
     ///
     /// Raises
     /// ------
     /// FitError
     ///     If the data do not determine a beam.
-    #[staticmethod]
-    fn with_errors(
-        wavelength: f64,
-        positions: Components<'_>,
-        radii: Components<'_>,
-        errors: Errors<'_>,
+    "tem00.beam" CausticFit(physics::CausticFit): Copy
+}
+
+#[pymethods]
+impl CausticFit {
+    #[new]
+    #[pyo3(signature = (wavelength, positions, radii, errors = None))]
+    fn new(
+        wavelength: Bound<'_, PyAny>,
+        positions: Bound<'_, PyAny>,
+        radii: Bound<'_, PyAny>,
+        errors: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let wavelength = wavelength_of_light("wavelength", wavelength)?;
-        let (positions, radii) = (list("positions", &positions)?, list("radii", &radii)?);
-        let known = errors.known(radii.len())?;
-        let errors = match (&errors, known) {
-            (_, Some(deviations)) => tem00_optics::RadiusErrors::Known(deviations),
-            (Errors::Equal, None) => tem00_optics::RadiusErrors::Equal,
-            _ => tem00_optics::RadiusErrors::Relative,
+        take!(wavelength: f64, positions: Vec<f64>, radii: Vec<f64>);
+        let name = errors
+            .as_ref()
+            .and_then(|errors| errors.extract::<String>().ok());
+        let known = match (errors, &name) {
+            (Some(errors), None) => Some(deviations(&errors, radii.len())?),
+            _ => None,
         };
-        tem00_optics::CausticFit::with_errors(wavelength, positions, radii, errors)
+        let errors = match (&known, name.as_deref()) {
+            (Some(deviations), _) => RadiusErrors::Known(deviations),
+            (None, None | Some("relative")) => RadiusErrors::Relative,
+            (None, Some("equal")) => RadiusErrors::Equal,
+            (None, Some(other)) => {
+                let message =
+                    format!("errors must be 'relative', 'equal' or numbers, got '{other}'");
+                return Err(refused("errors", message));
+            }
+        };
+        physics::CausticFit::with_errors(wavelength, &positions, &radii, errors)
             .map(Self)
             .map_err(|error| raised(error, "radii"))
-    }
-
-    /// Return the fitted beam, seen from the position 0.
-    ///
-    /// Returns
-    /// -------
-    /// LocatedBeam
-    ///     Refused where noise has brought M² below 1 or the fit is not paraxial.
-    fn beam(&self) -> PyResult<LocatedBeam> {
-        Ok(LocatedBeam(self.0.beam().or_raise()?))
-    }
-
-    fn __repr__(&self) -> String {
-        let [waist, position, m_squared] = [
-            self.0.waist_radius(),
-            self.0.waist_position(),
-            self.0.m_squared(),
-        ]
-        .map(|estimate| format!("{:?} ± {:?}", estimate.value, estimate.standard_error));
-        format!("<CausticFit: waist radius {waist} m, waist position {position} m, M² {m_squared}>")
     }
 }
 
@@ -163,60 +123,54 @@ methods! {
     /// z : float or array_like
     ///     Position, in metres.
     map radius_at(z);
+
+    /// Return the fitted beam, seen from the position 0.
+    ///
+    /// Returns
+    /// -------
+    /// LocatedBeam
+    ///     Refused where noise has brought M² below 1 or the fit is not paraxial.
+    try beam() -> LocatedBeam = this.0.beam();
+
+    shown waist_radius, waist_position, m_squared;
 }
 
-/// A Gaussian beam fitted to the power that passes a knife edge moved across it.
-///
-/// The model is ``P(x) = P₀/2 · erfc(±√2 (x − x₀) / w)``; ``with_background`` adds a constant.
-///
-/// Parameters
-/// ----------
-/// positions : array_like, shape (n,)
-///     Positions of the edge, in metres; at least 4.
-/// powers : array_like, shape (n,)
-///     Power that passes there, in any unit.
-///
-/// Raises
-/// ------
-/// FitError
-///     If the data do not determine a beam.
-#[pyclass(frozen, eq, module = "tem00.beam")]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct KnifeEdgeFit(tem00_optics::KnifeEdgeFit);
-
-#[pymethods]
-impl KnifeEdgeFit {
-    #[new]
-    fn new(positions: Components<'_>, powers: Components<'_>) -> PyResult<Self> {
-        let (positions, powers) = (list("positions", &positions)?, list("powers", &powers)?);
-        let fit = tem00_optics::KnifeEdgeFit::new(positions, powers);
-        fit.map(Self).map_err(|error| raised(error, "powers"))
-    }
-
-    /// Return the fit with a constant background.
+class! {
+    /// A Gaussian beam fitted to the power that passes a knife edge moved across it.
+    ///
+    /// The model is ``P(x) = P₀/2 · erfc(±√2 (x − x₀) / w)``, and a constant background if asked for.
     ///
     /// Parameters
     /// ----------
     /// positions : array_like, shape (n,)
-    ///     Positions of the edge, in metres; at least 5.
+    ///     Positions of the edge, in metres; at least 4, and 5 with a background.
     /// powers : array_like, shape (n,)
     ///     Power that passes there, in any unit.
+    /// with_background : bool, optional
+    ///     Whether a background is fitted too.
     ///
     /// Raises
     /// ------
     /// FitError
     ///     If the data do not determine a beam.
-    #[staticmethod]
-    fn with_background(positions: Components<'_>, powers: Components<'_>) -> PyResult<Self> {
-        let (positions, powers) = (list("positions", &positions)?, list("powers", &powers)?);
-        let fit = tem00_optics::KnifeEdgeFit::with_background(positions, powers);
-        fit.map(Self).map_err(|error| raised(error, "powers"))
-    }
+    "tem00.beam" KnifeEdgeFit(physics::KnifeEdgeFit): Copy
+}
 
-    fn __repr__(&self) -> String {
-        let [radius, centre, power] = [self.0.radius(), self.0.centre(), self.0.power()]
-            .map(|estimate| format!("{:?} ± {:?}", estimate.value, estimate.standard_error));
-        format!("<KnifeEdgeFit: radius {radius} m, centre {centre} m, power {power}>")
+#[pymethods]
+impl KnifeEdgeFit {
+    #[new]
+    #[pyo3(signature = (positions, powers, with_background = false))]
+    fn new(
+        positions: Bound<'_, PyAny>,
+        powers: Bound<'_, PyAny>,
+        with_background: bool,
+    ) -> PyResult<Self> {
+        take!(positions: Vec<f64>, powers: Vec<f64>);
+        let fit = match with_background {
+            true => physics::KnifeEdgeFit::with_background(&positions, &powers),
+            false => physics::KnifeEdgeFit::new(&positions, &powers),
+        };
+        fit.map(Self).map_err(|error| raised(error, "powers"))
     }
 }
 
@@ -245,56 +199,27 @@ methods! {
     /// position : float or array_like
     ///     Position of the edge, in metres.
     map power_at(position);
+
+    shown radius, centre, power;
 }
 
-/// Assumption on the errors of measured radii.
-enum Errors<'py> {
-    Relative,
-    Equal,
-    Known(Numbers<'py>),
-}
-
-impl<'py> FromPyObject<'_, 'py> for Errors<'py> {
-    type Error = PyErr;
-
-    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        match object.extract::<String>() {
-            Err(_) => Ok(Self::Known(object.extract()?)),
-            Ok(name) if name == "relative" => Ok(Self::Relative),
-            Ok(name) if name == "equal" => Ok(Self::Equal),
-            Ok(name) => {
-                let message =
-                    format!("errors must be 'relative', 'equal' or numbers, got '{name}'");
-                Err(refused("errors", message))
-            }
-        }
+/// Known deviations, one for each radius.
+fn deviations(errors: &Bound<'_, PyAny>, radii: usize) -> PyResult<Vec<f64>> {
+    let deviations = Vec::take(errors, "errors")?;
+    if deviations.len() == radii {
+        return Ok(deviations);
     }
-}
-
-impl Errors<'_> {
-    /// The known deviations, one for each radius, if they are known.
-    fn known(&self, radii: usize) -> PyResult<Option<&[f64]>> {
-        let Self::Known(numbers) = self else {
-            return Ok(None);
-        };
-        let deviations = list("errors", numbers)?;
-        if deviations.len() == radii {
-            return Ok(Some(deviations));
-        }
-        let got = deviations.len();
-        let message = format!("errors must be one for each radius, got {got} for {radii} radii");
-        Err(refused("errors", message))
-    }
+    let got = deviations.len();
+    let message = format!("errors must be one for each radius, got {got} for {radii} radii");
+    Err(refused("errors", message))
 }
 
 /// The exception for data that cannot be fitted; `values` is the name of what was measured.
-fn raised(error: tem00_optics::FitError, values: &str) -> PyErr {
+fn raised(error: physics::FitError, values: &str) -> PyErr {
     let name = match &error {
-        tem00_optics::FitError::Argument(argument) => argument.parameter(),
-        tem00_optics::FitError::TooFewPoints { .. } | tem00_optics::FitError::EqualPositions => {
-            "positions"
-        }
-        tem00_optics::FitError::LengthsDiffer { .. } => values,
+        physics::FitError::Argument(argument) => argument.parameter(),
+        physics::FitError::TooFewPoints { .. } | physics::FitError::EqualPositions => "positions",
+        physics::FitError::LengthsDiffer { .. } => values,
         _ => return FitError::new_err(error.to_string()),
     };
     refused(name, error.to_string())

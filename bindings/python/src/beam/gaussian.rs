@@ -1,107 +1,43 @@
 //! Circular beams.
 
 use pyo3::prelude::*;
-use tem00_beam as physics;
-use tem00_beam::DVec3;
+use tem00_beam::{self as physics, DVec3};
+use tem00_optics::{ComplexBeamParameter, through_lens};
 
 use super::{
-    arguments::{OrRaiseAs, coordinate, coordinates, map, map_inner, try_map},
+    abcd::Parameter,
     cross_section::CrossSection,
+    map::{map, map_vector, try_map},
 };
 use crate::{
-    arrays::{Array, Numbers, Values},
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
 
-/// A circular Gaussian beam, or its partially coherent relative with M² > 1.
-///
-/// The beam travels along +z and its waist lies at z = 0. The wavelength λ in the medium it travels
-/// in, the waist radius w₀ and the beam quality factor M² determine everything else::
-///
-///     z_R  = π w₀² / (M² λ)           Rayleigh range
-///     w(z) = w₀ √(1 + (z / z_R)²)     beam radius, where the irradiance has fallen to 1/e²
-///     δ    = M² λ / (π w₀)            divergence, half-angle
-///
-/// Paraxial: waists below ``2 M² λ / π``, where the divergence reaches 0.5 rad, are refused.
-///
-/// Examples
-/// --------
-/// >>> from tem00.beam import GaussianBeam
-/// >>> beam = GaussianBeam.from_waist(wavelength=632.8e-9, waist_radius=100e-6)
-/// >>> round(beam.rayleigh_range, 5)
-/// 0.04965
-#[pyclass(frozen, eq, module = "tem00.beam")]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct GaussianBeam(pub(super) physics::GaussianBeam);
+class! {
+    /// A circular Gaussian beam, or its partially coherent relative with M² > 1.
+    ///
+    /// The beam travels along +z and its waist lies at z = 0. The wavelength λ in the medium it travels
+    /// in, the waist radius w₀ and the beam quality factor M² determine everything else::
+    ///
+    ///     z_R  = π w₀² / (M² λ)           Rayleigh range
+    ///     w(z) = w₀ √(1 + (z / z_R)²)     beam radius, where the irradiance has fallen to 1/e²
+    ///     δ    = M² λ / (π w₀)            divergence, half-angle
+    ///
+    /// Paraxial: waists below ``2 M² λ / π``, where the divergence reaches 0.5 rad, are refused.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from tem00.beam import GaussianBeam
+    /// >>> beam = GaussianBeam.from_waist(wavelength=632.8e-9, waist_radius=100e-6)
+    /// >>> round(beam.rayleigh_range, 5)
+    /// 0.04965
+    "tem00.beam" GaussianBeam(physics::GaussianBeam): Copy
+}
 
 #[pymethods]
 impl GaussianBeam {
-    /// Return this beam with another beam quality factor M² and the same waist radius.
-    ///
-    /// Parameters
-    /// ----------
-    /// m_squared : float
-    ///     Beam quality factor, at least 1, and small enough for the waist to stay paraxial.
-    fn with_m_squared(&self, m_squared: f64) -> PyResult<Self> {
-        let beam = self.0.with_m_squared(m_squared);
-        Ok(Self(beam.or_raise_as(&[("waist_radius", "m_squared")])?))
-    }
-
-    /// Return the full length over which the radius stays within ``growth`` times the waist.
-    ///
-    /// Parameters
-    /// ----------
-    /// growth : float or array_like
-    ///     Factor by which the radius may grow, greater than 1.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Depth of focus in metres, in the shape of ``growth``.
-    fn depth_of_focus<'py>(&self, py: Python<'py>, growth: Numbers<'py>) -> PyResult<Values<'py>> {
-        try_map(py, ("growth", &growth), |g| self.0.depth_of_focus(g))
-    }
-
-    /// Return the distribution of the irradiance over a plane across the beam.
-    ///
-    /// Parameters
-    /// ----------
-    /// z : float
-    ///     Signed distance from the waist, in metres.
-    fn cross_section_at(&self, z: f64) -> PyResult<CrossSection> {
-        let z = coordinate("z", z)?;
-        CrossSection::of([self.0.radius_at(z); 2])
-    }
-
-    /// Return the energy-flow vector per watt of beam power, in 1/m².
-    ///
-    /// Its integral over any surface that cuts the whole beam is 1. A surface whose normal ``n`` lies
-    /// on the lit side receives the irradiance ``max(0, -F·n)``.
-    ///
-    /// Parameters
-    /// ----------
-    /// x, y, z : float or array_like
-    ///     Coordinates in the frame of the beam, in metres; they broadcast together.
-    ///
-    /// Returns
-    /// -------
-    /// ndarray, shape (..., 3)
-    ///     Energy flow per watt, with its components in the last axis.
-    fn flux_per_watt<'py>(
-        &self,
-        py: Python<'py>,
-        x: Numbers<'py>,
-        y: Numbers<'py>,
-        z: Numbers<'py>,
-    ) -> PyResult<Array<'py>> {
-        let points = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
-        map_inner(py, points, &[3], |p| {
-            self.0.flux_per_watt(DVec3::from(p)).to_array()
-        })
-    }
-
-    pub(super) fn __repr__(&self) -> String {
+    fn __repr__(&self) -> String {
         let (wavelength, waist_radius) = (self.0.wavelength(), self.0.waist_radius());
         let m_squared = match self.0.m_squared() {
             1.0 => String::new(),
@@ -123,7 +59,8 @@ impl GaussianBeam {
     #[staticmethod]
     fn _restored(wavelength: f64, waist_radius: f64, m_squared: f64) -> PyResult<Self> {
         let beam = physics::GaussianBeam::from_waist(wavelength, waist_radius).or_raise()?;
-        Self(beam).with_m_squared(m_squared)
+        let beam = beam.with_m_squared(m_squared);
+        Ok(Self(beam.or_raise_renamed(&["waist_radius"], "m_squared")?))
     }
 }
 
@@ -140,7 +77,7 @@ methods! {
     ///     Wavelength in the medium the beam travels in, in metres.
     /// waist_radius : float
     ///     Radius of the waist (1/e²), in metres, at least ``2 λ / π``.
-    make from_waist(wavelength: wavelength_of_light, waist_radius);
+    make from_waist(wavelength: f64, waist_radius: f64);
 
     /// Return the diffraction-limited beam (M² = 1) of a wavelength and a divergence.
     ///
@@ -153,7 +90,50 @@ methods! {
     ///     Wavelength in the medium the beam travels in, in metres.
     /// divergence : float
     ///     Far-field half-angle (1/e²), in radians, in (0, 0.5].
-    make from_divergence(wavelength: wavelength_of_light, divergence);
+    make from_divergence(wavelength: f64, divergence: f64);
+
+    /// Return this beam with another beam quality factor M² and the same waist radius.
+    ///
+    /// Parameters
+    /// ----------
+    /// m_squared : float
+    ///     Beam quality factor, at least 1, and small enough for the waist to stay paraxial.
+    try with_m_squared(m_squared: f64) -> GaussianBeam =
+        this.0.with_m_squared(m_squared).or_raise_renamed(&["waist_radius"], "m_squared");
+
+    /// Return the full length, in metres, over which the radius stays within ``growth`` times the waist.
+    ///
+    /// Parameters
+    /// ----------
+    /// growth : float or array_like
+    ///     Factor by which the radius may grow, greater than 1.
+    try_map depth_of_focus(growth);
+
+    /// Return the distribution of the irradiance over a plane across the beam.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float
+    ///     Signed distance from the waist, in metres.
+    try cross_section_at(z: f64) -> CrossSection =
+        CrossSection::at("z", z, |z| [this.0.radius_at(z); 2]);
+
+    /// Return the energy-flow vector per watt of beam power, in 1/m².
+    ///
+    /// Its integral over any surface that cuts the whole beam is 1. A surface whose normal ``n`` lies
+    /// on the lit side receives the irradiance ``max(0, -F·n)``.
+    ///
+    /// Parameters
+    /// ----------
+    /// x, y, z : float or array_like
+    ///     Coordinates in the frame of the beam, in metres; they broadcast together.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, shape (..., 3)
+    ///     Energy flow per watt, with its components in the last axis.
+    vectors flux_per_watt(x, y, z) -> 3 =
+        this.0.flux_per_watt(DVec3::new(x, y, z)).to_array();
 
     /// Wavelength in the medium the beam travels in, in metres.
     get wavelength -> f64;
@@ -241,4 +221,82 @@ methods! {
     ///     Distance from the axis, 0 or more, and signed distance from the waist, in metres; they
     ///     broadcast together.
     map encircled_power(radius: not_negative, z);
+}
+
+class! {
+    /// A Gaussian beam and where its waist lies, seen from a reference plane.
+    ///
+    /// The beam travels along +z, z = 0 is the reference plane, and the waist lies at
+    /// ``z = waist_distance``: positive where it is still to come, negative where it has been passed or
+    /// is virtual.
+    ///
+    /// Parameters
+    /// ----------
+    /// beam : GaussianBeam
+    /// waist_distance : float
+    ///     Signed distance from the reference plane to the waist, in metres, within ±1e30.
+    "tem00.beam" LocatedBeam(physics::LocatedBeam): Copy
+}
+
+methods! {
+    impl LocatedBeam as this: this.0;
+
+    make new(beam: physics::GaussianBeam, waist_distance: f64);
+
+    /// Return the beam of a complex beam parameter, seen from the plane of the parameter.
+    ///
+    /// Parameters
+    /// ----------
+    /// parameter : complex
+    ///     ``q = z + i z_R``, in metres: signed distance past the waist, and Rayleigh range.
+    /// wavelength : float
+    ///     Wavelength in the medium the beam travels in, in metres.
+    /// m_squared : float
+    ///     Beam quality factor, at least 1.
+    make from_complex_parameter(parameter: ComplexBeamParameter, wavelength: f64, m_squared: f64) =
+        parameter.to_located_beam(wavelength, m_squared);
+
+    /// Return the distribution of the irradiance over a plane across the beam.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float
+    ///     Signed distance from the reference plane, in metres.
+    try cross_section_at(z: f64) -> CrossSection =
+        CrossSection::at("z", z, |z| [this.0.radius_at(z); 2]);
+
+    /// Return the beam behind a thin lens in the reference plane, seen from the lens.
+    ///
+    /// Parameters
+    /// ----------
+    /// focal_length : float
+    ///     Focal length in metres, positive for a focusing lens.
+    try through_lens(focal_length: f64) -> LocatedBeam = through_lens(&this.0, focal_length);
+
+    /// The beam.
+    get beam -> GaussianBeam = this.0.beam().to_owned();
+
+    /// Signed distance from the reference plane to the waist, in metres.
+    get waist_distance -> f64;
+
+    /// Complex beam parameter ``q = z + i z_R`` in the reference plane, in metres.
+    get complex_parameter -> Parameter = ComplexBeamParameter::of(&this.0);
+
+    /// Return the beam radius (1/e²) in metres.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Signed distance from the reference plane, in metres.
+    map radius_at(z);
+
+    /// Return the wavefront curvature 1/R in 1/m, positive where the beam diverges.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Signed distance from the reference plane, in metres.
+    map curvature_at(z);
+
+    made_by new(beam, waist_distance);
 }

@@ -2,53 +2,46 @@ use pyo3::prelude::*;
 use tem00_coherence::{self as physics, LineShape};
 
 use crate::{
-    arrays::{Components, Whole, map},
+    arrays::map,
     error::{OrRaise, refused},
 };
 
-/// The spectrum of a laser or of another narrow source: by default one Gaussian peak.
-///
-/// Parameters
-/// ----------
-/// wavelength : float
-///     Central wavelength in metres.
-/// linewidth : float
-///     Full width at half maximum in metres, at most a tenth of the wavelength; 0 for light of one wavelength.
-#[pyclass(frozen, eq, module = "tem00.coherence")]
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct SpectralLine(pub(crate) physics::SpectralLine);
+class! {
+    /// The spectrum of a laser or of another narrow source: by default one Gaussian peak.
+    ///
+    /// Parameters
+    /// ----------
+    /// wavelength : float
+    ///     Central wavelength in metres.
+    /// linewidth : float
+    ///     Full width at half maximum in metres, at most a tenth of the wavelength; 0 for light of one wavelength.
+    "tem00.coherence" SpectralLine(physics::SpectralLine)
+}
 
 #[pymethods]
 impl SpectralLine {
     #[new]
     #[pyo3(signature = (wavelength, linewidth=0.0))]
     fn new(wavelength: f64, linewidth: f64) -> PyResult<Self> {
-        Self::shaped(wavelength, linewidth, LineShape::Gaussian)
+        let line = physics::SpectralLine::new(wavelength, linewidth, LineShape::Gaussian);
+        Ok(Self(line.or_raise()?))
     }
+}
 
-    fn __repr__(&self) -> String {
-        let (wavelength, length) = (self.0.wavelength(), self.0.coherence_length());
-        format!("<SpectralLine: wavelength={wavelength:?}, coherence_length={length:?}>")
-    }
+methods! {
+    impl SpectralLine as this: this.0;
 
     /// Return a Lorentzian line: long wings, as of a single mode of a diode.
-    #[staticmethod]
-    fn lorentzian(wavelength: f64, linewidth: f64) -> PyResult<Self> {
-        Self::shaped(wavelength, linewidth, LineShape::Lorentzian)
-    }
+    make lorentzian(wavelength: f64, linewidth: f64) =
+        physics::SpectralLine::new(wavelength, linewidth, LineShape::Lorentzian);
 
     /// Return a rectangular line, as of a wavelength that is swept during the exposure.
-    #[staticmethod]
-    fn rectangular(wavelength: f64, linewidth: f64) -> PyResult<Self> {
-        Self::shaped(wavelength, linewidth, LineShape::Rectangular)
-    }
+    make rectangular(wavelength: f64, linewidth: f64) =
+        physics::SpectralLine::new(wavelength, linewidth, LineShape::Rectangular);
 
-    /// Return so many equal peaks without a width, the first and the last ``span`` apart, in metres.
-    #[staticmethod]
-    fn comb(wavelength: f64, span: f64, count: Whole<'_>) -> PyResult<Self> {
-        let line = physics::SpectralLine::comb(wavelength, span, count.unsigned("count")?);
-        Ok(Self(line.or_raise_renamed(&["peaks"], "count")?))
-    }
+    /// Return ``count`` equal peaks without a width, the first and the last ``span`` apart, in metres.
+    make comb(wavelength: f64, span: f64, count: usize) =
+        physics::SpectralLine::comb(wavelength, span, count).or_raise_renamed(&["peaks"], "count");
 
     /// Return peaks without a width.
     ///
@@ -58,37 +51,15 @@ impl SpectralLine {
     ///     Wavelengths in metres.
     /// powers : array_like, shape (n,)
     ///     The power of each, in any unit.
-    #[staticmethod]
-    fn from_peaks(wavelengths: Components<'_>, powers: Components<'_>) -> PyResult<Self> {
-        let (wavelengths, powers) = (wavelengths.finite("wavelengths")?, powers.finite("powers")?);
-        if wavelengths.len() != powers.len() {
-            let message = format!(
-                "powers must be as many as wavelengths, {}, got {}",
-                wavelengths.len(),
-                powers.len()
-            );
+    make from_peaks(wavelengths: Vec<f64>, powers: Vec<f64>) = {
+        let (wanted, given) = (wavelengths.len(), powers.len());
+        if given != wanted {
+            let message = format!("powers must be as many as wavelengths, {wanted}, got {given}");
             return Err(refused("powers", message));
         }
-        let peaks: Vec<_> = wavelengths
-            .iter()
-            .zip(powers)
-            .map(|(&w, &p)| [w, p])
-            .collect();
-        let line = physics::SpectralLine::from_peaks(&peaks);
-        let line = line.or_raise_renamed(&["power"], "powers");
-        Ok(Self(line?))
-    }
-}
-
-impl SpectralLine {
-    fn shaped(wavelength: f64, linewidth: f64, shape: LineShape) -> PyResult<Self> {
-        let line = physics::SpectralLine::new(wavelength, linewidth, shape);
-        Ok(Self(line.or_raise()?))
-    }
-}
-
-methods! {
-    impl SpectralLine as this: this.0;
+        let peaks: Vec<_> = wavelengths.into_iter().zip(powers).map(<[f64; 2]>::from).collect();
+        physics::SpectralLine::from_peaks(&peaks).or_raise_renamed(&["power"], "powers")
+    };
 
     /// Wavelength of the mean wave number, in metres.
     get wavelength -> f64;
@@ -115,4 +86,6 @@ methods! {
     /// uniform : float or array_like
     ///     Random numbers from 0 to 1.
     map draw(uniform);
+
+    shown wavelength, coherence_length;
 }

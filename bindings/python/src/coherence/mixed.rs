@@ -42,15 +42,14 @@ pub(super) fn mixed_contrast(
     light.contrast().or_raise()
 }
 
-/// Return the relative variance, over a resolution cell, of light from a small lit part of another rough surface.
-///
-/// Its own speckle makes it: of multiple light alone the squared contrast is 1 plus twice this.
-///
-/// Parameters
-/// ----------
-/// relative_aperture : float
-///     The sine of the half-angle of the lit part, seen from the cell, over that of the lens.
-#[pyfunction]
-pub(super) fn cascade_variance(relative_aperture: f64) -> PyResult<f64> {
-    physics::cascade_variance(relative_aperture).or_raise()
+functions! {
+    /// Return the relative variance, over a resolution cell, of light from a small lit part of another rough surface.
+    ///
+    /// Its own speckle makes it: of multiple light alone the squared contrast is 1 plus twice this.
+    ///
+    /// Parameters
+    /// ----------
+    /// relative_aperture : float
+    ///     The sine of the half-angle of the lit part, seen from the cell, over that of the lens.
+    try cascade_variance(relative_aperture: f64) -> f64 = physics::cascade_variance(relative_aperture);
 }

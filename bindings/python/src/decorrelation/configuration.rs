@@ -1,129 +1,50 @@
 use pyo3::prelude::*;
-use tem00_decorrelation as physics;
+use tem00_decorrelation::{self as physics, DVec3};
 
-use super::{
-    frame::{CameraFrame, LineOfSight},
-    illumination::Illumination,
-    rigid::RigidMotions,
-    vectors::{Array2, array2, shown, vec2, vec3},
-};
+use super::rigid::RigidMotion;
 use crate::{
-    arrays::{Components, Vector, wavelength_of_light},
-    error::OrRaise,
+    arrays::{Vector, named_tuple},
+    error::{OrRaise, refused},
 };
 
-/// A point of a rough surface, its light and its camera, all in the world: one state of a scene.
-///
-/// One state is made with ``Configuration(…)``, the other from it, by moving the bodies or changing the light.
-///
-/// Parameters
-/// ----------
-/// wavelength : float
-///     Vacuum wavelength of the light in metres.
-/// point : array_like, shape (3,)
-///     Position of the surface point in metres.
-/// normal : array_like, shape (3,)
-///     Normal of the surface, of any length and to either side.
-/// illumination : Illumination
-///     The light on the surface.
-/// camera : CameraFrame
-///     Orientation of the camera.
-/// pupil : array_like, shape (3,)
-///     Position of the centre of the entrance pupil in metres.
-#[pyclass(frozen, eq, module = "tem00.decorrelation")]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Configuration(pub(super) physics::Configuration);
-
-#[pymethods]
-impl Configuration {
-    #[new]
-    #[pyo3(signature = (*, wavelength, point, normal, illumination, camera, pupil))]
-    fn new(
-        wavelength: f64,
-        point: Components<'_>,
-        normal: Components<'_>,
-        illumination: PyRef<'_, Illumination>,
-        camera: PyRef<'_, CameraFrame>,
-        pupil: Components<'_>,
-    ) -> PyResult<Self> {
-        let wavelength = wavelength_of_light("wavelength", wavelength)?;
-        let state = physics::Configuration::new(physics::ConfigurationData {
-            wavelength,
-            point: vec3("point", &point)?,
-            normal: vec3("normal", &normal)?,
-            illumination: illumination.0,
-            camera: camera.0,
-            pupil: vec3("pupil", &pupil)?,
-        });
-        Ok(Self(state.or_raise_renamed(&["to_pupil"], "pupil")?))
-    }
-
-    /// Return the state after surface, camera and source have moved.
-    fn moved(&self, motions: PyRef<'_, RigidMotions>) -> PyResult<Self> {
-        let state = self.0.moved(&motions.0);
-        Ok(Self(
-            state.or_raise_renamed(&["to_pupil", "point"], "motions")?,
-        ))
-    }
-
-    /// Return the state with other light on the surface.
-    fn with_illumination(&self, illumination: PyRef<'_, Illumination>) -> PyResult<Self> {
-        let state = self.0.with_illumination(illumination.0);
-        Ok(Self(state.or_raise_renamed(&["point"], "illumination")?))
-    }
-
-    /// Return the state with another wavelength, in metres.
-    fn with_wavelength(&self, wavelength: f64) -> PyResult<Self> {
-        Ok(Self(self.0.with_wavelength(wavelength).or_raise()?))
-    }
-
-    /// Return where the speckle field after a change is what it was at a point of the pupil before.
+class! {
+    /// A point of a rough surface, its light and its camera, all in the world: one state of a scene.
+    ///
+    /// One state is made with ``Configuration(…)``, the other from it, by moving the bodies or changing the light.
     ///
     /// Parameters
     /// ----------
-    /// after : Configuration
-    ///     The state after the change.
-    /// pupil_point : array_like, shape (2,)
-    ///     Components along b1 and b2 from the centre of the pupil, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// ndarray, shape (2,) or None
-    ///     The same after the change; ``None`` where there is no such point.
-    fn pupil_point_after<'py>(
-        &self,
-        py: Python<'py>,
-        after: PyRef<'py, Self>,
-        pupil_point: Components<'py>,
-    ) -> PyResult<Option<Array2<'py>>> {
-        let pupil_point = vec2("pupil_point", &pupil_point)?;
-        let moved = self.0.pupil_point_after(&after.0, pupil_point);
-        moved
-            .map(|moved| array2(py, "pupil_point", moved))
-            .transpose()
-    }
-
-    /// Return by how much a change alters the phase that a scatterer gains with its height.
-    ///
-    /// Returns
-    /// -------
-    /// float or None
-    ///     Radians per metre of height; ``None`` where ``pupil_point_after`` has no point.
-    fn height_phase_change(&self, after: PyRef<'_, Self>) -> Option<f64> {
-        self.0.height_phase_change(&after.0)
-    }
-
-    fn __repr__(&self) -> String {
-        let (point, pupil) = (shown(self.0.point()), shown(self.0.pupil()));
-        format!(
-            "<Configuration: wavelength={:?}, point={point}, pupil={pupil}>",
-            self.0.wavelength()
-        )
-    }
+    /// wavelength : float
+    ///     Vacuum wavelength of the light in metres.
+    /// point : array_like, shape (3,)
+    ///     Position of the surface point in metres.
+    /// normal : array_like, shape (3,)
+    ///     Normal of the surface, of any length and to either side.
+    /// illumination : Illumination
+    ///     The light on the surface.
+    /// camera : CameraFrame
+    ///     Orientation of the camera.
+    /// pupil : array_like, shape (3,)
+    ///     Position of the centre of the entrance pupil in metres.
+    "tem00.decorrelation" Configuration(physics::Configuration): Copy
 }
 
 methods! {
     impl Configuration as this: this.0;
+
+    make new(
+        wavelength: f64, point: DVec3, normal: DVec3, illumination: physics::Illumination,
+        camera: physics::CameraFrame, pupil: DVec3
+    ) = physics::Configuration::new(physics::ConfigurationData {
+        wavelength, point, normal, illumination, camera, pupil,
+    }).or_raise_renamed(&["to_pupil"], "pupil");
+
+    /// Return the state with other light on the surface.
+    try with_illumination(illumination: physics::Illumination) -> Configuration =
+        this.0.with_illumination(illumination).or_raise_renamed(&["point"], "illumination");
+
+    /// Return the state with another wavelength, in metres.
+    try with_wavelength(wavelength: f64) -> Configuration = this.0.with_wavelength(wavelength);
 
     /// Vacuum wavelength in metres.
     get wavelength -> f64;
@@ -137,9 +58,73 @@ methods! {
     /// Unit vector from the surface point to the light source, of shape (3,).
     get direction_to_source -> Vector<3>;
 
-    /// Line of sight to the point.
-    get sight -> LineOfSight = LineOfSight(*this.0.sight());
-
     /// Position of the centre of the entrance pupil in metres, of shape (3,).
     get pupil -> Vector<3>;
+
+    shown wavelength, point, normal, direction_to_source, pupil;
+}
+
+#[pymethods]
+impl Configuration {
+    /// Return the state after surface, camera and light source have moved, as rigid bodies.
+    ///
+    /// Parameters
+    /// ----------
+    /// surface, camera, source : RigidMotion, optional
+    ///     Motions of each; what is left out stands still.
+    #[pyo3(signature = (*, surface = None, camera = None, source = None))]
+    fn moved(
+        &self,
+        surface: Option<PyRef<'_, RigidMotion>>,
+        camera: Option<PyRef<'_, RigidMotion>>,
+        source: Option<PyRef<'_, RigidMotion>>,
+    ) -> PyResult<Self> {
+        let [surface, camera, source] = [surface, camera, source]
+            .map(|motion| motion.map_or(physics::RigidMotion::IDENTITY, |motion| motion.0));
+        let motions = physics::RigidMotions {
+            surface,
+            camera,
+            source,
+        };
+        let state = self.0.moved(&motions);
+        Ok(Self(
+            state.or_raise_renamed(&["to_pupil", "point"], "motions")?,
+        ))
+    }
+}
+
+named_tuple! {
+    SpeckleMotion(physics::SpeckleMotion) as motion: (
+        Vector::from(motion.image_displacement),
+        Vector::from(motion.defocus_displacement),
+        Vector::from(motion.speckle_displacement()),
+        motion.pupil_displacement.map(Vector::from),
+        motion.axial_displacement,
+        motion.correlation,
+    )
+}
+
+functions! {
+    /// Return the motion of the speckle between two states of the same surface point.
+    ///
+    /// Parameters
+    /// ----------
+    /// geometry : ImagingGeometry
+    ///     The camera in both states; its wavelength does not count here.
+    /// before, after : Configuration
+    ///     The states, however far apart.
+    try speckle_motion(
+        geometry: physics::ImagingGeometry, before: physics::Configuration, after: physics::Configuration
+    ) -> SpeckleMotion = numbers(physics::SpeckleMotion::between(&geometry, &before, &after));
+}
+
+/// Refuses what moved so far that the result is NaN.
+fn numbers(motion: physics::SpeckleMotion) -> PyResult<physics::SpeckleMotion> {
+    let pupil = motion.pupil_displacement.unwrap_or_default();
+    let vectors = motion.speckle_displacement() + pupil;
+    if vectors.is_nan() || motion.axial_displacement.is_nan() || motion.correlation.is_nan() {
+        let message = "after must be less extreme to have a result".to_owned();
+        return Err(refused("after", message));
+    }
+    Ok(motion)
 }

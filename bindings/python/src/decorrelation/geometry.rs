@@ -1,45 +1,21 @@
 use pyo3::prelude::*;
-use tem00_decorrelation::{self as physics, DVec2};
+use tem00_decorrelation::{self as physics, DVec2, Focus};
 
-use super::lens::{LensData, PupilDistances, ThickLensData};
 use crate::{
-    arrays::{Numbers, Values, map, map_many, wavelength_of_light},
-    error::OrRaise,
-    pickling::{Recipe, by_constructor},
+    arguments::{Take, object},
+    arrays::{Numbers, Values, length, map, map_many},
+    error::{OrRaise, refused},
+    pickling::{Made, Recipe, keywords},
 };
 
 /// A camera focused on a surface: a lens, its pupils and the sensor behind it.
 ///
-/// All lengths are in metres.
+/// All lengths are in metres. Wavelengths are those in vacuum, f-numbers those of focus at infinity.
 #[pyclass(frozen, eq, module = "tem00.decorrelation")]
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct ImagingGeometry {
-    pub(super) geometry: physics::ImagingGeometry,
+    geometry: physics::ImagingGeometry,
     made: Made,
-}
-
-/// Data that make a geometry again.
-#[derive(Clone, Copy, Debug)]
-enum Made {
-    Lens(LensData),
-    ThickLens(ThickLensData),
-    Distances(PupilDistances),
-}
-
-impl Made {
-    fn with_wavelength(mut self, wavelength: f64) -> Self {
-        let (Self::Lens(LensData {
-            wavelength: old, ..
-        })
-        | Self::ThickLens(ThickLensData {
-            wavelength: old, ..
-        })
-        | Self::Distances(PupilDistances {
-            wavelength: old, ..
-        })) = &mut self;
-        *old = wavelength;
-        self
-    }
 }
 
 impl PartialEq for ImagingGeometry {
@@ -48,40 +24,148 @@ impl PartialEq for ImagingGeometry {
     }
 }
 
+impl<'py> Take<'py> for physics::ImagingGeometry {
+    fn take(given: &Bound<'py, PyAny>, name: &'static str) -> PyResult<Self> {
+        Ok(object::<ImagingGeometry>(given, name)?.get().geometry)
+    }
+}
+
 #[pymethods]
 impl ImagingGeometry {
     /// Return the geometry of a thin lens that images a surface at a given distance sharply.
+    ///
+    /// Parameters
+    /// ----------
+    /// wavelength, focal_length, f_number : float
+    ///     Light and lens.
+    /// surface_to_pupil : float
+    ///     Distance of the surface from the lens.
+    /// pixel_pitch : float
+    ///     Pixel pitch of the sensor.
     #[staticmethod]
-    fn from_lens(lens: PyRef<'_, LensData>) -> PyResult<Self> {
-        let geometry = physics::ImagingGeometry::from_lens(lens.physics())
-            .or_raise_renamed(&["pupil_diameter"], "f_number")?;
-        let made = Made::Lens(*lens);
+    fn from_lens(
+        wavelength: Bound<'_, PyAny>,
+        focal_length: f64,
+        f_number: f64,
+        surface_to_pupil: f64,
+        pixel_pitch: f64,
+    ) -> PyResult<Self> {
+        take!(wavelength: f64);
+        let geometry = physics::ImagingGeometry::from_lens(physics::LensData {
+            wavelength,
+            focal_length,
+            f_number,
+            surface_to_pupil,
+            pixel_pitch,
+        });
+        let made =
+            keywords!(from_lens: wavelength, focal_length, f_number, surface_to_pupil, pixel_pitch);
+        let geometry = geometry.or_raise_renamed(&["pupil_diameter"], "f_number")?;
         Ok(Self { geometry, made })
     }
 
     /// Return the geometry of a lens of many elements.
+    ///
+    /// Parameters
+    /// ----------
+    /// wavelength, focal_length, f_number : float
+    ///     Light and lens.
+    /// pupil_magnification : float
+    ///     Diameter of the exit pupil over that of the entrance pupil.
+    /// pixel_pitch : float
+    ///     Pixel pitch of the sensor.
+    /// magnification, surface_to_principal_plane, surface_to_pupil : float, optional
+    ///     The focus, by one of these.
     #[staticmethod]
-    fn from_thick_lens(lens: PyRef<'_, ThickLensData>) -> PyResult<Self> {
-        let geometry = physics::ImagingGeometry::from_thick_lens(lens.physics())
-            .or_raise_renamed(&["pupil_diameter"], "f_number")?;
-        let made = Made::ThickLens(*lens);
+    #[pyo3(signature = (
+        wavelength, focal_length, f_number, pupil_magnification, pixel_pitch, *,
+        magnification = None, surface_to_principal_plane = None, surface_to_pupil = None,
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "Python passes them by name")]
+    fn from_thick_lens(
+        wavelength: Bound<'_, PyAny>,
+        focal_length: f64,
+        f_number: f64,
+        pupil_magnification: f64,
+        pixel_pitch: f64,
+        magnification: Option<f64>,
+        surface_to_principal_plane: Option<f64>,
+        surface_to_pupil: Option<f64>,
+    ) -> PyResult<Self> {
+        take!(wavelength: f64);
+        let given = [magnification, surface_to_principal_plane, surface_to_pupil];
+        let (name, value, focus) = match given {
+            [Some(x), None, None] => ("magnification", x, Focus::Magnification(x)),
+            [None, Some(x), None] => (
+                "surface_to_principal_plane",
+                x,
+                Focus::SurfaceToPrincipalPlane(x),
+            ),
+            [None, None, Some(x)] => ("surface_to_pupil", x, Focus::SurfaceToPupil(x)),
+            _ => {
+                let message = "magnification, surface_to_principal_plane and surface_to_pupil: one \
+                               of them must be given, and only one";
+                return Err(refused("magnification", message.to_owned()));
+            }
+        };
+        let geometry = physics::ImagingGeometry::from_thick_lens(physics::ThickLensData {
+            wavelength,
+            focal_length,
+            f_number,
+            pupil_magnification,
+            focus,
+            pixel_pitch,
+        });
+        let mut made = keywords!(
+            from_thick_lens: wavelength, focal_length, f_number, pupil_magnification, pixel_pitch
+        );
+        made.keywords.push((name, value));
+        let geometry = geometry.or_raise_renamed(&["pupil_diameter"], "f_number")?;
         Ok(Self { geometry, made })
     }
 
     /// Return the geometry of a camera whose pupil and distances are known.
+    ///
+    /// Parameters
+    /// ----------
+    /// wavelength : float
+    ///     Vacuum wavelength.
+    /// surface_to_pupil, pupil_to_image : float
+    ///     Distances from the entrance pupil to the surface and from the exit pupil to the sensor.
+    /// pupil_diameter : float
+    ///     Diameter of the entrance pupil.
+    /// pixel_pitch : float
+    ///     Pixel pitch of the sensor.
     #[staticmethod]
-    fn from_distances(distances: PyRef<'_, PupilDistances>) -> PyResult<Self> {
-        let geometry = physics::ImagingGeometry::from_distances(distances.physics()).or_raise()?;
-        let made = Made::Distances(*distances);
+    fn from_distances(
+        wavelength: Bound<'_, PyAny>,
+        surface_to_pupil: f64,
+        pupil_to_image: f64,
+        pupil_diameter: f64,
+        pixel_pitch: f64,
+    ) -> PyResult<Self> {
+        take!(wavelength: f64);
+        let geometry = physics::ImagingGeometry::from_distances(physics::PupilDistances {
+            wavelength,
+            surface_to_pupil,
+            pupil_to_image,
+            pupil_diameter,
+            pixel_pitch,
+        });
+        let made = keywords!(
+            from_distances: wavelength, surface_to_pupil, pupil_to_image, pupil_diameter, pixel_pitch
+        );
+        let geometry = geometry.or_raise()?;
         Ok(Self { geometry, made })
     }
 
     /// Return the geometry of the same camera in light of another wavelength, in metres.
-    fn with_wavelength(&self, wavelength: f64) -> PyResult<Self> {
-        let wavelength = wavelength_of_light("wavelength", wavelength)?;
-        let changed = self.geometry.with_wavelength(wavelength);
-        let geometry = changed.or_raise_renamed(&["pupil_diameter"], "wavelength")?;
-        let made = self.made.with_wavelength(wavelength);
+    fn with_wavelength(&self, wavelength: Bound<'_, PyAny>) -> PyResult<Self> {
+        take!(wavelength: f64);
+        let geometry = self.geometry.with_wavelength(wavelength);
+        let geometry = geometry.or_raise_renamed(&["pupil_diameter"], "wavelength")?;
+        let mut made = self.made.clone();
+        made.keywords[0].1 = wavelength;
         Ok(Self { geometry, made })
     }
 
@@ -108,32 +192,23 @@ impl ImagingGeometry {
         image_displacement: [Numbers<'py>; 2],
         pattern_speckle_size: f64,
     ) -> PyResult<[Values<'py>; 2]> {
-        check_pattern(pattern_speckle_size)?;
-        let named = coordinate_arguments(&pixel, &image_displacement);
-        map_many(py, named, |[x, y, ax, ay]| {
+        length("pattern_speckle_size", pattern_speckle_size)?;
+        let ([x, y], [dx, dy]) = (&pixel, &image_displacement);
+        let (place, motion) = ("pixel", "image_displacement");
+        let named = [(place, x), (place, y), (motion, dx), (motion, dy)];
+        map_many(py, named, |[x, y, dx, dy]| {
             self.geometry
-                .pattern_coordinate(DVec2::new(x, y), DVec2::new(ax, ay), pattern_speckle_size)
+                .pattern_coordinate(DVec2::new(x, y), DVec2::new(dx, dy), pattern_speckle_size)
                 .to_array()
         })
     }
 
-    pub(super) fn __repr__(&self) -> String {
-        let made = match &self.made {
-            Made::Lens(lens) => format!("from_lens({})", lens.__repr__()),
-            Made::ThickLens(lens) => format!("from_thick_lens({})", lens.__repr__()),
-            Made::Distances(distances) => format!("from_distances({})", distances.__repr__()),
-        };
-        format!("ImagingGeometry.{made}")
+    fn __repr__(&self) -> String {
+        self.made.call("ImagingGeometry")
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        match self.made {
-            Made::Lens(lens) => by_constructor::<Self>(py, "from_lens", (lens,)),
-            Made::ThickLens(lens) => by_constructor::<Self>(py, "from_thick_lens", (lens,)),
-            Made::Distances(distances) => {
-                by_constructor::<Self>(py, "from_distances", (distances,))
-            }
-        }
+        self.made.recipe::<Self>(py)
     }
 }
 
@@ -206,24 +281,4 @@ methods! {
     /// depth : float or array_like
     ///     Depth in metres, positive.
     map defocus_at(depth: positive);
-}
-
-/// The two pairs of a pattern coordinate by their names.
-pub(super) fn coordinate_arguments<'a, 'py>(
-    [x, y]: &'a [Numbers<'py>; 2],
-    [ax, ay]: &'a [Numbers<'py>; 2],
-) -> [(&'static str, &'a Numbers<'py>); 4] {
-    let displacement = "image_displacement";
-    [
-        ("pixel", x),
-        ("pixel", y),
-        (displacement, ax),
-        (displacement, ay),
-    ]
-}
-
-/// Refuses a speckle size that is not positive and finite.
-pub(super) fn check_pattern(pattern_speckle_size: f64) -> PyResult<()> {
-    let checked = tem00_numerics::check::positive("pattern_speckle_size", pattern_speckle_size, "");
-    checked.or_raise().map(drop)
 }

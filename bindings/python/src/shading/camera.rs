@@ -1,47 +1,47 @@
 use pyo3::prelude::*;
 use tem00_shading::{self as physics, CameraDescription, DVec2, ShadingError};
 
-use super::arguments::{any, vector, vectors};
+use super::{any, vector};
 use crate::{
-    arrays::{Array, Column, Components, Vector, Vectors, Whole, evaluate},
+    arrays::{Array, Column, Components, Vector, Vectors, Whole, map_inner},
     error::OrRaise,
 };
 
-/// A camera: a thin lens, and a sensor that may be tilted.
-///
-/// What is left out is that of a lens of 25 mm at f/8 and 640 × 480 pixels of 3.45 µm, 0.3 m above the origin, which it
-/// looks at and has in focus.
-///
-/// Parameters
-/// ----------
-/// position : array_like, shape (3,), optional
-///     Centre of the lens, in metres.
-/// look_at : array_like, shape (3,), optional
-///     A point on the axis of the lens, in metres.
-/// up : array_like, shape (3,), optional
-///     A direction that points up in the image.
-/// focal_length : float, optional
-///     Focal length of the lens, in metres.
-/// f_number : float, optional
-///     Focal length by diameter of the entrance pupil.
-/// focus_distance : float, optional
-///     Distance from the lens along its axis to what is in focus there, in metres.
-/// pixel_pitch : float, optional
-///     Distance between the centres of neighbouring pixels, in metres.
-/// resolution : (int, int), optional
-///     Numbers of pixel columns and rows.
-/// principal_point : array_like, shape (2,), optional
-///     Image point on the axis of the lens, in pixels; the middle of the image if left out.
-/// tilt : array_like, shape (2,), optional
-///     Angle between the normal of the sensor and the axis of the lens, and the direction of the line about which the
-///     sensor turns, from the right of the image towards its top; in radians.
-/// distortion : array_like, shape (3,), optional
-///     Coefficients k₁, k₂ and k₃ of the radial distortion, with the signs of OpenCV.
-/// depth_of_field : bool, optional
-///     Whether what is out of focus is blurred.
-#[pyclass(frozen, eq, module = "tem00.shading")]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Camera(pub(super) physics::Camera);
+class! {
+    /// A camera: a thin lens, and a sensor that may be tilted.
+    ///
+    /// What is left out is that of a lens of 25 mm at f/8 and 640 × 480 pixels of 3.45 µm, 0.3 m above the origin, which it
+    /// looks at and has in focus.
+    ///
+    /// Parameters
+    /// ----------
+    /// position : array_like, shape (3,), optional
+    ///     Centre of the lens, in metres.
+    /// look_at : array_like, shape (3,), optional
+    ///     A point on the axis of the lens, in metres.
+    /// up : array_like, shape (3,), optional
+    ///     A direction that points up in the image.
+    /// focal_length : float, optional
+    ///     Focal length of the lens, in metres.
+    /// f_number : float, optional
+    ///     Focal length by diameter of the entrance pupil.
+    /// focus_distance : float, optional
+    ///     Distance from the lens along its axis to what is in focus there, in metres.
+    /// pixel_pitch : float, optional
+    ///     Distance between the centres of neighbouring pixels, in metres.
+    /// resolution : (int, int), optional
+    ///     Numbers of pixel columns and rows.
+    /// principal_point : array_like, shape (2,), optional
+    ///     Image point on the axis of the lens, in pixels; the middle of the image if left out.
+    /// tilt : array_like, shape (2,), optional
+    ///     Angle between the normal of the sensor and the axis of the lens, and the direction of the line about which the
+    ///     sensor turns, from the right of the image towards its top; in radians.
+    /// distortion : array_like, shape (3,), optional
+    ///     Coefficients k₁, k₂ and k₃ of the radial distortion, with the signs of OpenCV.
+    /// depth_of_field : bool, optional
+    ///     Whether what is out of focus is blurred.
+    "tem00.shading" Camera(physics::Camera): Copy
+}
 
 fn plain() -> CameraDescription {
     CameraDescription::default()
@@ -123,11 +123,8 @@ impl Camera {
     ///     Unit vectors into the scene.
     fn ray<'py>(&self, py: Python<'py>, pixels: Vectors<'py>) -> PyResult<(Vector<3>, Array<'py>)> {
         let pixels = Column::components(("pixels", &pixels), &[2], f64::MAX)?;
-        let [direction] = evaluate(py, pixels, [&[3]], |[x, y], [out]| {
-            let (directions, _) = out.as_chunks_mut();
-            for (i, direction) in directions.iter_mut().enumerate() {
-                *direction = self.0.ray(DVec2::new(x[i], y[i])).direction.to_array();
-            }
+        let direction = map_inner(py, pixels, &[3], |pixel| {
+            self.0.ray(DVec2::from(pixel)).direction.to_array()
         })?;
         Ok((self.0.position().into(), direction))
     }
@@ -144,28 +141,13 @@ impl Camera {
     /// ndarray, shape (..., 2)
     ///     Image points, in pixels with y down, also beside the image; infinite where the camera cannot see.
     fn project<'py>(&self, py: Python<'py>, points: Vectors<'py>) -> PyResult<Array<'py>> {
-        let points = any("points", &points)?;
-        let [pixels] = evaluate(py, points, [&[2]], |points, [out]| {
-            let (pixels, _) = out.as_chunks_mut();
-            for (pixel, point) in pixels.iter_mut().zip(vectors(points)) {
-                let seen = self.0.project(point).filter(|pixel| pixel.is_finite());
-                *pixel = seen.unwrap_or(DVec2::INFINITY).to_array();
-            }
-        })?;
-        Ok(pixels)
-    }
-
-    fn __repr__(&self) -> String {
-        let [x, y, z] = self.0.position().to_array();
-        let CameraDescription {
-            focal_length,
-            f_number,
-            resolution: [width, height],
-            ..
-        } = self.0.description();
-        format!(
-            "<Camera: {width} x {height} pixels at ({x}, {y}, {z}), {focal_length} m at f/{f_number}>"
-        )
+        map_inner(py, any("points", &points)?, &[2], |point| {
+            let seen = self
+                .0
+                .project(point.into())
+                .filter(|pixel| pixel.is_finite());
+            seen.unwrap_or(DVec2::INFINITY).to_array()
+        })
     }
 }
 
@@ -176,5 +158,13 @@ methods! {
     get position -> Vector<3>;
 
     /// Numbers of pixel columns and rows.
-    get resolution -> (usize, usize) = this.0.description().resolution.into();
+    get resolution -> (usize, usize) = this.0.description().resolution;
+
+    /// Focal length of the lens, in metres.
+    get focal_length -> f64 = this.0.description().focal_length;
+
+    /// Focal length by diameter of the entrance pupil.
+    get f_number -> f64 = this.0.description().f_number;
+
+    shown resolution, position, focal_length, f_number;
 }

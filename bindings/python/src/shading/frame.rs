@@ -1,33 +1,13 @@
-use pyo3::{prelude::*, types::PyComplex};
+use pyo3::prelude::*;
 use tem00_decorrelation::pupil_overlap_correlation;
 use tem00_shading::{self as physics, DVec2, DVec3, Motion};
 
-use super::arguments::{any, vectors};
+use super::{any, vectors};
 use crate::{
-    arrays::{Column, Numbers, Values, Vectors, evaluate},
-    beam::records::record,
+    arrays::{Array, Column, Numbers, Values, Vectors, evaluate, map_complex, map_inner},
+    beam::named,
     decorrelation::RigidMotion,
 };
-
-record! {
-    "tem00.shading",
-    /// What has become of the speckle at points since the reference state.
-    ///
-    /// Where the law has no value, or the camera does not see the point, the speckle is new: ``pupil`` is infinite and
-    /// all else 0.
-    SpeckleShift {
-        /// Displacement of the speckle in the image, in pixels with y down, shape (..., 2).
-        displacement: Array,
-        /// Displacement of the pupil over the speckle, in its diameters, shape (...).
-        pupil: Values,
-        /// The part of it across the line of sight, to the right and up, in pupil diameters, shape (..., 2).
-        across: Array,
-        /// Displacement along the axis, in axial decorrelation lengths, shape (...): positive towards the camera.
-        axial: Values,
-        /// Correlation of intensity that is left where the speckle has gone, in [0, 1], shape (...).
-        correlation: Values,
-    }
-}
 
 /// The speckle of a body in a frame, made by ``Speckle.frame``.
 ///
@@ -90,16 +70,12 @@ impl SpeckleFrame {
         normals: Vectors<'py>,
     ) -> PyResult<Values<'py>> {
         let [x, y] = Column::components(("pixels", &pixels), &[2], f64::INFINITY)?;
-        let ([a, b, c], [d, e, f]) = (any("points", &points)?, any("normals", &normals)?);
+        let [a, b, c, d, e, f] = hits([&points, &normals])?;
         let columns = [x, y, a, b, c, d, e, f];
-        let [factors] = evaluate(py, columns, [&[]], |[x, y, a, b, c, d, e, f], [out]| {
-            let (points, normals) = (vectors([a, b, c]), vectors([d, e, f]));
-            for (i, out) in out.iter_mut().enumerate() {
-                let pixel = DVec2::new(x[i], y[i]);
-                *out = self.frame.factor_at(pixel, points[i], normals[i]);
-            }
-        })?;
-        Ok(factors)
+        map_inner(py, columns, &[], |[x, y, a, b, c, d, e, f]| {
+            let (point, normal) = (DVec3::new(a, b, c), DVec3::new(d, e, f));
+            [self.frame.factor_at(DVec2::new(x, y), point, normal)]
+        })
     }
 
     /// Return the factors in light of one wave number of the laser's line each, for a renderer that draws one for each of
@@ -123,15 +99,12 @@ impl SpeckleFrame {
         normals: Vectors<'py>,
         wave: Numbers<'py>,
     ) -> PyResult<Values<'py>> {
-        let ([a, b, c], [d, e, f]) = (any("points", &points)?, any("normals", &normals)?);
+        let [a, b, c, d, e, f] = hits([&points, &normals])?;
         let columns = [a, b, c, d, e, f, Column::new(("wave", &wave), 1.0)?];
-        let [factors] = evaluate(py, columns, [&[]], |[a, b, c, d, e, f, wave], [out]| {
-            let (points, normals) = (vectors([a, b, c]), vectors([d, e, f]));
-            for (i, out) in out.iter_mut().enumerate() {
-                *out = self.frame.factor_in_wave(points[i], normals[i], wave[i]);
-            }
-        })?;
-        Ok(factors)
+        map_inner(py, columns, &[], |[a, b, c, d, e, f, wave]| {
+            let (point, normal) = (DVec3::new(a, b, c), DVec3::new(d, e, f));
+            [self.frame.factor_in_wave(point, normal, wave)]
+        })
     }
 
     /// Return the means of the factors over the pixels about the images of points, for a host with one sample per pixel.
@@ -151,12 +124,9 @@ impl SpeckleFrame {
         points: Vectors<'py>,
         normals: Vectors<'py>,
     ) -> PyResult<Values<'py>> {
-        let [averages] = ask(py, [&points, &normals], [&[]], |points, normals, [out]| {
-            for (i, out) in out.iter_mut().enumerate() {
-                *out = self.frame.average(points[i], normals[i]);
-            }
-        })?;
-        Ok(averages)
+        map_inner(py, hits([&points, &normals])?, &[], |[a, b, c, d, e, f]| {
+            [self.frame.average(DVec3::new(a, b, c), DVec3::new(d, e, f))]
+        })
     }
 
     /// Return the complex amplitudes of the first pattern, of mean square 1, for a host that adds fields.
@@ -176,21 +146,12 @@ impl SpeckleFrame {
         points: Vectors<'py>,
         normals: Vectors<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let [re, im] = ask(
-            py,
-            [&points, &normals],
-            [&[]; 2],
-            |points, normals, [re, im]| {
-                for i in 0..re.len() {
-                    let amplitude = self
-                        .frame
-                        .amplitude(points[i], normals[i])
-                        .unwrap_or_default();
-                    (re[i], im[i]) = (amplitude.re, amplitude.im);
-                }
-            },
-        )?;
-        re.add(im.mul(PyComplex::from_doubles(py, 0.0, 1.0))?)
+        map_complex(py, hits([&points, &normals])?, |[a, b, c, d, e, f]| {
+            let amplitude = self
+                .frame
+                .amplitude(DVec3::new(a, b, c), DVec3::new(d, e, f));
+            amplitude.unwrap_or_default()
+        })
     }
 
     /// Return what has become of the speckle at points since the reference state.
@@ -209,7 +170,7 @@ impl SpeckleFrame {
         py: Python<'py>,
         points: Vectors<'py>,
         normals: Vectors<'py>,
-    ) -> PyResult<SpeckleShift> {
+    ) -> PyResult<Array<'py>> {
         let inner: [&[usize]; 5] = [&[2], &[], &[2], &[], &[]];
         let shifts = ask(py, [&points, &normals], inner, |points, normals, out| {
             let [displacement, pupil, across, axial, correlation] = out;
@@ -226,22 +187,7 @@ impl SpeckleFrame {
                 correlation[i] = pupil_overlap_correlation(shift.pupil);
             }
         })?;
-        let [displacement, pupil, across, axial, correlation] = shifts.map(Bound::unbind);
-        Ok(SpeckleShift {
-            displacement,
-            pupil,
-            across,
-            axial,
-            correlation,
-        })
-    }
-
-    fn __repr__(&self) -> String {
-        let motion = &self.motion;
-        let [surface, camera, laser] =
-            [motion.surface, motion.camera, motion.laser].map(|pose| RigidMotion(pose).__repr__());
-        let body = motion.body;
-        format!("<SpeckleFrame: surface={surface}, camera={camera}, laser={laser}, body={body}>")
+        named(py, "SpeckleShift", shifts)
     }
 }
 
@@ -253,6 +199,24 @@ methods! {
     /// Side of the reference state on which the speckle is: 1.0, or -1.0 where the pupil has moved over it the other way
     /// than in the frame in which it moves farthest.
     get side -> f64;
+
+    /// Poses of the surface, the camera and the laser.
+    get poses -> (RigidMotion, RigidMotion, RigidMotion) = {
+        let motion = &this.motion;
+        let [a, b, c] = [motion.surface, motion.camera, motion.laser].map(RigidMotion);
+        (a, b, c)
+    };
+
+    /// Number of the body.
+    get body -> usize = this.motion.body;
+
+    shown poses, body;
+}
+
+/// The components of points and of their normals.
+fn hits<'a>([points, normals]: [&'a Vectors<'_>; 2]) -> PyResult<[Column<'a>; 6]> {
+    let ([a, b, c], [d, e, f]) = (any("points", points)?, any("normals", normals)?);
+    Ok([a, b, c, d, e, f])
 }
 
 /// Hands points and their normals to `f` block by block, with where to write: as [`evaluate`].
@@ -262,8 +226,12 @@ fn ask<'py, const M: usize>(
     inner: [&[usize]; M],
     mut f: impl FnMut(&[DVec3], &[DVec3], [&mut [f64]; M]) + Send,
 ) -> PyResult<[Values<'py>; M]> {
-    let ([a, b, c], [d, e, g]) = (any("points", points)?, any("normals", normals)?);
-    evaluate(py, [a, b, c, d, e, g], inner, |[a, b, c, d, e, g], out| {
-        f(&vectors([a, b, c]), &vectors([d, e, g]), out);
-    })
+    evaluate(
+        py,
+        hits([points, normals])?,
+        inner,
+        |[a, b, c, d, e, g], out| {
+            f(&vectors([a, b, c]), &vectors([d, e, g]), out);
+        },
+    )
 }

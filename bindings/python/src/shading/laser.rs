@@ -2,29 +2,20 @@ use pyo3::prelude::*;
 use tem00_coherence::{SourceExtent, SpectralLine as Line};
 use tem00_shading::{self as physics, DVec3, LaserBuilder};
 
-use super::arguments::vector;
+use super::vector;
 use crate::{
-    arrays::{Column, Components, Numbers, Vectors, wavelength_of_light},
-    beam::{Emitter, LineProfile, NextEvent, light_of},
+    arguments::Take,
+    arrays::{Array, Column, Components, Numbers, Vectors},
+    beam::{Light, LineProfile, named},
     coherence::SpectralLine,
     error::{IntoPython, OrRaise, refused},
 };
 
 /// A wavelength, or a whole spectrum.
-#[derive(FromPyObject)]
-enum Spectrum<'py> {
-    Line(PyRef<'py, SpectralLine>),
-    One(f64),
-}
-
-impl Spectrum<'_> {
-    fn line(&self) -> PyResult<Line> {
-        match self {
-            Self::Line(line) => Ok(line.0.clone()),
-            Self::One(wavelength) => {
-                Line::monochromatic(wavelength_of_light("wavelength", *wavelength)?).or_raise()
-            }
-        }
+fn spectrum(wavelength: &Bound<'_, PyAny>) -> PyResult<Line> {
+    match wavelength.cast::<SpectralLine>() {
+        Ok(line) => Ok(line.get().0.clone()),
+        Err(_) => Line::monochromatic(f64::take(wavelength, "wavelength")?).or_raise(),
     }
 }
 
@@ -32,12 +23,12 @@ fn disc(source_half_angle: f64) -> PyResult<SourceExtent> {
     SourceExtent::disc(source_half_angle).or_raise()
 }
 
-/// A laser in the scene: a spot or a line, placed, with its power and the spectrum of its light.
-///
-/// Made by ``spot`` or ``line``.
-#[pyclass(frozen, eq, module = "tem00.shading")]
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Laser(pub(super) physics::Laser);
+class! {
+    /// A laser in the scene: a spot or a line, placed, with its power and the spectrum of its light.
+    ///
+    /// Made by ``spot`` or ``line``.
+    "tem00.shading" Laser(physics::Laser)
+}
 
 #[pymethods]
 impl Laser {
@@ -70,7 +61,7 @@ impl Laser {
     ))]
     #[expect(clippy::too_many_arguments, reason = "most go by their names")]
     fn spot(
-        wavelength: Spectrum<'_>,
+        wavelength: Bound<'_, PyAny>,
         waist_radius: Numbers<'_>,
         origin: Components<'_>,
         target: Components<'_>,
@@ -84,7 +75,7 @@ impl Laser {
             Numbers::One(radius) => [radius; 2],
             radii => radii.vector("waist_radius")?,
         };
-        let spectrum = wavelength.line()?;
+        let spectrum = spectrum(&wavelength)?;
         let builder = physics::Laser::spot(spectrum.wavelength(), radii[0]).waist_radii(radii);
         let builder = builder.power(power).m_squared(m_squared).spectrum(spectrum);
         let builder = builder.source_extent(disc(source_half_angle)?);
@@ -124,7 +115,7 @@ impl Laser {
     ))]
     #[expect(clippy::too_many_arguments, reason = "most go by their names")]
     fn line(
-        wavelength: Spectrum<'_>,
+        wavelength: Bound<'_, PyAny>,
         thickness: f64,
         fan_angle: f64,
         origin: Components<'_>,
@@ -136,7 +127,7 @@ impl Laser {
         m_squared: f64,
         source_half_angle: f64,
     ) -> PyResult<Self> {
-        let spectrum = wavelength.line()?;
+        let spectrum = spectrum(&wavelength)?;
         let mut builder = physics::Laser::line(spectrum.wavelength(), thickness, fan_angle);
         builder = builder.power(power).m_squared(m_squared).spectrum(spectrum);
         builder = builder.source_extent(disc(source_half_angle)?);
@@ -164,23 +155,9 @@ impl Laser {
     /// -------
     /// NextEvent
     ///     All members are 0 where no light arrives, and no shadow ray is needed.
-    fn next_event<'py>(&self, py: Python<'py>, points: Vectors<'py>) -> PyResult<NextEvent> {
+    fn next_event<'py>(&self, py: Python<'py>, points: Vectors<'py>) -> PyResult<Array<'py>> {
         let points = Column::components(("points", &points), &[3], 1e30)?;
-        self.light(py)?.get().event_at(py, points)
-    }
-
-    /// The placed light, a ``SpotLight``, ``LineLight`` or ``TabulatedLineLight``, for all else there is to ask.
-    #[getter]
-    fn light<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, Emitter>> {
-        light_of(py, &self.0)
-    }
-
-    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let wavelength = self.0.wavelength();
-        Ok(format!(
-            "<Laser: {wavelength:?} m, {}>",
-            self.light(py)?.repr()?
-        ))
+        named(py, "NextEvent", Light::of(&self.0).events(py, points)?)
     }
 }
 
@@ -194,6 +171,11 @@ methods! {
 
     /// Power, in watts.
     get power -> f64;
+
+    /// The placed light, for all else there is to ask.
+    get light -> Light = Light::of(&this.0);
+
+    shown wavelength, light;
 }
 
 impl Laser {

@@ -2,12 +2,7 @@ use pyo3::prelude::*;
 use tem00_coherence::Relief;
 use tem00_shading::{self as physics, Motion, Pose};
 
-use super::{
-    arguments::{any, vectors},
-    camera::Camera,
-    frame::SpeckleFrame,
-    laser::Laser,
-};
+use super::{any, camera::Camera, frame::SpeckleFrame, laser::Laser, vectors};
 use crate::{
     arrays::{Values, Vectors, Whole, evaluate},
     decorrelation::RigidMotion,

@@ -1,58 +1,50 @@
 use numpy::{Complex32, PyArray2};
-use pyo3::{exceptions::PyTypeError, prelude::*, types::PyComplex};
-use tem00_speckle as physics;
+use pyo3::{exceptions::PyTypeError, prelude::*};
+use tem00_numerics::{
+    Grid,
+    cast::to_usize,
+    seed::{Purpose, derived},
+};
+use tem00_speckle::{self as physics, Phasors, PupilField as Field, SpeckleError};
 
 use super::{
-    arguments::{PHASORS, choice, counts, finite, finite_pair, name_of},
     images::{check_room, view},
     pattern::{SpeckleField, SpecklePattern},
     pupil::Pupil,
 };
 use crate::{
-    arrays::{ComplexImage, Numbers, Whole, map_many},
-    error::OrRaise,
+    arguments::{choices, optional},
+    arrays::{List, Numbers, columns, map_complex},
+    error::{OrRaise, refused},
     pickling::{Recipe, by_constructor},
 };
 
-mod parts;
+class! {
+    /// A field on the lattice of pupil points, random or measured, seen through the pupil.
+    ///
+    /// A pupil of C lattice points in diameter selects the points about its centre; their Fourier
+    /// transform, with the sign exp(-2 pi i k r / Q), is the speckle field on Q x Q samples.
+    ///
+    /// Parameters
+    /// ----------
+    /// size : int
+    ///     Side Q of the pattern in samples.
+    /// diameter : int
+    ///     Diameter C of the pupil in lattice points, 8 to size / 2. Speckles are Q / C samples wide.
+    /// seed : int
+    ///     Seed of the phasors, 0 to 2**64 - 1.
+    "tem00.speckle" PupilField(Field)
+}
 
-use parts::{Parts, Source};
+choices! {
+    Phasors: "unit" = Self::Unit, "gaussian" = Self::Gaussian;
+    Purpose: "laser" = Self::Laser, "body" = Self::Body;
+}
 
-/// A field on the lattice of pupil points, random or measured, seen through the pupil.
-///
-/// A pupil of C lattice points in diameter selects the points about its centre; their Fourier
-/// transform, with the sign exp(-2 pi i k r / Q), is the speckle field on Q x Q samples.
-///
-/// Parameters
-/// ----------
-/// size : int
-///     Side Q of the pattern in samples.
-/// diameter : int
-///     Diameter C of the pupil in lattice points, 8 to size / 2. Speckles are Q / C samples wide.
-/// seed : int
-///     Seed of the phasors, 0 to 2**64 - 1.
-#[pyclass(frozen, eq, module = "tem00.speckle")]
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct PupilField(pub(super) physics::PupilField);
+methods! {
+    impl PupilField as this: this.0;
 
-#[pymethods]
-impl PupilField {
-    /// The largest side of a pattern in samples.
-    #[classattr]
-    const MAX_SIZE: usize = physics::PupilField::MAX_SIZE;
-    /// The smallest pupil diameter in lattice points.
-    #[classattr]
-    const MIN_DIAMETER: usize = physics::PupilField::MIN_DIAMETER;
-    /// The smallest number of phasors.
-    #[classattr]
-    const MIN_PHASORS: usize = physics::PupilField::MIN_PHASORS;
-
-    #[new]
-    fn new(size: Whole<'_>, diameter: Whole<'_>, seed: Whole<'_>) -> PyResult<Self> {
-        let (size, diameter) = (size.unsigned("size")?, diameter.unsigned("diameter")?);
-        let field = physics::PupilField::new(size, diameter, seed.unsigned("seed")?);
-        Ok(Self(field.or_raise()?))
-    }
+    make new(size: usize, diameter: usize, seed: u64) = Field::new(size, diameter, seed);
 
     /// Return a field of unit phasors behind a circular pupil, for speckles of a given size.
     ///
@@ -67,16 +59,8 @@ impl PupilField {
     ///     Speckle size in samples, from 2 to an eighth of the shorter side.
     /// seed : int
     ///     Seed of the phasors, 0 to 2**64 - 1.
-    #[staticmethod]
-    fn from_speckle_size(
-        size: [Whole<'_>; 2],
-        speckle_size: f64,
-        seed: Whole<'_>,
-    ) -> PyResult<Self> {
-        let (size, seed) = (counts("size", &size)?, seed.unsigned("seed")?);
-        let field = physics::PupilField::from_speckle_size(size, speckle_size, seed);
-        Ok(Self(field.or_raise()?))
-    }
+    make from_speckle_size(size: [usize; 2], speckle_size: f64, seed: u64) =
+        Field::from_speckle_size(size, speckle_size, seed);
 
     /// Return an external field: a measured or computed amplitude in the pupil plane.
     ///
@@ -89,22 +73,11 @@ impl PupilField {
     ///     Width and height of the pattern in samples.
     /// speckle_size : float
     ///     Speckle size in samples: for a pupil of C samples in diameter, width / C.
-    #[staticmethod]
-    fn from_samples(
-        samples: ComplexImage<'_>,
-        size: [Whole<'_>; 2],
-        speckle_size: f64,
-    ) -> PyResult<Self> {
-        let (samples, size) = (samples.grid("samples")?, counts("size", &size)?);
-        let field = physics::PupilField::from_samples(samples, size, speckle_size);
-        Ok(Self(field.or_raise()?))
-    }
+    make from_samples(samples: Grid<Complex32>, size: [usize; 2], speckle_size: f64) =
+        Field::from_samples(samples, size, speckle_size);
 
     /// Return the same field behind a pupil of another shape.
-    fn with_pupil(&self, pupil: &Pupil) -> PyResult<Self> {
-        let field = self.0.clone().with_pupil(pupil.0.clone());
-        Ok(Self(field.or_raise()?))
-    }
+    try with_pupil(pupil: physics::Pupil) -> PupilField = this.0.clone().with_pupil(pupil);
 
     /// Return the same field behind a pupil of another diameter.
     ///
@@ -112,10 +85,8 @@ impl PupilField {
     /// ----------
     /// speckle_size : float
     ///     Speckle size in samples, from 2 to an eighth of the shorter side.
-    fn with_speckle_size(&self, speckle_size: f64) -> PyResult<Self> {
-        let field = self.0.clone().with_speckle_size(speckle_size);
-        Ok(Self(field.or_raise()?))
-    }
+    try with_speckle_size(speckle_size: f64) -> PupilField =
+        this.0.clone().with_speckle_size(speckle_size);
 
     /// Return the same pupil with another law of phasors; external samples stay as they are.
     ///
@@ -123,10 +94,7 @@ impl PupilField {
     /// ----------
     /// phasors : {"unit", "gaussian"}
     ///     Magnitude 1, or circular complex Gaussian with mean square 1.
-    fn with_phasors(&self, phasors: &str) -> PyResult<Self> {
-        let phasors = choice("phasors", &PHASORS, phasors)?;
-        Ok(Self(self.0.clone().with_phasors(phasors)))
-    }
+    fn with_phasors(phasors: Phasors) -> PupilField = this.0.clone().with_phasors(phasors);
 
     /// Return the same pupil with another, independent set of phasors; external samples stay as
     /// they are.
@@ -135,9 +103,7 @@ impl PupilField {
     /// ----------
     /// seed : int
     ///     Seed of the phasors, 0 to 2**64 - 1.
-    fn with_seed(&self, seed: Whole<'_>) -> PyResult<Self> {
-        Ok(Self(self.0.clone().with_seed(seed.unsigned("seed")?)))
-    }
+    fn with_seed(seed: u64) -> PupilField = this.0.clone().with_seed(seed);
 
     /// Return fields of as many independent patterns: this one, then the same with seeds made from its own.
     ///
@@ -145,14 +111,44 @@ impl PupilField {
     /// ----------
     /// patterns : int
     ///     Number of patterns, 1 to 1024.
-    fn independent(&self, patterns: Whole<'_>) -> PyResult<Vec<Self>> {
-        let fields = self
-            .0
-            .independent(patterns.unsigned("patterns")?)
-            .or_raise()?;
-        Ok(fields.into_iter().map(Self).collect())
-    }
+    try independent(patterns: usize) -> Vec<PupilField> = {
+        let fields = this.0.independent(patterns);
+        fields.map(|fields| fields.into_iter().map(PupilField).collect::<Vec<_>>())
+    };
 
+    /// Law of the phasors, "unit" or "gaussian", or None for external samples.
+    get phasors -> Option<&'static str> = this.0.phasors().map(|phasors| match phasors {
+        Phasors::Unit => "unit",
+        Phasors::Gaussian => "gaussian",
+    });
+
+    /// Width and height of the pattern in samples.
+    get size -> (usize, usize);
+
+    /// Nominal pupil diameter along x and y in lattice points.
+    get diameter -> (f64, f64);
+
+    /// Speckle size Q / C in samples.
+    get speckle_size -> f64;
+
+    /// Shape of the pupil.
+    get pupil -> Pupil = this.0.pupil().clone();
+
+    /// Seed, or None for external samples.
+    get seed -> Option<u64>;
+
+    /// Number N of lattice points inside the pupil.
+    get phasor_count -> usize;
+
+    /// Number of phasors of equal weight that fluctuate as the pupil's do.
+    get effective_phasor_count -> f64;
+
+    /// Diameter in lattice points of the disc whose area is the pupil's.
+    get effective_diameter -> f64;
+}
+
+#[pymethods]
+impl PupilField {
     /// External samples, complex64 [row, column], a read-only view; None for random phasors.
     #[getter]
     fn samples<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyArray2<Complex32>>>> {
@@ -179,176 +175,183 @@ impl PupilField {
         x: Numbers<'py>,
         y: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let [re, im] = map_many(py, [("x", &x), ("y", &y)], |lag| {
-            let correlation = self.0.amplitude_correlation(lag);
-            [correlation.re, correlation.im]
-        })?;
-        re.add(im.mul(PyComplex::from_doubles(py, 0.0, 1.0))?)
+        let lags = columns([("x", &x), ("y", &y)], f64::MAX)?;
+        map_complex(py, lags, |lag| self.0.amplitude_correlation(lag))
     }
 
-    /// Return the amplitude correlation of the field and that of the displaced pupil, counted on the
-    /// lattice.
+    /// Return the intensity behind the pupil.
     ///
     /// Parameters
     /// ----------
-    /// shift : (int, int)
-    ///     Displacement of the pupil in lattice points.
-    ///
-    /// Returns
-    /// -------
-    /// complex
-    ///     Fraction of the lattice points that both pupils hold, unless they are weighted.
-    fn overlap<'py>(
-        &self,
-        py: Python<'py>,
-        shift: [Whole<'py>; 2],
-    ) -> PyResult<Bound<'py, PyComplex>> {
-        let [x, y] = shift;
-        let overlap = self.0.overlap([x.signed("shift")?, y.signed("shift")?]);
-        Ok(PyComplex::from_doubles(py, overlap.re, overlap.im))
-    }
-
-    /// Return the intensity behind the undisplaced pupil in focus.
-    fn pattern(&self, py: Python<'_>) -> PyResult<SpecklePattern> {
-        self.pattern_at(py, [0.0; 2], 0.0)
-    }
-
-    /// Return the intensity behind the displaced pupil, out of focus.
-    ///
-    /// Parameters
-    /// ----------
-    /// offset : (float, float)
+    /// offset : (float, float), optional
     ///     Displacement of the pupil in its diameters.
-    /// defocus : float
+    /// defocus : float, optional
     ///     In axial decorrelation lengths: at 1 the correlation first vanishes. Turns of phase from the
     ///     centre of the pupil to its rim.
-    fn pattern_at(
+    /// image_drift : (float, float), optional
+    ///     Drift of the pattern over the sensor during an exposure, in speckle sizes.
+    /// pupil_drift : (float, float), optional
+    ///     Drift of the light over the pupil during an exposure, in pupil diameters.
+    #[pyo3(signature = (offset = None, defocus = 0.0, *, image_drift = None, pupil_drift = None))]
+    fn pattern(
         &self,
         py: Python<'_>,
-        offset: [f64; 2],
+        offset: Option<Bound<'_, PyAny>>,
         defocus: f64,
+        image_drift: Option<Bound<'_, PyAny>>,
+        pupil_drift: Option<Bound<'_, PyAny>>,
     ) -> PyResult<SpecklePattern> {
-        let (offset, defocus) = (finite_pair("offset", offset)?, finite("defocus", defocus)?);
-        check_room(self.0.size(), 4)?;
-        let pattern = py.detach(|| self.0.pattern_at(offset, defocus));
-        Ok(SpecklePattern(pattern))
+        let offset = optional(offset, "offset")?.unwrap_or_default();
+        let defocus = finite("defocus", defocus)?;
+        if image_drift.is_none() && pupil_drift.is_none() {
+            check_room(self.0.size(), 4)?;
+            return Ok(py.detach(|| self.0.pattern_at(offset, defocus)).into());
+        }
+        let image_drift = optional(image_drift, "image_drift")?.unwrap_or_default();
+        let pupil_drift = optional(pupil_drift, "pupil_drift")?.unwrap_or_default();
+        let exposure = physics::Exposure::default().with_image_drift(image_drift);
+        let exposure = exposure.or_raise_renamed(&["drift"], "image_drift")?;
+        let exposure = exposure.with_pupil_drift(pupil_drift);
+        let exposure = exposure.or_raise_renamed(&["drift"], "pupil_drift")?;
+        // Two patterns, their spectrum and what it is summed to.
+        check_room(self.0.size(), 2 * 4 + 3 * 8)?;
+        Ok(py
+            .detach(|| exposure.pattern_at(&self.0, offset, defocus))
+            .into())
     }
 
-    /// Return the complex amplitude behind the undisplaced pupil in focus.
-    fn field(&self, py: Python<'_>) -> PyResult<SpeckleField> {
-        self.speckle(py, [0.0; 2], 0.0)
-    }
-
-    /// Return the complex amplitude behind the displaced pupil, out of focus.
+    /// Return the complex amplitude behind the pupil.
     ///
     /// Parameters
     /// ----------
-    /// offset : (float, float)
+    /// offset : (float, float), optional
     ///     Displacement of the pupil in its diameters.
-    /// defocus : float
-    ///     In axial decorrelation lengths: at 1 the correlation first vanishes. Turns of phase from the
-    ///     centre of the pupil to its rim.
-    fn speckle(&self, py: Python<'_>, offset: [f64; 2], defocus: f64) -> PyResult<SpeckleField> {
-        let (offset, defocus) = (finite_pair("offset", offset)?, finite("defocus", defocus)?);
+    /// defocus : float, optional
+    ///     As for ``pattern``.
+    #[pyo3(signature = (offset = None, defocus = 0.0))]
+    fn field(
+        &self,
+        py: Python<'_>,
+        offset: Option<Bound<'_, PyAny>>,
+        defocus: f64,
+    ) -> PyResult<SpeckleField> {
+        let offset = optional(offset, "offset")?.unwrap_or_default();
+        let defocus = finite("defocus", defocus)?;
         check_room(self.0.size(), 8)?;
         Ok(SpeckleField(py.detach(|| self.0.speckle(offset, defocus))))
     }
 
-    pub(super) fn __repr__(&self) -> String {
-        let pupil = self.pupil().__repr__();
-        let seeded = self
-            .0
-            .seed()
-            .and_then(|seed| Some((seed, Parts::of(&self.0)?)));
-        let Some((seed, parts)) = seeded else {
-            let (size, diameter) = (self.size(), self.diameter());
-            return format!("<PupilField: size={size:?}, diameter={diameter:?}, pupil={pupil}>");
-        };
-        let ([width, height], speckle_size) = (parts.size, parts.speckle_size);
-        let mut made = match parts.diameter {
-            Some(diameter) => {
-                format!("PupilField(size={width}, diameter={diameter}, seed={seed})")
-            }
-            None => format!(
-                "PupilField.from_speckle_size(size=({width}, {height}), \
-                 speckle_size={speckle_size:?}, seed={seed})"
-            ),
-        };
-        if let Some(phasors) = self.phasors().filter(|&phasors| phasors != "unit") {
-            made += &format!(".with_phasors('{phasors}')");
-        }
-        if *self.0.pupil() != physics::Pupil::Circle {
-            made += &format!(".with_pupil({pupil})");
-        }
-        made
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        let names = ["size", "speckle_size", "seed", "phasors", "pupil"];
+        Ok(format!(
+            "<PupilField: {}>",
+            crate::pickling::shown(slf, &names)?
+        ))
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Recipe<'py>> {
-        let Some(parts) = Parts::of(&slf.get().0) else {
+        let field = &slf.get().0;
+        // The constructors round the diameter or the speckle size.
+        let layout = [Some(to_usize(field.diameter()[0])), None]
+            .map(|diameter| (field.size(), field.speckle_size(), diameter))
+            .into_iter()
+            .find(|layout| {
+                let random = (field.seed(), field.phasors());
+                restored(
+                    *layout,
+                    random,
+                    field.samples().cloned(),
+                    field.pupil().clone(),
+                )
+                .as_ref()
+                    == Ok(field)
+            });
+        let Some(layout) = layout else {
             let message = "the field of a stack on a straight path cannot be pickled: its lattice \
                            is closed; pickle the field that the stack was made of";
             return Err(PyTypeError::new_err(message));
         };
-        let arguments = (
-            (parts.size, parts.speckle_size, parts.diameter),
-            (slf.get().0.seed(), slf.get().phasors()),
-            Self::samples(slf)?,
-            slf.get().pupil(),
-        );
-        by_constructor::<Self>(slf.py(), "_restore", arguments)
+        let random = (field.seed(), slf.get().phasors());
+        let arguments = (layout, random, Self::samples(slf)?, slf.get().pupil());
+        by_constructor::<Self>(slf.py(), "_restored", arguments)
     }
 
-    /// Make a field again of what it was made of.
+    /// Constructor that pickle calls.
     #[staticmethod]
-    fn _restore(
+    fn _restored(
         layout: ([usize; 2], f64, Option<usize>),
-        random: (Option<u64>, Option<String>),
-        samples: Option<ComplexImage<'_>>,
-        pupil: &Pupil,
+        random: (Option<u64>, Option<Bound<'_, PyAny>>),
+        samples: Option<Bound<'_, PyAny>>,
+        pupil: Bound<'_, PyAny>,
     ) -> PyResult<Self> {
-        let ((size, speckle_size, diameter), (seed, phasors)) = (layout, random);
-        let phasors = phasors.map(|name| choice("phasors", &PHASORS, &name));
-        let seeded = Source::Seeded(seed.unwrap_or(0), phasors.transpose()?.unwrap_or_default());
-        let samples = samples.map(|samples| samples.grid("samples"));
-        let parts = Parts {
-            size,
-            speckle_size,
-            diameter,
-            source: samples.transpose()?.map_or(seeded, Source::Measured),
-            pupil: pupil.0.clone(),
-        };
-        Ok(Self(parts.build().or_raise()?))
+        take!(pupil: physics::Pupil);
+        let random = (random.0, optional(random.1, "phasors")?);
+        let field = restored(layout, random, optional(samples, "samples")?, pupil);
+        Ok(Self(field.or_raise()?))
     }
 }
 
-methods! {
-    impl PupilField as this: this.0;
+/// Makes a field again of what it was made of.
+fn restored(
+    (size, speckle_size, diameter): ([usize; 2], f64, Option<usize>),
+    (seed, phasors): (Option<u64>, Option<Phasors>),
+    samples: Option<Grid<Complex32>>,
+    pupil: physics::Pupil,
+) -> Result<Field, SpeckleError> {
+    let seed = seed.unwrap_or(0);
+    let field = match (samples, diameter) {
+        (Some(samples), _) => Field::from_samples(samples, size, speckle_size)?,
+        (None, Some(diameter)) => Field::new(size[0], diameter, seed)?,
+        (None, None) => Field::from_speckle_size(size, speckle_size, seed)?,
+    };
+    field
+        .with_phasors(phasors.unwrap_or_default())
+        .with_pupil(pupil)
+}
 
-    /// Law of the phasors, "unit" or "gaussian", or None for external samples.
-    get phasors -> Option<&'static str> =
-        this.0.phasors().map(|phasors| name_of(&PHASORS, phasors));
+/// Refuses what is not a finite number.
+fn finite(name: &str, x: f64) -> PyResult<f64> {
+    if x.is_finite() {
+        return Ok(x);
+    }
+    Err(refused(name, format!("{name} must be finite, got {x}")))
+}
 
-    /// Width and height of the pattern in samples.
-    get size -> (usize, usize);
+functions! {
+    /// Return the seed of one of several lasers or bodies, from a seed that they share: as ``tem00 render`` derives it.
+    ///
+    /// Parameters
+    /// ----------
+    /// seed : int
+    ///     Seed of the scene for lasers, or of a laser for the bodies in its light, 0 to 2**64 - 1.
+    /// purpose : str
+    ///     "laser" or "body".
+    /// index : int
+    ///     Number of the laser or of the body, from 0. The first body has the seed of the laser itself.
+    ///
+    /// Returns
+    /// -------
+    /// int
+    ///     Seed of the phasors, 0 to 2**64 - 1.
+    try derived_seed(seed: u64, purpose: Purpose, index: u64) -> u64 =
+        PyResult::Ok(derived(seed, purpose, index));
 
-    /// Nominal pupil diameter along x and y in lattice points.
-    get diameter -> (f64, f64);
-
-    /// Speckle size Q / C in samples.
-    get speckle_size -> f64;
-
-    /// Shape of the pupil.
-    get pupil -> Pupil = Pupil(this.0.pupil().clone());
-
-    /// Seed, or None for external samples.
-    get seed -> Option<u64>;
-
-    /// Number N of lattice points inside the pupil.
-    get phasor_count -> usize;
-
-    /// Number of phasors of equal weight that fluctuate as the pupil's do.
-    get effective_phasor_count -> f64;
-
-    /// Diameter in lattice points of the disc whose area is the pupil's.
-    get effective_diameter -> f64;
+    /// Return the fractions of the light in independent speckle patterns whose intensities add.
+    ///
+    /// Parameters
+    /// ----------
+    /// patterns : int
+    ///     Number of equal patterns.
+    /// polarisation : float
+    ///     Degree of polarisation of the light that reaches the sensor, 0 to 1.
+    /// weights : array_like, shape (n,)
+    ///     Mean intensities in any unit of the parts of each: of several lasers, or of the coherent modes of
+    ///     a broad spectrum.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray
+    ///     Fractions of sum 1, float64, at most 1024 of them.
+    try incoherent_fractions(patterns: usize, polarisation: f64, weights: Vec<f64>) -> List =
+        physics::incoherent_fractions(patterns, polarisation, &weights);
 }

@@ -27,17 +27,12 @@ pub(crate) unsafe fn view<'py, T: Element>(
     Ok(array)
 }
 
-/// Refuses an image with so many bytes for each of its samples, and another complex one to work
-/// with, if the machine does not have them.
+/// Checks that the machine has memory for an image of `bytes_each` bytes for each of its samples, and for another
+/// complex one to work with: one that grants more nevertheless ends the program later.
 pub(crate) fn check_room([width, height]: [usize; 2], bytes_each: u64) -> PyResult<()> {
     const COMPLEX: u64 = 8;
     let samples = (width as u64).saturating_mul(height as u64);
-    check_bytes(samples.saturating_mul(bytes_each + COMPLEX))
-}
-
-/// Refuses so many bytes if the machine does not have them: one that grants them nevertheless ends
-/// the program later.
-pub(crate) fn check_bytes(needed: u64) -> PyResult<()> {
+    let needed = samples.saturating_mul(bytes_each + COMPLEX);
     match available_memory() {
         Some(available) if needed > available => Err(PyMemoryError::new_err(format!(
             "{needed} bytes for the image are more than the machine has to give"

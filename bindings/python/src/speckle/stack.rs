@@ -1,17 +1,11 @@
 use numpy::{Complex32, PyArray2};
-use pyo3::{prelude::*, types::PyComplex};
-use tem00_speckle as physics;
+use pyo3::prelude::*;
+use tem00_speckle::{self as physics, SlicePath as Path, StackOptions};
 
-use super::{
-    arguments::{finite_pair, index},
-    field::PupilField,
-    images::view,
-    options::StackOptions,
-    path::SlicePath,
-    slice_law::SliceLaw,
-};
+use super::{field::PupilField, images::view, path::SlicePath};
 use crate::{
-    arrays::{Floats, Numbers, Values, Whole, fill_in_kind, map, map_many},
+    arguments::optional,
+    arrays::{Numbers, Values, Vector, Whole, columns, fill, map, map_complex, named_class},
     error::{OrRaise, refused},
     pickling::{Recipe, by_constructor},
 };
@@ -22,11 +16,40 @@ use crate::{
 /// pattern repeats after its size, along u after ``slice_count`` slices.
 #[pyclass(frozen, eq, module = "tem00.speckle")]
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct SpeckleStack(
-    pub(super) physics::SpeckleStack,
-    /// What it was generated from, before a straight path closed it.
-    pub(super) physics::PupilField,
-);
+pub(crate) struct SpeckleStack(physics::SpeckleStack, physics::PupilField);
+
+/// Options with a limit of the memory.
+pub(super) fn within(memory_limit: Option<u64>) -> StackOptions {
+    StackOptions {
+        memory_limit: memory_limit.unwrap_or(u64::MAX),
+    }
+}
+
+impl SpeckleStack {
+    /// Generates the slices of a field along a path.
+    pub(super) fn of(
+        field: physics::PupilField,
+        path: Path,
+        options: StackOptions,
+    ) -> PyResult<Self> {
+        let stack = physics::SpeckleStack::generate_with(&field, path, options).or_raise()?;
+        Ok(Self(stack, field))
+    }
+
+    /// The number of a slice; negative ones count from the end, as in Python.
+    fn slice(&self, index: &Whole<'_>) -> PyResult<usize> {
+        let (given, count) = (index.signed("index")?, self.0.slice_count());
+        let length = i64::try_from(count)?;
+        let place = if given < 0 { given + length } else { given };
+        match usize::try_from(place) {
+            Ok(place) if place < count => Ok(place),
+            _ => {
+                let message = format!("index must be -{count} to {}, got {given}", count - 1);
+                Err(refused("index", message))
+            }
+        }
+    }
+}
 
 #[pymethods]
 impl SpeckleStack {
@@ -38,30 +61,29 @@ impl SpeckleStack {
     ///     Field that the slices are cut from.
     /// path : SlicePath
     ///     Path of the pupil over the field.
-    /// options : StackOptions, optional
-    ///     Memory limit; by default all that the machine has.
+    /// memory_limit : int, optional
+    ///     Bytes that the slices may take; by default all that the machine has.
     ///
     /// Raises
     /// ------
     /// MemoryError
     ///     If the slices take more than the limit, or than the machine has.
     #[staticmethod]
-    #[pyo3(signature = (field, path, options = None))]
+    #[pyo3(signature = (field, path, memory_limit = None))]
     fn generate(
         py: Python<'_>,
-        field: &PupilField,
-        path: &SlicePath,
-        options: Option<&StackOptions>,
+        field: Bound<'_, PyAny>,
+        path: Bound<'_, PyAny>,
+        memory_limit: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let (field, path) = (&field.0, path.0);
-        let options = options.map_or_else(physics::StackOptions::default, |options| options.0);
-        let stack = py.detach(|| physics::SpeckleStack::generate_with(field, path, options));
-        Ok(Self(stack.or_raise()?, field.clone()))
+        take!(field: physics::PupilField, path: Path);
+        let limit = optional(memory_limit, "memory_limit")?;
+        py.detach(|| Self::of(field, path, within(limit)))
     }
 
     /// Return the coefficients that look-ups interpolate, complex64 [row, column].
     ///
-    /// They are those of the prefiltered spline: a read-only view without a copy.
+    /// They are those of the prefiltered cubic spline: a read-only view without a copy.
     ///
     /// Parameters
     /// ----------
@@ -82,8 +104,20 @@ impl SpeckleStack {
     /// ----------
     /// index : int
     ///     Slice; negative ones count from the last.
-    fn slice_law(&self, index: Whole<'_>) -> PyResult<SliceLaw> {
-        Ok(SliceLaw(self.0.slice_law(self.slice(&index)?)))
+    ///
+    /// Returns
+    /// -------
+    /// SliceLaw
+    fn slice_law<'py>(&self, py: Python<'py>, index: Whole<'_>) -> PyResult<Values<'py>> {
+        let law = self.0.slice_law(self.slice(&index)?);
+        let rows = |rows: &[&[f32]]| {
+            let rows: Vec<_> = rows.iter().map(|row| row.to_vec()).collect();
+            PyArray2::from_vec2(py, &rows)
+        };
+        let mean_square = rows(&law.mean_square.each_ref().map(|row| &row[..]))?;
+        let covariance = rows(&law.covariance.each_ref().map(|row| &row[..]))?;
+        let turns: Vector<2> = law.turns.into();
+        named_class(py, "SliceLaw")?.call1((mean_square, covariance, turns))
     }
 
     /// Return where the pupil of a slice stands, in its diameters along x and y.
@@ -108,21 +142,18 @@ impl SpeckleStack {
     /// Returns
     /// -------
     /// float or ndarray
-    ///     Intensity in the common shape of the arguments; in float32 where all arrays are, for their
-    ///     rounded coordinates.
+    ///     Intensity in the common shape of the arguments.
     fn intensity_at<'py>(
         &self,
         py: Python<'py>,
-        x: Floats<'py>,
-        y: Floats<'py>,
-        u: Floats<'py>,
+        x: Numbers<'py>,
+        y: Numbers<'py>,
+        u: Numbers<'py>,
     ) -> PyResult<Values<'py>> {
-        fill_in_kind(
-            py,
-            [("x", x), ("y", y), ("u", u)],
-            |[x, y, u], intensity| self.0.intensity_batch_f32(x, y, u, intensity),
-            |[x, y, u], intensity| self.0.intensity_batch(x, y, u, intensity),
-        )
+        let [intensity] = fill(py, [("x", &x), ("y", &y), ("u", &u)], |[x, y, u], [out]| {
+            self.0.intensity_batch(x, y, u, out);
+        })?;
+        Ok(intensity)
     }
 
     /// Return the amplitude whose squared magnitude is the intensity, for light whose fields add.
@@ -147,11 +178,8 @@ impl SpeckleStack {
         y: Numbers<'py>,
         u: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let [re, im] = map_many(py, [("x", &x), ("y", &y), ("u", &u)], |[x, y, u]| {
-            let amplitude = self.0.amplitude_at(x, y, u);
-            [amplitude.re, amplitude.im]
-        })?;
-        re.add(im.mul(PyComplex::from_doubles(py, 0.0, 1.0))?)
+        let columns = columns([("x", &x), ("y", &y), ("u", &u)], f64::MAX)?;
+        map_complex(py, columns, |[x, y, u]| self.0.amplitude_at(x, y, u))
     }
 
     /// Return the mean of the intensity over boxes: what pixels see whose whole area takes part.
@@ -168,47 +196,30 @@ impl SpeckleStack {
     /// Returns
     /// -------
     /// float or ndarray
-    ///     Mean intensity in the common shape of x, y and u; in float32 where all their arrays are.
+    ///     Mean intensity in the common shape of x, y and u.
     fn average_over<'py>(
         &self,
         py: Python<'py>,
-        x: Floats<'py>,
-        y: Floats<'py>,
-        size: [f64; 2],
-        u: Floats<'py>,
+        x: Numbers<'py>,
+        y: Numbers<'py>,
+        size: Numbers<'py>,
+        u: Numbers<'py>,
     ) -> PyResult<Values<'py>> {
-        let size = finite_pair("size", size)?;
+        let size: [f64; 2] = size.vector("size")?;
         if let Some(bad) = size.into_iter().find(|side| *side < 0.0) {
             return Err(refused(
                 "size",
                 format!("size must be 0 or more, got {bad}"),
             ));
         }
-        fill_in_kind(
-            py,
-            [("x", x), ("y", y), ("u", u)],
-            |[x, y, u], average| self.0.average_batch_f32([x, y], size, u, average),
-            |[x, y, u], average| {
-                for (i, average) in average.iter_mut().enumerate() {
-                    *average = self.0.average_over([x[i], y[i]], size, u[i]);
-                }
-            },
-        )
+        map(py, [("x", &x), ("y", &y), ("u", &u)], |[x, y, u]| {
+            self.0.average_over([x, y], size, u)
+        })
     }
 
-    /// A stack is pickled as the field and the path that it is made of.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
         let parts = (PupilField(self.1.clone()), self.path());
         by_constructor::<Self>(py, "generate", parts)
-    }
-
-    fn __repr__(&self) -> String {
-        format!(
-            "<SpeckleStack: size={:?}, speckle_size={}, path={}>",
-            self.size(),
-            self.speckle_size(),
-            self.path().__repr__()
-        )
     }
 }
 
@@ -219,10 +230,10 @@ methods! {
 
     /// Field the slices were cut from. That of a straight path closes on itself after the length of
     /// the path.
-    get field -> PupilField = PupilField(this.0.field().clone());
+    get field -> PupilField = this.0.field().clone();
 
     /// Path of the pupil.
-    get path -> SlicePath = SlicePath(this.0.path());
+    get path -> SlicePath = this.0.path();
 
     /// Width and height, which are the periods in the plane, in samples.
     get size -> (usize, usize);
@@ -267,10 +278,6 @@ methods! {
     /// shift : array_like
     ///     Shift in pupil diameters, to one side or the other; beyond the reach of the path it counts as the reach.
     map coordinate_at(shift);
-}
 
-impl SpeckleStack {
-    fn slice(&self, slice: &Whole<'_>) -> PyResult<usize> {
-        index("index", slice, self.0.slice_count())
-    }
+    shown size, speckle_size, path;
 }

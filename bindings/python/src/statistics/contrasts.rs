@@ -3,10 +3,7 @@ use core::cell::RefCell;
 use pyo3::{prelude::*, types::PyAny};
 use tem00_statistics as physics;
 
-use crate::{
-    arrays::{Numbers, Values, map},
-    error::refused,
-};
+use crate::error::refused;
 
 functions! {
     /// Return the contrast of fully developed speckle seen by square pixels.
@@ -16,27 +13,16 @@ functions! {
     /// pixel_size : float or array_like
     ///     Side of the pixels in units of the speckle size, 0 or more.
     map pixel_contrast(pixel_size: not_negative);
-}
 
-/// Return the contrast of fully developed speckle seen by rectangular pixels.
-///
-/// Parameters
-/// ----------
-/// pixel_size : pair of float or array_like
-///     Width and height in units of the speckle size, 0 or more, broadcast together.
-#[pyfunction]
-pub(super) fn rectangular_pixel_contrast<'py>(
-    py: Python<'py>,
-    pixel_size: [Numbers<'py>; 2],
-) -> PyResult<Values<'py>> {
-    let [width, height] = &pixel_size;
-    width.not_negative("pixel_size")?;
-    height.not_negative("pixel_size")?;
-    let named = [("pixel_size", width), ("pixel_size", height)];
-    map(py, named, physics::rectangular_pixel_contrast)
-}
+    /// Return the contrast of fully developed speckle seen by rectangular pixels.
+    ///
+    /// Parameters
+    /// ----------
+    /// width, height : float or array_like
+    ///     Sides of the pixels in units of the speckle size, 0 or more, broadcast together.
+    map rectangular_pixel_contrast(width: not_negative, height: not_negative) =
+        physics::rectangular_pixel_contrast([width, height]);
 
-functions! {
     /// Return the contrast of fully developed speckle behind a Gaussian filter.
     ///
     /// Parameters
@@ -61,6 +47,14 @@ functions! {
     /// drift : float or array_like
     ///     Motion of the pattern during the exposure, in units of the speckle size, 0 or more.
     map translation_contrast(drift: not_negative);
+
+    /// Return the standard deviation of the squared contrast from pattern to pattern.
+    ///
+    /// Parameters
+    /// ----------
+    /// speckles_across : float or array_like
+    ///     Width and height of the pattern in units of the speckle size, positive.
+    map contrast_squared_spread(speckles_across: positive);
 }
 
 /// Return the contrast of an exposure during which the pattern changes in any way.
@@ -92,22 +86,4 @@ fn correlation_at(correlation: &Bound<'_, PyAny>, t: f64) -> PyResult<f64> {
     }
     let message = format!("correlation must return values in [-1, 1], got {value} at {t}");
     Err(refused("correlation", message))
-}
-
-/// Return the standard deviation of the squared contrast from pattern to pattern.
-///
-/// Parameters
-/// ----------
-/// speckles_across : float or array_like
-///     Width and height of the pattern in units of the speckle size, positive.
-#[pyfunction]
-pub(super) fn contrast_squared_spread<'py>(
-    py: Python<'py>,
-    speckles_across: Numbers<'py>,
-) -> PyResult<Values<'py>> {
-    let name = "speckles_across";
-    speckles_across.positive(name)?;
-    map(py, [(name, &speckles_across)], |[n]| {
-        physics::contrast_squared_spread(n)
-    })
 }

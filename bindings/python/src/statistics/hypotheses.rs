@@ -1,119 +1,165 @@
+use std::collections::HashMap;
+
 use numpy::PyArray1;
 use pyo3::{prelude::*, types::PyAny};
-use tem00_numerics::Refusal;
 use tem00_statistics as physics;
-use tem00_statistics::StatisticsError;
 
 use crate::{
-    arrays::{Components, Numbers, Samples, Whole},
+    arguments::Samples,
+    arrays::{List, Numbers, map, named_tuple},
     error::{OrRaise, refused},
 };
 
-/// Outcome of a test of a hypothesis.
-#[pyclass(frozen, eq, module = "tem00.statistics")]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct TestOutcome(pub(super) physics::TestOutcome);
+named_tuple! {
+    TestOutcome(physics::TestOutcome) as outcome: (outcome.statistic, outcome.p_value)
+}
+
+functions! {
+    /// Test whether the expectation of independent samples is ``mean``, after Student; two-sided.
+    ///
+    /// Parameters
+    /// ----------
+    /// samples : array_like
+    ///     At least two finite samples that differ.
+    /// mean : float
+    ///     The expectation to be tested.
+    ///
+    /// Returns
+    /// -------
+    /// TestOutcome
+    try t_test_mean(samples: Samples, mean: f64) -> TestOutcome =
+        physics::t_test_mean(&samples.0, mean);
+}
+
+class! {
+    /// The values that the pixels of a rounded image take.
+    "tem00.statistics" GreyLevels(physics::GreyLevels)
+}
+
+methods! {
+    impl GreyLevels as this: this.0;
+
+    unmade "from_values";
+
+    /// Return the samples in ascending order, those of each level spread evenly over its cell.
+    try spread(samples: Samples) -> List = checked(&samples.0).map(|samples| this.0.spread(samples));
+
+    /// Number of levels.
+    get count -> usize;
+
+    /// Smallest difference of two levels.
+    get step -> f64;
+
+    /// Return the mean of the exponential law whose values, rounded to the levels, have a mean.
+    ///
+    /// Parameters
+    /// ----------
+    /// rounded : float or array_like
+    ///     Mean of the rounded values, positive.
+    map exponential_mean(rounded: positive);
+
+    /// Return the contrast of an exponential law whose values, rounded to the levels, have a mean.
+    ///
+    /// Parameters
+    /// ----------
+    /// rounded : float or array_like
+    ///     Mean of the rounded values, positive.
+    map exponential_contrast(rounded: positive);
+
+    shown count, step;
+}
 
 #[pymethods]
-impl TestOutcome {
+impl GreyLevels {
+    /// Find the levels of an image; ``None`` if it is not rounded.
+    #[staticmethod]
+    fn from_values(py: Python<'_>, values: Bound<'_, PyAny>) -> PyResult<Option<Self>> {
+        take!(values: Samples);
+        let levels = py.detach(|| physics::GreyLevels::from_values(&values.0));
+        Ok(levels.map(Self))
+    }
+}
+
+class! {
+    /// Agreement of samples, rounded or not, with a law.
+    ///
+    /// Parameters
+    /// ----------
+    /// samples : array_like
+    ///     Independent samples.
+    /// cumulative : callable
+    ///     The distribution function of the light, before it was rounded. It is called once with an
+    ///     array of shape (n,) and returns probabilities in the same shape.
+    /// levels : GreyLevels, optional
+    ///     What the samples were rounded to.
+    "tem00.statistics" GoodnessOfFit(physics::GoodnessOfFit)
+}
+
+#[pymethods]
+impl GoodnessOfFit {
+    #[new]
+    #[pyo3(signature = (samples, cumulative, levels = None))]
+    fn new(
+        samples: Numbers<'_>,
+        cumulative: Bound<'_, PyAny>,
+        levels: Option<PyRef<'_, GreyLevels>>,
+    ) -> PyResult<Self> {
+        let samples = checked(samples.values()?)?;
+        let Some(levels) = levels else {
+            let places = probabilities(&cumulative, samples)?;
+            let fit = physics::GoodnessOfFit::new(&places, |place| place);
+            return Ok(Self(fit.or_raise()?));
+        };
+        let law = tabulated(&levels.0, &cumulative)?;
+        // Every edge is in the table but one at infinity, which all of the light lies below.
+        let law = |edge: f64| law.get(&edge.to_bits()).copied().unwrap_or(1.0);
+        let fit = physics::GoodnessOfFit::of_rounded(samples, &levels.0, law);
+        Ok(Self(fit.or_raise()?))
+    }
+
     fn __repr__(&self) -> String {
-        let physics::TestOutcome { statistic, p_value } = self.0;
-        format!("<TestOutcome: statistic={statistic:?}, p_value={p_value:?}>")
+        match self.0.kolmogorov_smirnov() {
+            Ok(test) => format!("<GoodnessOfFit: kolmogorov_smirnov={:?}>", test.p_value),
+            Err(_) => "<GoodnessOfFit: too few samples>".to_owned(),
+        }
     }
 }
 
 methods! {
-    impl TestOutcome as this: this.0;
+    impl GoodnessOfFit as this: this.0;
 
-    unmade "kolmogorov_smirnov, chi_squared or t_test_mean";
+    /// Test after Kolmogorov and Smirnov.
+    ///
+    /// Returns
+    /// -------
+    /// TestOutcome
+    try kolmogorov_smirnov() -> TestOutcome = this.0.kolmogorov_smirnov();
 
-    /// The test's statistic: the larger, the further from the hypothesis.
-    field statistic -> f64;
-
-    /// The probability of a statistic at least as far from the hypothesis, were it true.
-    field p_value -> f64;
-}
-
-/// Test whether samples follow a continuous distribution, after Kolmogorov and Smirnov.
-///
-/// Parameters
-/// ----------
-/// samples : array_like
-///     Independent samples, in any shape.
-/// cumulative : callable
-///     The distribution function, fixed beforehand. It is called once with an array of shape (n,)
-///     and returns probabilities in the same shape.
-#[pyfunction]
-pub(super) fn kolmogorov_smirnov(
-    py: Python<'_>,
-    samples: Samples<'_>,
-    cumulative: Bound<'_, PyAny>,
-) -> PyResult<TestOutcome> {
-    let places = probabilities(&cumulative, checked(samples.values()?)?)?;
-    // The distance is that of the probabilities from an even distribution.
-    let outcome = py.detach(|| physics::kolmogorov_smirnov(&places, |place| place));
-    Ok(TestOutcome(outcome.or_raise()?))
-}
-
-/// Test whether counts in bins agree with the expected ones, after Pearson.
-///
-/// Parameters
-/// ----------
-/// observed : array_like, shape (n,)
-///     Counts, whole numbers.
-/// expected : array_like, shape (n,)
-///     Expected counts; bins are merged until each expects five.
-/// constraints : int
-///     What the expected counts were fitted to: 1 for the total, 1 more for each parameter.
-#[pyfunction]
-pub(super) fn chi_squared(
-    observed: Components<'_>,
-    expected: Components<'_>,
-    constraints: Whole<'_>,
-) -> PyResult<TestOutcome> {
-    let observed = counts(observed.values()?)?;
-    let constraints = constraints.unsigned("constraints")?;
-    let outcome = physics::chi_squared(&observed, expected.values()?, constraints);
-    Ok(TestOutcome(outcome.or_raise()?))
-}
-
-/// Test whether the expectation of independent samples is ``mean``, after Student; two-sided.
-///
-/// Parameters
-/// ----------
-/// samples : array_like
-///     At least two finite samples that differ, in any shape.
-/// mean : float
-///     The expectation to be tested.
-#[pyfunction]
-pub(super) fn t_test_mean(
-    py: Python<'_>,
-    samples: Samples<'_>,
-    mean: f64,
-) -> PyResult<TestOutcome> {
-    let samples = samples.values()?;
-    let outcome = py.detach(|| physics::t_test_mean(samples, mean));
-    Ok(TestOutcome(outcome.or_raise()?))
+    /// Test after Pearson, in up to 20 bins of about the same probability.
+    ///
+    /// Parameters
+    /// ----------
+    /// constraints : int
+    ///     1 for the total and 1 for each parameter of the law that was fitted.
+    ///
+    /// Returns
+    /// -------
+    /// TestOutcome
+    try chi_squared(constraints: usize) -> TestOutcome = this.0.chi_squared(constraints);
 }
 
 /// Returns finite samples, of which there is one at least.
-pub(super) fn checked(samples: &[f64]) -> PyResult<&[f64]> {
-    if samples.is_empty() {
-        let (given, needed) = (0, 1);
-        return Err(StatisticsError::Samples { given, needed }).or_raise();
-    }
-    match samples.iter().position(|sample| !sample.is_finite()) {
-        Some(index) => {
-            let value = samples[index];
-            let refusal = Refusal::new("samples", value, "finite").at(index);
-            Err(StatisticsError::from(refusal)).or_raise()
-        }
-        None => Ok(samples),
-    }
+fn checked(samples: &[f64]) -> PyResult<&[f64]> {
+    let message = match samples.iter().position(|sample| !sample.is_finite()) {
+        Some(index) => format!("samples must be finite, got {} at {index}", samples[index]),
+        None if samples.is_empty() => "samples must be at least 1, got 0".to_owned(),
+        None => return Ok(samples),
+    };
+    Err(refused("samples", message))
 }
 
 /// Asks a distribution function for the probabilities at samples.
-pub(super) fn probabilities(cumulative: &Bound<'_, PyAny>, samples: &[f64]) -> PyResult<Vec<f64>> {
+fn probabilities(cumulative: &Bound<'_, PyAny>, samples: &[f64]) -> PyResult<Vec<f64>> {
     let given = PyArray1::from_slice(cumulative.py(), samples);
     let values: Numbers<'_> = cumulative.call1((given,))?.extract()?;
     if values.shape() != [samples.len()] {
@@ -127,29 +173,25 @@ pub(super) fn probabilities(cumulative: &Bound<'_, PyAny>, samples: &[f64]) -> P
     let values = values.values()?.to_vec();
     let bad = |(_, value): &(&f64, &f64)| !(0.0..=1.0).contains(*value);
     match samples.iter().zip(&values).find(bad) {
-        Some((sample, &value)) => {
-            let allowed = format!("from 0 to 1 at {sample}");
-            let refusal = Refusal::new("cumulative", value, allowed);
-            Err(StatisticsError::from(refusal)).or_raise()
+        Some((sample, value)) => {
+            let message = format!("cumulative must be from 0 to 1 at {sample}, got {value}");
+            Err(refused("cumulative", message))
         }
         None => Ok(values),
     }
 }
 
-/// Returns whole numbers as such.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "whole numbers between 0 and 2⁵³ only"
-)]
-fn counts(observed: &[f64]) -> PyResult<Vec<u64>> {
-    const EXACT: f64 = 9_007_199_254_740_992.0;
-    let is_count = |&value: &f64| (0.0..=EXACT).contains(&value) && value.fract() == 0.0;
-    match observed.iter().find(|value| !is_count(value)) {
-        Some(value) => {
-            let message = format!("observed must be whole numbers from 0 to 2^53, got {value}");
-            Err(refused("observed", message))
-        }
-        None => Ok(observed.iter().map(|&value| value as u64).collect()),
-    }
+/// Asks a distribution function for the probabilities at the finite edges of levels.
+fn tabulated(
+    levels: &physics::GreyLevels,
+    cumulative: &Bound<'_, PyAny>,
+) -> PyResult<HashMap<u64, f64>> {
+    let mut edges: Vec<f64> = (0..levels.count())
+        .flat_map(|index| levels.cell(index))
+        .filter(|edge| edge.is_finite())
+        .collect();
+    edges.dedup();
+    let values = probabilities(cumulative, &edges)?;
+    let bits = edges.into_iter().map(f64::to_bits);
+    Ok(bits.zip(values).collect())
 }

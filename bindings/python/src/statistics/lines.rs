@@ -1,7 +1,5 @@
 use tem00_statistics as physics;
 
-use crate::arrays::map;
-
 functions! {
     /// Return the speckle length of rows.
     ///

@@ -1,88 +1,20 @@
 use pyo3::prelude::*;
-use tem00_statistics as physics;
+use tem00_statistics::{self as physics, LitArea};
 
 use crate::{
-    arrays::{Numbers, Values, length, map, wavelength_of_light},
+    arrays::{length, map},
     error::OrRaise,
-    pickling::{Recipe, by_constructor},
+    pickling::{Made, Recipe, keywords},
 };
-
-/// The area of a rough surface that is lit, with lengths in metres.
-#[pyclass(frozen, eq, module = "tem00.statistics")]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct LitArea(physics::LitArea);
-
-#[pymethods]
-impl LitArea {
-    /// Return a uniformly lit disc of a diameter in metres.
-    #[staticmethod]
-    fn disc(diameter: f64) -> PyResult<Self> {
-        let diameter = length("diameter", diameter)?;
-        Ok(Self(physics::LitArea::Disc { diameter }))
-    }
-
-    /// Return a uniformly lit rectangle of a width along x and a height along y, in metres.
-    #[staticmethod]
-    fn rectangle(width: f64, height: f64) -> PyResult<Self> {
-        let (width, height) = (length("width", width)?, length("height", height)?);
-        Ok(Self(physics::LitArea::Rectangle { width, height }))
-    }
-
-    /// Return a Gaussian spot of a 1/e² radius in metres.
-    #[staticmethod]
-    fn gaussian_spot(radius: f64) -> PyResult<Self> {
-        let radius = length("radius", radius)?;
-        Ok(Self(physics::LitArea::GaussianSpot { radius }))
-    }
-
-    fn __repr__(&self) -> String {
-        match self.0 {
-            physics::LitArea::Disc { diameter } => format!("LitArea.disc(diameter={diameter:?})"),
-            physics::LitArea::Rectangle { width, height } => {
-                format!("LitArea.rectangle(width={width:?}, height={height:?})")
-            }
-            physics::LitArea::GaussianSpot { radius } => {
-                format!("LitArea.gaussian_spot(radius={radius:?})")
-            }
-        }
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        match self.0 {
-            physics::LitArea::Disc { diameter } => by_constructor::<Self>(py, "disc", (diameter,)),
-            physics::LitArea::Rectangle { width, height } => {
-                by_constructor::<Self>(py, "rectangle", (width, height))
-            }
-            physics::LitArea::GaussianSpot { radius } => {
-                by_constructor::<Self>(py, "gaussian_spot", (radius,))
-            }
-        }
-    }
-}
-
-methods! {
-    impl LitArea as this: this.0;
-
-    unmade "disc, rectangle or gaussian_spot";
-}
 
 /// Speckle without a lens: the pattern that a lit area of a rough surface makes in a distant plane.
 ///
-/// Parameters
-/// ----------
-/// wavelength : float
-///     Wavelength in metres.
-/// distance : float
-///     Distance of the plane from the surface, in metres.
-/// area : LitArea
-///     The lit area.
+/// Lengths are in metres; the distance is that of the plane from the surface.
 #[pyclass(frozen, eq, module = "tem00.statistics")]
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct ObjectiveSpeckle {
     speckle: physics::ObjectiveSpeckle,
-    wavelength: f64,
-    distance: f64,
-    area: LitArea,
+    made: Made,
 }
 
 impl PartialEq for ObjectiveSpeckle {
@@ -91,54 +23,72 @@ impl PartialEq for ObjectiveSpeckle {
     }
 }
 
+impl ObjectiveSpeckle {
+    /// Checks the lengths of the area, which are given last, and makes the speckle.
+    fn of(made: Made, area: LitArea) -> PyResult<Self> {
+        let [(_, wavelength), (_, distance), ref lengths @ ..] = made.keywords[..] else {
+            unreachable!("keywords begin with wavelength and distance")
+        };
+        for &(name, value) in lengths {
+            length(name, value)?;
+        }
+        let speckle = physics::ObjectiveSpeckle::new(wavelength, distance, area).or_raise()?;
+        Ok(Self { speckle, made })
+    }
+}
+
 #[pymethods]
 impl ObjectiveSpeckle {
-    #[new]
-    fn new(wavelength: f64, distance: f64, area: PyRef<'_, LitArea>) -> PyResult<Self> {
-        let wavelength = wavelength_of_light("wavelength", wavelength)?;
-        Ok(Self {
-            speckle: physics::ObjectiveSpeckle::new(wavelength, distance, area.0).or_raise()?,
-            wavelength,
-            distance,
-            area: *area,
-        })
+    /// Return the speckle of a uniformly lit disc of a diameter.
+    #[staticmethod]
+    fn disc(wavelength: Bound<'_, PyAny>, distance: f64, diameter: f64) -> PyResult<Self> {
+        take!(wavelength: f64);
+        let made = keywords!(disc: wavelength, distance, diameter);
+        Self::of(made, LitArea::Disc { diameter })
     }
 
-    /// Return the normalised autocovariance of the intensity.
-    ///
-    /// Parameters
-    /// ----------
-    /// lag : pair of float or array_like
-    ///     Lag along x and y in metres, broadcast together.
-    fn autocovariance<'py>(
-        &self,
-        py: Python<'py>,
-        lag: [Numbers<'py>; 2],
-    ) -> PyResult<Values<'py>> {
-        let [x, y] = &lag;
-        map(py, [("lag", x), ("lag", y)], |lag| {
-            self.speckle.autocovariance(lag)
-        })
+    /// Return the speckle of a uniformly lit rectangle of a width along x and a height along y.
+    #[staticmethod]
+    fn rectangle(
+        wavelength: Bound<'_, PyAny>,
+        distance: f64,
+        width: f64,
+        height: f64,
+    ) -> PyResult<Self> {
+        take!(wavelength: f64);
+        let made = keywords!(rectangle: wavelength, distance, width, height);
+        Self::of(made, LitArea::Rectangle { width, height })
+    }
+
+    /// Return the speckle of a Gaussian spot of a 1/e² radius.
+    #[staticmethod]
+    fn gaussian_spot(wavelength: Bound<'_, PyAny>, distance: f64, radius: f64) -> PyResult<Self> {
+        take!(wavelength: f64);
+        let made = keywords!(gaussian_spot: wavelength, distance, radius);
+        Self::of(made, LitArea::GaussianSpot { radius })
     }
 
     fn __repr__(&self) -> String {
-        let Self {
-            wavelength,
-            distance,
-            area,
-            ..
-        } = self;
-        let area = area.__repr__();
-        format!("ObjectiveSpeckle(wavelength={wavelength:?}, distance={distance:?}, area={area})")
+        self.made.call("ObjectiveSpeckle")
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "__call__", (self.wavelength, self.distance, self.area))
+        self.made.recipe::<Self>(py)
     }
 }
 
 methods! {
     impl ObjectiveSpeckle as this: this.speckle;
+
+    unmade "disc, rectangle or gaussian_spot";
+
+    /// Return the normalised autocovariance of the intensity.
+    ///
+    /// Parameters
+    /// ----------
+    /// x, y : float or array_like
+    ///     Lag along x and y in metres, broadcast together.
+    map autocovariance(x, y) = this.speckle.autocovariance([x, y]);
 
     /// Speckle size along x and y, in metres.
     get size -> (f64, f64);

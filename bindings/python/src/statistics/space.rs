@@ -1,7 +1,6 @@
-use pyo3::prelude::*;
 use tem00_statistics as physics;
 
-use crate::{arrays::map, error::refused};
+use crate::arrays::length;
 
 functions! {
     /// Return the normalised autocovariance of speckle behind a circular pupil.
@@ -35,16 +34,10 @@ functions! {
     /// level : float or array_like
     ///     Level in units of the mean intensity.
     map area_fraction_above(level);
-}
 
-/// Return the speckle size before square pixels widened it to ``measured``, both in pixels.
-///
-/// ``None`` if it was below 0.95 pixels, where the pixels hide it.
-#[pyfunction]
-pub(super) fn size_before_pixels(measured: f64) -> PyResult<Option<f64>> {
-    if !(measured > 0.0 && measured.is_finite()) {
-        let message = format!("measured must be positive and finite, got {measured:?} pixels");
-        return Err(refused("measured", message));
-    }
-    Ok(physics::size_before_pixels(measured))
+    /// Return the speckle size before square pixels widened it to ``measured``, both in pixels.
+    ///
+    /// ``None`` if it was below 0.95 pixels, where the pixels hide it.
+    try size_before_pixels(measured: f64) -> Option<f64> =
+        length("measured", measured).map(physics::size_before_pixels);
 }

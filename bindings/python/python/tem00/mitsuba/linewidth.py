@@ -60,7 +60,7 @@ class LineLight(NamedTuple):
             Displacement of the pupil at the middle of the line, in diameters.
         """
         if len(self.heights) == 0:
-            return fields[0].pattern_at(pupil, 0.0).values
+            return fields[0].pattern(pupil).values
         z, roots = self.heights.T
         intensity: NDArray[np.float32] = np.zeros(fields[0].size[::-1], dtype=np.float32)
         waves = self._waves()
@@ -68,7 +68,7 @@ class LineLight(NamedTuple):
             offset = pupil + kappa / self.cell.tilt_wave_number * np.array(self.axis)
             phasors = roots * np.exp(1j * kappa * self.cell.height_factor * z)
             amplitude = sum(
-                np.complex64(phasor) * field.speckle(offset, 0.0).values
+                np.complex64(phasor) * field.field(offset).values
                 for phasor, field in zip(phasors, fields, strict=True)
             )
             intensity += np.abs(amplitude) ** 2 / np.float32(len(waves))

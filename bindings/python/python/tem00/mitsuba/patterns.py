@@ -19,7 +19,7 @@ from tem00.mitsuba.look_up import (
     nodes_per_sample,
 )
 from tem00.mitsuba.speckle_settings import refused
-from tem00.speckle import SlicePath, SpeckleStack, StackNeeds, StackOptions, StackPlan, derived_seed
+from tem00.speckle import SlicePath, SpeckleStack, StackPlan, derived_seed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -229,7 +229,7 @@ def _plan(
 ) -> StackPlan:
     """Return the sizes of a pattern: what the image needs, or what the scene sets."""
     try:
-        needs = StackNeeds(
+        plan = StackPlan(
             image=image,
             region=image,
             speckle_size=speckle_size,
@@ -237,7 +237,6 @@ def _plan(
             frames=1,
             memory_limit=memory,
         )
-        plan = StackPlan(needs)
         size, diameter = settings.pattern_size, settings.pattern_diameter
         if size is None and diameter is None:
             return plan
@@ -250,7 +249,7 @@ def _plan(
 
 def _stack(settings: PatternSettings, field: PupilField, memory: int) -> SpeckleStack:
     try:
-        return SpeckleStack.generate(field, _path(settings), StackOptions(memory_limit=memory))
+        return SpeckleStack.generate(field, _path(settings), memory)
     except MemoryError as error:
         name = "pattern_size" if settings.path == "still" else "half_period"
         raise refused(name, f"too large: {error}") from error

@@ -78,11 +78,11 @@ def frame_of(to_world: mi.AffineTransform4f) -> Frame:
 
 def _spot(numbers: Mapping[str, float]) -> Spot:
     axes = _located(numbers, ""), _located(numbers, "_y")
-    with _named({"dtype": "waist_radius"}):
-        light = beam.SpotLight.place_astigmatic(
+    with _named({}):
+        light = beam.Light.elliptic(
             beam.AstigmaticBeam(*axes), _AT_THE_ORIGIN, numbers["power"]
         )
-        rows = light.to_rows(np.float32)
+        rows = light.to_rows()
     return Spot(x=_axis(rows[4]), y=_axis(rows[5]), cutoff=opaque(rows[1][3]))
 
 
@@ -109,9 +109,9 @@ def _line(description: Description) -> Line:
     with _named({"waist_radius": "thickness"}):
         focus = _focus(numbers["wavelength"], 0.5 * numbers["thickness"], numbers["m_squared"])
     fan = _fan(description, focus)
-    with _named({"dtype": "thickness"}):
+    with _named({}):
         line = beam.LaserLine(focus, fan, _profile(description))
-        rows = beam.LineLight.place(line, _AT_THE_ORIGIN, numbers["power"]).to_rows(np.float32)
+        rows = beam.Light.line(line, _AT_THE_ORIGIN, numbers["power"]).to_rows()
     return Line(
         across=_axis(rows[4]),
         profile=_slope_profile(rows[5]),

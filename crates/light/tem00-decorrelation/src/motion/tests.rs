@@ -115,6 +115,7 @@ fn a_wave_longer_than_the_pattern_leaves_none() {
     let before = Configuration::new(upright(0.3)).unwrap();
     let along = Illumination::collimated(DVec3::Z).unwrap();
     let shorter = before.with_wavelength(650e-9 / 2.0).unwrap();
+    assert_eq!(shorter.wavelength().to_bits(), 325e-9_f64.to_bits());
     let longer = before.with_wavelength(650e-9 * 1.5).unwrap();
     let found = |state: Configuration| before.pupil_point_after(&state, DVec2::ZERO);
     assert!(found(shorter).is_some(), "a sine of 0.35 − 0.71");

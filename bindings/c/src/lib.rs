@@ -10,7 +10,8 @@
 //!   when it succeeds.
 //! - What owns memory is a handle behind a pointer, made by `create` and freed by `destroy`; it never
 //!   changes, so that threads may share it. Everything else is a plain struct.
-//! - No panic crosses the boundary: it becomes [`Status::Panic`].
+//! - No panic crosses the boundary: one guard around each function makes it [`Status::Panic`]. Pointers become
+//!   references in `pointers.rs` alone.
 //!
 //! # Scope and non-goals
 //!

@@ -1,7 +1,6 @@
 """Types of arguments and results, for annotations."""
 
 from collections.abc import Callable, Sequence
-from os import PathLike
 from typing import Literal, SupportsIndex, TypeAlias
 
 import numpy as np
@@ -41,9 +40,6 @@ Values: TypeAlias = float | FloatArray
 
 Cumulative: TypeAlias = Callable[[FloatArray], RealArray]
 """A distribution function."""
-
-File: TypeAlias = str | PathLike[str]
-"""The path of a file."""
 
 Boundary: TypeAlias = Literal["periodic", "finite"]
 Dtype: TypeAlias = Literal["float64", "float32"] | type[np.float64] | type[np.float32]

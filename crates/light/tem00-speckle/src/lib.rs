@@ -1,9 +1,5 @@
 #![doc = include_str!("../README.md")]
 //!
-//! # Files
-//!
-//! [`npy`] exchanges fields and patterns with NumPy.
-//!
 //! # On a graphics card
 //!
 //! [`closed_form`] has phasors and look-ups as text for kernels, [`Aperture`] and [`StackSource`] what a transform there
@@ -38,7 +34,6 @@ pub mod closed_form;
 mod error;
 mod interpolation;
 mod light;
-pub mod npy;
 mod pupil;
 mod stack;
 

@@ -14,13 +14,12 @@ use tem00_report::{
     atomic::{probe_writable, write_atomically},
     failure::Failure,
     image::{Format, ImageError, Layer, open, write_exr, write_grey_png},
-    interrupt, output,
+    interrupt,
+    npy::{NpyError, NpyReader, write_npy, write_real_npy},
+    output,
     report::Report,
 };
-use tem00_speckle::{
-    PupilField, SpeckleError, SpeckleField, SpecklePattern,
-    npy::{NpyError, NpyReader},
-};
+use tem00_speckle::{PupilField, SpeckleError, SpeckleField, SpecklePattern};
 
 use crate::{args::PatternArgs, comparison};
 
@@ -193,8 +192,8 @@ fn write(
     description: &str,
 ) -> Result<(), ImageError> {
     match (format, values) {
-        (Format::Npy, Values::Intensity(pattern)) => Ok(pattern.write_npy(file)?),
-        (Format::Npy, Values::Amplitude(field)) => Ok(field.write_npy(file)?),
+        (Format::Npy, Values::Intensity(pattern)) => Ok(write_real_npy(pattern.values(), file)?),
+        (Format::Npy, Values::Amplitude(field)) => Ok(write_npy(field.values(), file)?),
         (Format::Exr, Values::Intensity(pattern)) => {
             write_layer(file, description, vec![("intensity", pattern.values())])
         }

@@ -18,6 +18,7 @@ pub mod folder_lock;
 pub mod image;
 pub mod interrupt;
 pub mod kind;
+pub mod npy;
 pub mod output;
 pub mod plot;
 pub mod program;

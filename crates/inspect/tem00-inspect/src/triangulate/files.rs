@@ -7,6 +7,7 @@ use std::{
 };
 
 use tem00_numerics::Grid;
+use tem00_report::npy::write_real_npy;
 use tem00_report::{
     atomic::write_atomically,
     failure::Failure,
@@ -17,7 +18,6 @@ use tem00_report::{
 use tem00_scan::{
     HeightMap, MeasuredFrame, MeasuredPoint, QuantisedGrid, Raster, RawFormat, write_pcd, write_ply,
 };
-use tem00_speckle::npy::write_real_npy;
 use tem00_triangulation::{DVec3, RawFrame};
 
 use super::x3p::{Lattice, x3p};

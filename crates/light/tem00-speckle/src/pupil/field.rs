@@ -177,7 +177,7 @@ impl PupilField {
     }
 
     /// Creates a field of external samples behind a circular pupil: a measured or computed complex
-    /// amplitude in the pupil plane. [`NpyReader`](crate::npy::NpyReader) reads one from a NumPy file.
+    /// amplitude in the pupil plane.
     ///
     /// One sample is one lattice point, and the sample (⌊width/2⌋, ⌊height/2⌋) the origin, about
     /// which the undisplaced pupil stands. The field is zero beyond the samples. `size` and

@@ -106,7 +106,7 @@ pub enum ImageError {
     #[error("OpenEXR: {0}")]
     Exr(#[from] exr::error::Error),
     #[error("{0}")]
-    Npy(#[from] tem00_speckle::npy::NpyError),
+    Npy(#[from] crate::npy::NpyError),
     #[error("not a readable JPEG file: {0}")]
     Jpeg(#[from] zune_jpeg::errors::DecodeErrors),
     #[error("not a readable image: {0}")]

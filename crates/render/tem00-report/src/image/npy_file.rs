@@ -1,6 +1,6 @@
 use std::io::Read;
 
-use tem00_speckle::npy::{NpyError, NpyReader};
+use crate::npy::{NpyError, NpyReader};
 
 use super::{
     common::{ImageError, MAXIMUM_PIXELS, check_room, checked_area, intensity},
@@ -47,9 +47,9 @@ pub(super) fn read(reader: impl Read) -> Result<Samples, ImageError> {
 
 #[cfg(test)]
 mod tests {
+    use crate::npy::write_npy;
     use num_complex::Complex;
     use tem00_numerics::Grid;
-    use tem00_speckle::npy::write_npy;
 
     use super::*;
     use crate::image::{LoadedImage, Reading};

@@ -5,8 +5,6 @@ use std::io::{self, Read, Write};
 use num_complex::Complex;
 use tem00_numerics::Grid;
 
-use crate::{SpeckleField, SpecklePattern};
-
 mod element;
 mod error;
 mod header;
@@ -34,7 +32,8 @@ const CHUNK: usize = 1 << 16;
 ///
 /// ```
 /// use tem00_numerics::Grid;
-/// use tem00_speckle::{Complex, PupilField, npy::{NpyReader, write_npy}};
+/// use tem00_report::npy::{NpyReader, write_npy};
+/// use tem00_speckle::{Complex, PupilField};
 ///
 /// // What `np.save` writes for an array of 40 × 40 complex numbers.
 /// let lens = Grid::from_fn(40, 40, |x, y| {
@@ -205,44 +204,6 @@ pub fn write_npy(grid: &Grid<Complex<f32>>, writer: impl Write) -> io::Result<()
 /// Returns an error if the writer does.
 pub fn write_real_npy(grid: &Grid<f32>, writer: impl Write) -> io::Result<()> {
     write_grid(grid, writer)
-}
-
-impl SpecklePattern {
-    /// Writes the intensity as a NumPy file (NPY) of `float32`, of the shape (height, width).
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if the writer does.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use tem00_speckle::{PupilField, npy::NpyReader};
-    ///
-    /// let pattern = PupilField::new(64, 16, 7)?.pattern();
-    /// let mut file = Vec::new();
-    /// pattern.write_npy(&mut file)?;
-    /// assert_eq!(file.len(), 128 + 64 * 64 * 4);
-    ///
-    /// let array = NpyReader::new(file.as_slice())?;
-    /// assert_eq!(array.element_type(), "<f4");
-    /// assert_eq!(&array.into_real(1 << 20)?, pattern.values());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn write_npy(&self, writer: impl Write) -> io::Result<()> {
-        write_grid(self.values(), writer)
-    }
-}
-
-impl SpeckleField {
-    /// Writes the amplitude as a NumPy file (NPY) of `complex64`, of the shape (height, width).
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if the writer does.
-    pub fn write_npy(&self, writer: impl Write) -> io::Result<()> {
-        write_grid(self.values(), writer)
-    }
 }
 
 fn write_grid<T: Element>(grid: &Grid<T>, mut writer: impl Write) -> io::Result<()> {

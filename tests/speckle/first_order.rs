@@ -4,8 +4,11 @@ use proptest::prelude::*;
 use tem00::{
     speckle::PupilField,
     statistics::{
-        Moments, contrast_squared_spread, decorrelated_samples, exponential_cumulative,
-        kolmogorov_smirnov, moment_of_phasor_sum, t_test_mean,
+        Moments,
+        estimate::decorrelated_samples,
+        exponential_cumulative, kolmogorov_smirnov,
+        laws::{contrast_squared_spread, moment_of_phasor_sum},
+        t_test_mean,
     },
 };
 

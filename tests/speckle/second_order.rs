@@ -7,8 +7,9 @@ use tem00::{
     numerics::Grid,
     speckle::{Phasors, PupilField},
     statistics::{
-        JointIntensity, MEAN_SQUARE_SLOPE, Moments, area_fraction_above, chi_squared,
-        level_crossings, t_test_mean,
+        Moments, chi_squared,
+        laws::{JointIntensity, MEAN_SQUARE_SLOPE, area_fraction_above, level_crossings},
+        t_test_mean,
     },
 };
 

@@ -1,7 +1,7 @@
 //! Autocovariance and power spectrum of the intensity.
 
 use proptest::prelude::*;
-use tem00::{numerics::Grid, speckle::PupilField, statistics::power_spectrum};
+use tem00::{numerics::Grid, speckle::PupilField, statistics::estimate::power_spectrum};
 
 use super::lattice::{Lattice, Shape, cases, centred, covariance_spread, signed};
 

@@ -6,7 +6,10 @@ use proptest::prelude::*;
 use tem00::{
     speckle::{Phasors, PupilField},
     statistics::{
-        Boundary, Moments, VORTEX_DENSITY, VortexDensity, phase_singularities, t_test_mean,
+        Boundary, Moments,
+        estimate::{VortexDensity, phase_singularities},
+        laws::VORTEX_DENSITY,
+        t_test_mean,
     },
 };
 

@@ -11,6 +11,11 @@ mod space;
 
 use pyo3::prelude::*;
 
+/// All rooms of the crate.
+mod physics {
+    pub(super) use tem00_statistics::{estimate::*, laws::*, test::*};
+}
+
 /// Closed forms of speckle theory, estimators and hypothesis tests.
 ///
 /// Intensities of the closed forms are in units of their mean, lengths in units of the speckle size
@@ -49,17 +54,17 @@ pub(crate) mod statistics {
     };
 
     #[pymodule_export]
-    const AIRY_FIRST_ZERO: f64 = tem00_statistics::AIRY_FIRST_ZERO;
+    const AIRY_FIRST_ZERO: f64 = tem00_statistics::laws::AIRY_FIRST_ZERO;
     #[pymodule_export]
-    const AIRY_HALF_WIDTH: f64 = tem00_statistics::AIRY_HALF_WIDTH;
+    const AIRY_HALF_WIDTH: f64 = tem00_statistics::laws::AIRY_HALF_WIDTH;
     #[pymodule_export]
-    const COHERENCE_AREA: f64 = tem00_statistics::COHERENCE_AREA;
+    const COHERENCE_AREA: f64 = tem00_statistics::laws::COHERENCE_AREA;
     #[pymodule_export]
-    const MEAN_SQUARE_SLOPE: f64 = tem00_statistics::MEAN_SQUARE_SLOPE;
+    const MEAN_SQUARE_SLOPE: f64 = tem00_statistics::laws::MEAN_SQUARE_SLOPE;
     #[pymodule_export]
-    const SPECKLE_DENSITY: f64 = tem00_statistics::SPECKLE_DENSITY;
+    const SPECKLE_DENSITY: f64 = tem00_statistics::laws::SPECKLE_DENSITY;
     #[pymodule_export]
-    const VORTEX_DENSITY: f64 = tem00_statistics::VORTEX_DENSITY;
+    const VORTEX_DENSITY: f64 = tem00_statistics::laws::VORTEX_DENSITY;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

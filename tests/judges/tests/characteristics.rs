@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use tem00::{
     scan::SetupSensor,
-    statistics::imaged_line_power_contrast,
+    statistics::laws::imaged_line_power_contrast,
     topography::{Estimate, Options, characterise},
     triangulation::{Budget, UncertaintySource, parse_setup},
 };

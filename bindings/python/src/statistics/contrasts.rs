@@ -1,7 +1,7 @@
 use core::cell::RefCell;
 
+use super::physics;
 use pyo3::{prelude::*, types::PyAny};
-use tem00_statistics as physics;
 
 use crate::error::refused;
 

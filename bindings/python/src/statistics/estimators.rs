@@ -1,6 +1,6 @@
+use super::physics::{self, Boundary};
 use numpy::Complex32;
 use tem00_numerics::Grid;
-use tem00_statistics::{self as physics, Boundary};
 
 use super::laws::GammaIntensity;
 use crate::{arguments::Samples, arrays::named_tuple, error::OrRaise};

@@ -1,8 +1,8 @@
 use std::collections::HashMap;
 
+use super::physics;
 use numpy::PyArray1;
 use pyo3::{prelude::*, types::PyAny};
-use tem00_statistics as physics;
 
 use crate::{
     arguments::Samples,

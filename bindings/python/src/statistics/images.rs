@@ -1,5 +1,5 @@
+use super::physics::{self, Boundary};
 use tem00_numerics::Grid;
-use tem00_statistics::{self as physics, Boundary};
 
 use crate::{
     arrays::{ImageArray, List, named_tuple},

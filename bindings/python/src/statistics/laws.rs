@@ -1,5 +1,5 @@
+use super::physics;
 use pyo3::prelude::*;
-use tem00_statistics as physics;
 
 use crate::{
     arrays::map,

@@ -1,4 +1,4 @@
-use tem00_statistics as physics;
+use super::physics;
 
 functions! {
     /// Return the speckle length of rows.

@@ -1,5 +1,5 @@
+use super::physics::{self, LitArea};
 use pyo3::prelude::*;
-use tem00_statistics::{self as physics, LitArea};
 
 use crate::{
     arrays::{length, map},

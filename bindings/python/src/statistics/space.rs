@@ -1,4 +1,4 @@
-use tem00_statistics as physics;
+use super::physics;
 
 use crate::arrays::length;
 

@@ -1,4 +1,4 @@
-use tem00_statistics::{SpeckledLine, defocused_line_centroid_deviation};
+use tem00_statistics::laws::{SpeckledLine, defocused_line_centroid_deviation};
 
 use crate::{MeasuredFrame, Measurement};
 

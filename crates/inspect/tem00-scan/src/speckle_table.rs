@@ -139,7 +139,10 @@ fn pixels_within_reach(size: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use glam::DMat2;
-    use tem00_statistics::{PixelAutocovariance, PixelColumn, pixel_contrast};
+    use tem00_statistics::{
+        laws::{PixelAutocovariance, PixelColumn},
+        pixel_contrast,
+    };
 
     use super::*;
 

@@ -5,7 +5,7 @@
 use std::sync::atomic::AtomicBool;
 
 use tem00_scan::SetupSensor;
-use tem00_statistics::imaged_line_power_contrast;
+use tem00_statistics::laws::imaged_line_power_contrast;
 use tem00_topography::{Artefact, Axis, DVec3, Groove, ProfileSensor, Shape, SurfacePoint};
 use tem00_triangulation::{Budget, Setup, UncertaintySource, parse_setup};
 

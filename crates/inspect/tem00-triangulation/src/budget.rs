@@ -179,7 +179,7 @@ impl Budget {
     /// Returns the standard uncertainty by speckle after the closed form for a line that a lens images
     /// as waves do, weighed over all of its width, in metres.
     ///
-    /// See [`defocused_line_centroid_deviation`](tem00_statistics::defocused_line_centroid_deviation); columns that are averaged make
+    /// See [`defocused_line_centroid_deviation`](tem00_statistics::laws::defocused_line_centroid_deviation); columns that are averaged make
     /// the rows higher. The budget's own term is this law, as the detector with its window weighs the light.
     pub const fn line_law(&self) -> f64 {
         self.line_law

@@ -119,7 +119,7 @@ mod tests {
         // The first order of a disc of 1e6 speckles, whose blurred edge costs ln(a)/a, on the surface:
         // h = λ / (2 sin u), and a height moves the spot by sin θ.
         let speckle_size = SENSOR.wavelength / (2.0 * SENSOR.aperture_angle.sin());
-        let position = speckle_size * tem00_statistics::disc_spot_centroid_deviation(1e6);
+        let position = speckle_size * tem00_statistics::laws::disc_spot_centroid_deviation(1e6);
         let height = SENSOR.contrast * position / SENSOR.triangulation_angle.sin();
         let deviation = SENSOR.distance_deviation().expect("a sensor");
         assert!(

@@ -1,4 +1,4 @@
-use tem00_statistics::PixelAutocovariance;
+use tem00_statistics::laws::PixelAutocovariance;
 
 use crate::SensorDescription;
 

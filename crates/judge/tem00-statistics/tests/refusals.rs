@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use tem00_numerics::{Fft2Error, Grid};
-use tem00_statistics::*;
+use tem00_statistics::{estimate::*, laws::*, test::*, *};
 use tem00_testkit::refuses;
 
 const UP: f64 = f64::INFINITY;

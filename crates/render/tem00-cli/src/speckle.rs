@@ -14,7 +14,10 @@ use tem00_report::{
         units::{DEGREES, NUMBER},
     },
 };
-use tem00_statistics::{AIRY_FIRST_ZERO, AIRY_HALF_WIDTH, pixel_contrast};
+use tem00_statistics::{
+    laws::{AIRY_FIRST_ZERO, AIRY_HALF_WIDTH},
+    pixel_contrast,
+};
 
 use crate::args::SpeckleArgs;
 

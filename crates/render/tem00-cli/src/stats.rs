@@ -16,8 +16,8 @@ use tem00_report::{
     report::Report,
 };
 use tem00_statistics::{
-    Boundary, Contrast, FlatImage, GreyLevels, Moments, SpeckleSize, StatisticsError,
-    autocovariance,
+    Boundary, Contrast, Moments, SpeckleSize, StatisticsError, autocovariance, estimate::FlatImage,
+    test::GreyLevels,
 };
 
 use crate::{

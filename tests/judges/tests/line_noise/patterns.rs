@@ -4,8 +4,11 @@ use tem00::{
     numerics::Grid,
     speckle::PupilField,
     statistics::{
-        PixelAutocovariance, PixelColumn, disc_spot_centroid_deviation,
-        gaussian_spot_centroid_deviation, t_test_mean,
+        laws::{
+            PixelAutocovariance, PixelColumn, disc_spot_centroid_deviation,
+            gaussian_spot_centroid_deviation,
+        },
+        t_test_mean,
     },
 };
 

@@ -1,5 +1,5 @@
 use tem00::{
-    statistics::{SpeckledLine, line_centroid_deviation},
+    statistics::laws::{SpeckledLine, line_centroid_deviation},
     triangulation::{FilterOrder, LineMethod},
 };
 

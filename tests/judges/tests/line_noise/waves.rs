@@ -1,5 +1,6 @@
 use tem00::statistics::{
-    SpeckledLine, imaged_line_centroid_deviation, line_centroid_deviation, t_test_mean,
+    laws::{SpeckledLine, imaged_line_centroid_deviation, line_centroid_deviation},
+    t_test_mean,
 };
 
 use crate::line_image::{

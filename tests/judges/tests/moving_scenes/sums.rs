@@ -4,7 +4,7 @@ use tem00::{
     decorrelation::{DVec3, pupil_overlap_correlation},
     numerics::Grid,
     statistics::{
-        GammaIntensity, PartiallyPolarised, decorrelated_samples, kolmogorov_smirnov,
+        GammaIntensity, PartiallyPolarised, estimate::decorrelated_samples, kolmogorov_smirnov,
         pearson_correlation,
     },
     tracer::{Scene, SurfaceSpeckle},

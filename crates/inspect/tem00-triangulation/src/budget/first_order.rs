@@ -1,4 +1,4 @@
-use tem00_statistics::{PixelAutocovariance, PixelColumn};
+use tem00_statistics::laws::{PixelAutocovariance, PixelColumn};
 
 use super::{BudgetTerm, ErrorDistribution, Evaluation, UncertaintySource};
 use crate::{

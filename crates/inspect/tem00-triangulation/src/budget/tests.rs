@@ -3,7 +3,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use approx::assert_relative_eq;
 use tem00_numerics::jinc;
-use tem00_statistics::SpeckledLine;
+use tem00_statistics::laws::SpeckledLine;
 
 use super::*;
 use crate::{LineMethod, SetupDescription, TriangulationError, setup::tests::description};
@@ -258,7 +258,7 @@ fn closed_forms_stand_beside_the_budget() {
     assert_relative_eq!(budget.dorsch(), dorsch, max_relative = 1e-12);
     // The line law at 4.56 pixels of full width on speckle of 1.644 pixels, as high as a pixel.
     let h = setup.line().speckle_size[1];
-    let wide = tem00_statistics::line_centroid_deviation(
+    let wide = tem00_statistics::laws::line_centroid_deviation(
         0.5 * setup.line().projected_thickness / h,
         1.0 / h,
     );

@@ -1,6 +1,6 @@
 use approx::assert_relative_eq;
 use rayon::ThreadPoolBuilder;
-use tem00_statistics::speckle_length;
+use tem00_statistics::laws::speckle_length;
 
 use super::*;
 use crate::{LineMethod, SetupQuantity, UncertaintySource, parse_setup};

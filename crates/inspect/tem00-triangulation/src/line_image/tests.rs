@@ -1,6 +1,9 @@
 use approx::assert_relative_eq;
 use tem00_numerics::cast::to_f32;
-use tem00_statistics::{PixelAutocovariance, PixelColumn, rectangular_pixel_contrast};
+use tem00_statistics::{
+    laws::{PixelAutocovariance, PixelColumn},
+    rectangular_pixel_contrast,
+};
 
 use super::*;
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 use tem00_camera::Camera;
 use tem00_coherence::{CellGeometry, PolychromaticSpeckle, ResolutionCell, Rows, SpectralLine};
 use tem00_decorrelation::ImagingGeometry;
-use tem00_statistics::{defocused_line_centroid_deviation, imaged_line_power_contrast};
+use tem00_statistics::laws::{defocused_line_centroid_deviation, imaged_line_power_contrast};
 
 use super::{
     SetupDescription,

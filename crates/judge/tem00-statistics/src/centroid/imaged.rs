@@ -20,8 +20,8 @@ use crate::centroid::row_spectrum::Row;
 /// The light of the line interferes in the image as waves do. x and x' are two places in the pupil
 /// along the line, in radii of the pupil; what they have in common across the line, the chord of the outer
 /// one, tells how much of the position of a scatterer on the line is left in the light from both. Already for
-/// lines as wide as a speckle this is the [`line_centroid_deviation`](crate::line_centroid_deviation)
-/// within one per cent. A speckle pattern times the irradiance, [`SpeckledLine`](crate::SpeckledLine),
+/// lines as wide as a speckle this is the [`line_centroid_deviation`](crate::laws::line_centroid_deviation)
+/// within one per cent. A speckle pattern times the irradiance, [`SpeckledLine`](crate::laws::SpeckledLine),
 /// falls short of it, by 20 % at w = h, 7 % at 2 h and 2 % at 4 h: the lens blurs the line as well.
 /// The function is even in both.
 ///
@@ -36,7 +36,7 @@ use crate::centroid::row_spectrum::Row;
 /// # Examples
 ///
 /// ```
-/// use tem00_statistics::{imaged_line_centroid_deviation, line_centroid_deviation};
+/// use tem00_statistics::laws::{imaged_line_centroid_deviation, line_centroid_deviation};
 ///
 /// let ratio = |w| imaged_line_centroid_deviation(w, 0.25) / line_centroid_deviation(w, 0.25);
 /// assert!((ratio(1.0) - 0.9912).abs() < 1e-4);
@@ -72,7 +72,7 @@ pub fn imaged_line_centroid_deviation(radius: f64, row_height: f64) -> f64 {
 /// # Examples
 ///
 /// ```
-/// use tem00_statistics::{defocused_line_centroid_deviation, imaged_line_centroid_deviation};
+/// use tem00_statistics::laws::{defocused_line_centroid_deviation, imaged_line_centroid_deviation};
 ///
 /// // A line four speckles in full width, blurred by as much: 1.44 times the noise.
 /// let ratio = defocused_line_centroid_deviation(2.0, 0.0, 4.0) / imaged_line_centroid_deviation(2.0, 0.0);
@@ -116,7 +116,7 @@ pub fn defocused_line_centroid_deviation(radius: f64, row_height: f64, blur: f64
 /// # Examples
 ///
 /// ```
-/// use tem00_statistics::imaged_line_power_contrast;
+/// use tem00_statistics::laws::imaged_line_power_contrast;
 ///
 /// // A line four speckles in full width on rows one speckle high.
 /// assert!((imaged_line_power_contrast(2.0, 1.0) - 0.4343).abs() < 1e-4);
@@ -182,7 +182,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
-    use crate::line_centroid_deviation;
+    use crate::laws::line_centroid_deviation;
 
     #[test]
     fn points_of_rows_have_a_single_integral() {
@@ -251,7 +251,7 @@ mod tests {
     fn wide_lines_have_the_power_of_independent_speckles() {
         for row_height in [0.0, 0.7, 5.0] {
             let contrast = imaged_line_power_contrast(200.0, row_height);
-            let expected = crate::speckle_length(row_height) / (PI.sqrt() * 200.0);
+            let expected = crate::laws::speckle_length(row_height) / (PI.sqrt() * 200.0);
             // The next order of q is 1/(√π L) of it, 1e-3.
             assert_relative_eq!(contrast * contrast, expected, max_relative = 2e-3);
         }

@@ -7,7 +7,7 @@ use tem00_numerics::quadrature::integrate;
 use crate::{
     StatisticsError, airy_autocovariance,
     contrast::rectangular_pixel::{AVERAGED_FROM, averaged_autocovariance},
-    speckle_length,
+    laws::speckle_length,
 };
 
 /// Returns the standard deviation of the centroid of a laser line under speckle, for a line of the 1/e²
@@ -28,14 +28,14 @@ use crate::{
 /// lines, first order in the fluctuations. How wide a line must be depends on what it is made of:
 ///
 /// - a line on a rough surface that a lens images obeys the law within 1 % from w = h on, see
-///   [`imaged_line_centroid_deviation`](crate::imaged_line_centroid_deviation);
+///   [`imaged_line_centroid_deviation`](crate::laws::imaged_line_centroid_deviation);
 /// - a speckle pattern times the irradiance, as renderers make it, scatters less: within 5 % of the
 ///   law from w = 4.2 h on, within 5 % of the [`SpeckledLine`] from 2 h on, within 7 % of that from h on.
 ///
 /// # Examples
 ///
 /// ```
-/// use tem00_statistics::{SpeckledLine, line_centroid_deviation};
+/// use tem00_statistics::laws::{SpeckledLine, line_centroid_deviation};
 ///
 /// let deviation = line_centroid_deviation(8.0, 0.5);
 /// assert!((deviation - 0.7415).abs() < 1e-4);
@@ -68,7 +68,7 @@ pub fn line_centroid_deviation(radius: f64, row_height: f64) -> f64 {
 /// # Examples
 ///
 /// ```
-/// use tem00_statistics::SpeckledLine;
+/// use tem00_statistics::laws::SpeckledLine;
 ///
 /// let line = SpeckledLine::new(4.0, 1.0)?;
 /// assert!((line.centroid_deviation() - 0.45281).abs() < 1e-5);

@@ -40,7 +40,7 @@ pub struct PixelColumn {
 /// # Examples
 ///
 /// ```
-/// use tem00_statistics::{PixelAutocovariance, PixelColumn, pixel_contrast};
+/// use tem00_statistics::{pixel_contrast, laws::{PixelAutocovariance, PixelColumn}};
 ///
 /// // Pixels half a speckle size wide, without gaps.
 /// let column = PixelColumn {
@@ -159,7 +159,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
-    use crate::{SpeckledLine, airy_autocovariance, rectangular_pixel_contrast};
+    use crate::{airy_autocovariance, laws::SpeckledLine, rectangular_pixel_contrast};
 
     const COLUMN: PixelColumn = PixelColumn {
         size: [0.6, 0.5],

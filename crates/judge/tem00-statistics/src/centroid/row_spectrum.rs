@@ -5,7 +5,7 @@ use tem00_numerics::{
     sinc,
 };
 
-use crate::airy_power_spectrum;
+use crate::laws::airy_power_spectrum;
 
 /// Returns the speckle length of rows: the integral over all distances across the rows of the
 /// autocovariance of speckle that is averaged over `row_height` along the line; both lengths are in
@@ -32,7 +32,7 @@ use crate::airy_power_spectrum;
 ///
 /// ```
 /// use core::f64::consts::PI;
-/// use tem00_statistics::speckle_length;
+/// use tem00_statistics::laws::speckle_length;
 ///
 /// assert!((speckle_length(0.0) - 32.0 / (3.0 * PI * PI)).abs() < 1e-12);
 /// // Rows one speckle high.
@@ -179,7 +179,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
-    use crate::translation_contrast;
+    use crate::laws::translation_contrast;
 
     #[test]
     fn points_of_rows_and_high_rows_have_their_closed_forms() {

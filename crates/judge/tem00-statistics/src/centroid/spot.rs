@@ -19,7 +19,7 @@ use tem00_numerics::{
 /// # Examples
 ///
 /// ```
-/// use tem00_statistics::gaussian_spot_centroid_deviation;
+/// use tem00_statistics::laws::gaussian_spot_centroid_deviation;
 ///
 /// assert!((gaussian_spot_centroid_deviation(8.0) - 0.21737).abs() < 1e-5);
 /// ```
@@ -54,7 +54,7 @@ pub fn gaussian_spot_centroid_deviation(radius: f64) -> f64 {
 /// # Examples
 ///
 /// ```
-/// use tem00_statistics::disc_spot_centroid_deviation;
+/// use tem00_statistics::laws::disc_spot_centroid_deviation;
 ///
 /// assert!((disc_spot_centroid_deviation(2.0) - 0.24374).abs() < 1e-5);
 /// ```

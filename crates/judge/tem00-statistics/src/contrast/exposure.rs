@@ -22,7 +22,7 @@ use crate::airy_autocovariance;
 /// A pattern that does not change keeps its contrast:
 ///
 /// ```
-/// use tem00_statistics::contrast_of_exposure;
+/// use tem00_statistics::laws::contrast_of_exposure;
 ///
 /// assert!((contrast_of_exposure(|_| 1.0) - 1.0).abs() < 1e-14);
 /// ```
@@ -47,7 +47,7 @@ pub fn contrast_of_exposure(correlation: impl Fn(f64) -> f64) -> f64 {
 /// # Examples
 ///
 /// ```
-/// use tem00_statistics::boiling_contrast;
+/// use tem00_statistics::laws::boiling_contrast;
 ///
 /// assert!((boiling_contrast(1.0) - 0.656).abs() < 5e-4);
 /// ```
@@ -72,7 +72,7 @@ pub fn boiling_contrast(drift: f64) -> f64 {
 /// # Examples
 ///
 /// ```
-/// use tem00_statistics::translation_contrast;
+/// use tem00_statistics::laws::translation_contrast;
 ///
 /// assert!((translation_contrast(1.0) - 0.846).abs() < 5e-4);
 /// ```

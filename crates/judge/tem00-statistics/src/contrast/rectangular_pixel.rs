@@ -5,7 +5,7 @@ use tem00_numerics::{
     quadrature::{integrate, integrate_from_root},
 };
 
-use crate::{airy_autocovariance, translation_contrast};
+use crate::{airy_autocovariance, laws::translation_contrast};
 
 /// Returns the contrast of fully developed speckle seen by rectangular pixels that integrate over
 /// their area, `pixel_size` being their width and height in units of the speckle size h.
@@ -16,7 +16,7 @@ use crate::{airy_autocovariance, translation_contrast};
 ///
 /// The size is that of the light-sensitive area: the pitch of the pixels and the gaps between them
 /// do not matter. Pixels of one speckle size by two see the contrast 0.559. The function is even in
-/// either size, and without a height it is the [`translation_contrast`](crate::translation_contrast).
+/// either size, and without a height it is the [`translation_contrast`](crate::laws::translation_contrast).
 ///
 /// The approximation that only looks at the coherence area `A_c = (4/π) h²`,
 ///
@@ -158,7 +158,7 @@ pub(crate) fn averaged_autocovariance(r: f64) -> f64 {
 /// # Examples
 ///
 /// ```
-/// use tem00_statistics::gaussian_filter_contrast;
+/// use tem00_statistics::laws::gaussian_filter_contrast;
 ///
 /// assert!((gaussian_filter_contrast(0.0) - 1.0).abs() < 1e-12);
 /// assert!((gaussian_filter_contrast(0.5) - 0.513).abs() < 1e-3);

@@ -100,7 +100,7 @@ pub fn autocovariance(image: &Grid<f32>, boundary: Boundary) -> Result<Grid<f32>
 ///
 /// Frequency `(kx, ky)` stands at `(kx, ky)`, negative ones at the far end. The mean of S over all
 /// frequencies is 1; that of speckle of the size h pixels is `h² S₁(|f| h)` with S₁ the
-/// [`airy_power_spectrum`](crate::airy_power_spectrum).
+/// [`airy_power_spectrum`](crate::laws::airy_power_spectrum).
 ///
 /// # Bias
 ///
@@ -164,7 +164,7 @@ pub struct Ring {
 ///
 /// ```
 /// use tem00_numerics::Grid;
-/// use tem00_statistics::radial_average;
+/// use tem00_statistics::estimate::radial_average;
 ///
 /// let grid = Grid::from_fn(4, 4, |x, y| if (x, y) == (0, 0) { 5.0 } else { 1.0 });
 /// let rings = radial_average(&grid, [1.0, 1.0])?;
@@ -233,7 +233,7 @@ impl Ring {
 ///
 /// ```
 /// use tem00_numerics::Grid;
-/// use tem00_statistics::decorrelated_samples;
+/// use tem00_statistics::estimate::decorrelated_samples;
 ///
 /// let grid = Grid::from_fn(7, 4, |x, y| (10 * y + x) as f32);
 /// assert_eq!(decorrelated_samples(&grid, 3)?, [0.0, 3.0]);
@@ -301,7 +301,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::{airy_autocovariance, airy_power_spectrum, synthetic::speckle_tile};
+    use crate::{airy_autocovariance, laws::airy_power_spectrum, synthetic::speckle_tile};
 
     fn noise(width: usize, height: usize) -> Grid<f32> {
         let mut rng = ChaCha8Rng::seed_from_u64(1);

@@ -7,7 +7,7 @@ use crate::{GammaIntensity, Moments, StatisticsError, estimate::moments::Scaled}
 /// # Independence
 ///
 /// Mean and shape hold for any samples, the standard error for independent ones of a Gamma law:
-/// take [`decorrelated_samples`](crate::decorrelated_samples). A hypothesis test of the samples
+/// take [`decorrelated_samples`](crate::estimate::decorrelated_samples). A hypothesis test of the samples
 /// against the law fitted to them overstates the agreement.
 ///
 /// # Examples
@@ -15,7 +15,7 @@ use crate::{GammaIntensity, Moments, StatisticsError, estimate::moments::Scaled}
 /// The quantiles of an exponential law have the shape 1:
 ///
 /// ```
-/// use tem00_statistics::GammaFit;
+/// use tem00_statistics::estimate::GammaFit;
 ///
 /// let quantile = |i| -(1.0 - (f64::from(i) + 0.5) / 10_000.0_f64).ln();
 /// let samples: Vec<f64> = (0..10_000).map(quantile).collect();

@@ -41,7 +41,7 @@ use crate::{
 ///
 /// ```
 /// use tem00_numerics::Grid;
-/// use tem00_statistics::local_contrast;
+/// use tem00_statistics::estimate::local_contrast;
 ///
 /// let image = Grid::from_fn(4, 3, |x, _| [1.0, 1.0, 3.0, 3.0][x]);
 /// let map = local_contrast(&image, 2)?;

@@ -13,7 +13,7 @@
 /// # Examples
 ///
 /// ```
-/// use tem00_statistics::size_before_pixels;
+/// use tem00_statistics::estimate::size_before_pixels;
 ///
 /// // Speckles of two pixels look 9 % wider.
 /// let size = size_before_pixels(2.172).expect("wider than a pixel");

@@ -1,7 +1,7 @@
 use num_complex::Complex;
 use tem00_numerics::Grid;
 
-use crate::{Boundary, StatisticsError, VORTEX_DENSITY};
+use crate::{Boundary, StatisticsError, laws::VORTEX_DENSITY};
 
 /// A phase singularity, or vortex, of a complex field: a point of intensity zero around which the
 /// phase turns once.
@@ -41,7 +41,7 @@ pub struct Singularity {
 /// ```
 /// use num_complex::Complex;
 /// use tem00_numerics::Grid;
-/// use tem00_statistics::{Boundary, Singularity, phase_singularities};
+/// use tem00_statistics::{Boundary, estimate::{Singularity, phase_singularities}};
 ///
 /// let vortex = Grid::from_fn(4, 4, |x, y| Complex::new(x as f32 - 1.3, y as f32 - 2.6));
 /// let found = phase_singularities(&vortex, Boundary::Finite)?;
@@ -135,7 +135,7 @@ fn crossing(a: Complex<f32>, b: Complex<f32>) -> i8 {
 /// ```
 /// use num_complex::Complex;
 /// use tem00_numerics::Grid;
-/// use tem00_statistics::{Boundary, VortexDensity};
+/// use tem00_statistics::{Boundary, estimate::VortexDensity};
 ///
 /// let vortex = Grid::from_fn(11, 11, |x, y| Complex::new(x as f32 - 4.5, y as f32 - 3.5));
 /// let density = VortexDensity::from_field(&vortex, Boundary::Finite)?;

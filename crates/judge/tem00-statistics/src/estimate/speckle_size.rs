@@ -1,8 +1,10 @@
 use tem00_numerics::Grid;
 
 use crate::{
-    AIRY_FIRST_ZERO, AIRY_HALF_WIDTH, Axis, Boundary, StatisticsError, airy_autocovariance,
-    autocovariance, estimate::moments::check_finite,
+    Boundary, StatisticsError, airy_autocovariance, autocovariance,
+    estimate::Axis,
+    estimate::moments::check_finite,
+    laws::{AIRY_FIRST_ZERO, AIRY_HALF_WIDTH},
 };
 
 /// The speckle size h along both axes of an image, in pixels.

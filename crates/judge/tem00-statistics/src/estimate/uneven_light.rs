@@ -5,7 +5,7 @@ use tem00_numerics::{
     cast::{to_f32, to_usize},
 };
 
-use crate::{COHERENCE_AREA, SpeckleSize, StatisticsError, estimate::moments};
+use crate::{SpeckleSize, StatisticsError, estimate::moments, laws::COHERENCE_AREA};
 
 /// The inner radius of the first ring of lags, in speckle sizes: beyond the speckle itself.
 const FIRST_RING: f64 = 1.5;

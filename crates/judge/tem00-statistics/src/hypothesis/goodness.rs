@@ -1,6 +1,6 @@
 use crate::{
-    GreyLevels, StatisticsError, TestOutcome, chi_squared, estimate::moments::check_finite,
-    kolmogorov_smirnov,
+    StatisticsError, TestOutcome, chi_squared, estimate::moments::check_finite, kolmogorov_smirnov,
+    test::GreyLevels,
 };
 
 /// The number of bins of the χ² test.
@@ -15,7 +15,7 @@ const BINS: u32 = 20;
 ///
 /// # Independence
 ///
-/// The samples are independent: take [`decorrelated_samples`](crate::decorrelated_samples).
+/// The samples are independent: take [`decorrelated_samples`](crate::estimate::decorrelated_samples).
 ///
 /// # Validity
 ///
@@ -25,9 +25,7 @@ const BINS: u32 = 20;
 /// # Examples
 ///
 /// ```
-/// use tem00_statistics::{
-///     GoodnessOfFit, GreyLevels, exponential_cumulative, kolmogorov_smirnov,
-/// };
+/// use tem00_statistics::{///     GoodnessOfFit, exponential_cumulative, kolmogorov_smirnov, ///, test::GreyLevels};
 ///
 /// // Speckle of a mean of three grey levels.
 /// let law = |light: f64| exponential_cumulative(light / 3.0);

@@ -16,7 +16,7 @@ const FINEST: f64 = 3.0 * 65_536.0;
 /// Speckle of a mean of half a grey level, rounded to whole ones:
 ///
 /// ```
-/// use tem00_statistics::GreyLevels;
+/// use tem00_statistics::test::GreyLevels;
 ///
 /// let quantile = |i| -0.5 * (1.0 - (f64::from(i) + 0.5) / 10_000.0_f64).ln();
 /// let rounded: Vec<f64> = (0..10_000).map(|i| quantile(i).round()).collect();

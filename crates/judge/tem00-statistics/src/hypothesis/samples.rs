@@ -31,7 +31,7 @@ pub struct TestOutcome {
 /// The samples are independent and the distribution was fixed beforehand, not fitted to them.
 /// Neighbouring pixels of a speckle pattern share a speckle: on all pixels the test rejects a
 /// third of all correct patterns at the 5 % level. Take
-/// [`decorrelated_samples`](crate::decorrelated_samples).
+/// [`decorrelated_samples`](crate::estimate::decorrelated_samples).
 ///
 /// # Validity
 ///
@@ -135,7 +135,7 @@ fn kolmogorov_survival(lambda: f64) -> f64 {
 /// # Independence
 ///
 /// The counted events are independent: for pixels of a speckle pattern take
-/// [`decorrelated_samples`](crate::decorrelated_samples).
+/// [`decorrelated_samples`](crate::estimate::decorrelated_samples).
 ///
 /// # Validity
 ///

@@ -190,7 +190,7 @@ const STIRLING_LIMIT: f64 = 30.0;
 /// # Examples
 ///
 /// ```
-/// use tem00_statistics::contrast_of_phasor_sum;
+/// use tem00_statistics::laws::contrast_of_phasor_sum;
 ///
 /// assert_eq!(contrast_of_phasor_sum(1), 0.0);
 /// assert!((contrast_of_phasor_sum(812) - 0.999_384).abs() < 1e-6);

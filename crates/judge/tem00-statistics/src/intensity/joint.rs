@@ -21,7 +21,7 @@ use crate::{
 /// Next to a speckle five times as bright as the mean, where μ² = 1/2:
 ///
 /// ```
-/// use tem00_statistics::JointIntensity;
+/// use tem00_statistics::laws::JointIntensity;
 ///
 /// let law = JointIntensity::new(0.5_f64.sqrt())?;
 /// assert!((law.conditional_mean(5.0) - 3.0).abs() < 1e-14);

@@ -1,6 +1,6 @@
 use core::f64::consts::PI;
 
-use crate::{StatisticsError, contrast_of_phasor_sum};
+use crate::{StatisticsError, laws::contrast_of_phasor_sum};
 
 /// The law of the intensity of a sum of few phasors of equal length and random phase.
 ///
@@ -25,7 +25,7 @@ use crate::{StatisticsError, contrast_of_phasor_sum};
 /// which it is e⁻⁴ = 0.0183:
 ///
 /// ```
-/// use tem00_statistics::PhasorSum;
+/// use tem00_statistics::laws::PhasorSum;
 ///
 /// let law = PhasorSum::new(10)?;
 /// assert!((law.contrast() - 0.9_f64.sqrt()).abs() < 1e-15);
@@ -165,7 +165,7 @@ fn bessel_zero(index: u32) -> f64 {
 /// # Examples
 ///
 /// ```
-/// use tem00_statistics::moment_of_phasor_sum;
+/// use tem00_statistics::laws::moment_of_phasor_sum;
 ///
 /// assert!((moment_of_phasor_sum(4, 3) - 4.0).abs() < 1e-14);
 /// ```

@@ -49,7 +49,7 @@ pub enum LitArea {
 /// A red laser spot of 1 mm diameter on a wall makes speckles of 1.3 mm at 2 m:
 ///
 /// ```
-/// use tem00_statistics::{LitArea, ObjectiveSpeckle};
+/// use tem00_statistics::laws::{LitArea, ObjectiveSpeckle};
 ///
 /// let spot = LitArea::Disc { diameter: 1e-3 };
 /// let speckle = ObjectiveSpeckle::new(650e-9, 2.0, spot)?;

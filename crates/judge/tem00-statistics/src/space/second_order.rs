@@ -32,7 +32,7 @@ pub const COHERENCE_AREA: f64 = 4.0 / PI;
 /// # Examples
 ///
 /// ```
-/// use tem00_statistics::{AIRY_FIRST_ZERO, AIRY_HALF_WIDTH, airy_autocovariance};
+/// use tem00_statistics::{airy_autocovariance, laws::{AIRY_FIRST_ZERO, AIRY_HALF_WIDTH}};
 ///
 /// assert!((airy_autocovariance(AIRY_HALF_WIDTH) - 0.5).abs() < 1e-12);
 /// assert!(airy_autocovariance(AIRY_FIRST_ZERO) < 1e-30);

@@ -1,7 +1,7 @@
 use core::f64::consts::PI;
 
 /// The mean number of speckles per area, in units of h⁻²: one per
-/// [`COHERENCE_AREA`](crate::COHERENCE_AREA).
+/// [`COHERENCE_AREA`](crate::laws::COHERENCE_AREA).
 pub const SPECKLE_DENSITY: f64 = PI / 4.0;
 
 /// The mean number of phase singularities per area, in units of h⁻².
@@ -43,7 +43,7 @@ pub const MEAN_SQUARE_SLOPE: f64 = PI * PI / 2.0;
 /// # Examples
 ///
 /// ```
-/// use tem00_statistics::level_crossings;
+/// use tem00_statistics::laws::level_crossings;
 ///
 /// assert!((level_crossings(0.5) - 0.380_1).abs() < 1e-4);
 /// ```
@@ -71,7 +71,7 @@ mod tests {
     use tem00_numerics::Grid;
 
     use super::*;
-    use crate::{COHERENCE_AREA, airy_autocovariance, synthetic::speckle_tile};
+    use crate::{airy_autocovariance, laws::COHERENCE_AREA, synthetic::speckle_tile};
 
     const TILES: u64 = 8;
     const SIZE: usize = 512;

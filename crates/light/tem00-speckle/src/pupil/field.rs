@@ -144,7 +144,7 @@ impl PupilField {
     /// pupil: of the width w it makes speckles of `λz / w`, and [`with_pupil`](Self::with_pupil) gives its shape. A
     /// Gaussian spot is cut off, at five radii in w for a pupil of the radius 0.2. A surface that has moved by d through
     /// the light displaces the pupil by `−d / w`: its speckle boils and does not move. The law is
-    /// `tem00_statistics::ObjectiveSpeckle`.
+    /// `tem00_statistics::laws::ObjectiveSpeckle`.
     ///
     /// # Errors
     ///

@@ -6,9 +6,10 @@ use tem00_numerics::Grid;
 use tem00_report::{failure::Failure, interrupt};
 use tem00_speckle::{Phasors, Pupil, PupilField, SpecklePattern};
 use tem00_statistics::{
-    AIRY_FIRST_ZERO, Axis, Boundary, Contrast, Moments, SpeckleSize, StatisticsError,
-    autocovariance, contrast_of_phasor_sum, decorrelated_samples, exponential_cumulative,
-    kolmogorov_smirnov, power_spectrum,
+    Boundary, Contrast, Moments, SpeckleSize, StatisticsError, autocovariance,
+    estimate::{Axis, decorrelated_samples, power_spectrum},
+    exponential_cumulative, kolmogorov_smirnov,
+    laws::{AIRY_FIRST_ZERO, contrast_of_phasor_sum},
 };
 
 use crate::comparison::{Expectation, Row};
@@ -290,7 +291,7 @@ mod tests {
     #[test]
     fn the_spread_of_the_contrast_is_that_of_the_circle() {
         let field = PupilField::new(512, 128, 0).expect("valid");
-        let expected = tem00_statistics::contrast_squared_spread(128.0);
+        let expected = tem00_statistics::laws::contrast_squared_spread(128.0);
         // The counted points of the disc differ from πC²/4 by 0.3 % at most, the sum over 200²
         // midpoints from the integral by less.
         assert_relative_eq!(

@@ -5,8 +5,11 @@ use core::f64::consts::TAU;
 use serde::Serialize;
 use tem00_numerics::{Grid, cast::to_f32};
 use tem00_statistics::{
-    GammaIntensity, GreyLevels, SpeckleSize, StatisticsError, airy_autocovariance,
-    airy_power_spectrum, exponential_cumulative, power_spectrum, radial_average,
+    GammaIntensity, SpeckleSize, StatisticsError, airy_autocovariance,
+    estimate::{power_spectrum, radial_average},
+    exponential_cumulative,
+    laws::airy_power_spectrum,
+    test::GreyLevels,
 };
 
 /// The curves of the diagrams.

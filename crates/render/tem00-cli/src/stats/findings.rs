@@ -3,9 +3,12 @@
 use tem00_numerics::Grid;
 use tem00_report::{digits::number, image::LoadedImage};
 use tem00_statistics::{
-    AIRY_FIRST_ZERO, Contrast, Evenness, FlatImage, GammaFit, GoodnessOfFit, GreyLevels, Moments,
-    SpeckleSize, StatisticsError, decorrelated_samples, exponential_cumulative, pixel_contrast,
-    size_before_pixels,
+    Contrast, Moments, SpeckleSize, StatisticsError,
+    estimate::{Evenness, FlatImage, GammaFit, decorrelated_samples, size_before_pixels},
+    exponential_cumulative,
+    laws::AIRY_FIRST_ZERO,
+    pixel_contrast,
+    test::{GoodnessOfFit, GreyLevels},
 };
 
 use crate::comparison::{Expectation, Row};

@@ -83,7 +83,7 @@ fn speckle_size_widens_the_error_of_the_contrast_as_tiles_do() {
         assert_relative_eq!(spread, errors / TILES as f64, max_relative = tolerance);
         assert_relative_eq!(
             spread,
-            0.5 * crate::contrast_squared_spread(diameter as f64),
+            0.5 * crate::laws::contrast_squared_spread(diameter as f64),
             max_relative = tolerance
         );
     }

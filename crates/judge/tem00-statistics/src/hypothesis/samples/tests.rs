@@ -4,7 +4,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::*;
 use crate::{
-    GammaIntensity, decorrelated_samples, exponential_cumulative, synthetic::speckle_tile,
+    GammaIntensity, estimate::decorrelated_samples, exponential_cumulative, synthetic::speckle_tile,
 };
 
 const ROUNDS: u32 = 2_000;

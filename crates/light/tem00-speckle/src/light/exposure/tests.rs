@@ -1,6 +1,9 @@
 use proptest::prelude::*;
 use tem00_numerics::{cast::to_signed, disc_overlap};
-use tem00_statistics::{boiling_contrast, t_test_mean, translation_contrast};
+use tem00_statistics::{
+    laws::{boiling_contrast, translation_contrast},
+    t_test_mean,
+};
 
 use super::*;
 use crate::Phasors;

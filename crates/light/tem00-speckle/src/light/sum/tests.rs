@@ -1,8 +1,8 @@
 use proptest::prelude::*;
 use tem00_numerics::Grid;
 use tem00_statistics::{
-    GammaIntensity, IncoherentSum, PartiallyPolarised, contrast_squared_spread,
-    decorrelated_samples, kolmogorov_smirnov, pearson_correlation,
+    GammaIntensity, IncoherentSum, PartiallyPolarised, estimate::decorrelated_samples,
+    kolmogorov_smirnov, laws::contrast_squared_spread, pearson_correlation,
 };
 
 use super::*;

@@ -1,5 +1,5 @@
 use tem00_numerics::cast::to_signed;
-use tem00_statistics::{LitArea, ObjectiveSpeckle};
+use tem00_statistics::laws::{LitArea, ObjectiveSpeckle};
 
 use super::*;
 use crate::SpecklePattern;

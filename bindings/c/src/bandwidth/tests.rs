@@ -1,4 +1,4 @@
-//! The functions against the library that they call, and speckle drawn by them against the law.
+//! The functions against the library that they call.
 #![expect(clippy::float_cmp, reason = "the same bits are asked for")]
 
 use core::{f64::consts::TAU, ptr, slice};
@@ -10,9 +10,7 @@ use tem00_decorrelation::{
 
 use super::*;
 use crate::{
-    SlicePath, Stack, StackDescription,
     status::Status,
-    tem00_stack_amplitude, tem00_stack_create, tem00_stack_destroy,
     testing::{each_is_refused, last_parameter, number_is_refused, pointer_is_refused},
 };
 
@@ -205,94 +203,6 @@ fn the_field_moves_over_the_pupil_as_a_change_of_wavelength_says() {
     );
 }
 
-/// Stacks of one plan but their own seeds.
-fn stacks(count: u64) -> Vec<*mut Stack> {
-    let stack = |seed| {
-        let description = StackDescription {
-            width: 256,
-            height: 256,
-            diameter: 64,
-            speckle_size: 0.0,
-            seed,
-            path: SlicePath::Straight as u32,
-            half_period: 48,
-            length: 3,
-            memory_limit: 1 << 27,
-            threads: 0,
-        };
-        // SAFETY: the pointers are valid.
-        answer(ptr::null_mut(), |stack| unsafe {
-            tem00_stack_create(&raw const description, stack)
-        })
-    };
-    (0..count).map(stack).collect()
-}
-
-/// The contrast of what is drawn, over the places of a pattern.
-fn drawn_contrast(description: &BandwidthDescription) -> f64 {
-    const WAVES: u32 = 64;
-    const SLICES_PER_DIAMETER: f64 = 32.0;
-    let owned = made(description);
-    let (patterns, heights) = (owned.patterns(), owned.heights());
-    let stacks = stacks((patterns.len() * heights.len()) as u64);
-    let waves = (0..WAVES).map(|i| owned.draw((f64::from(i) + 0.5) / f64::from(WAVES)));
-    let waves: Vec<Wave> = waves.collect();
-    let intensity = |x: f64, y: f64, wave: &Wave| -> f64 {
-        let fields = patterns.iter().zip(stacks.chunks(heights.len()));
-        fields
-            .map(|(fraction, stacks)| {
-                let parts = stacks.iter().zip(heights).map(|(stack, [height, root])| {
-                    let u = SLICES_PER_DIAMETER * wave.pupil_shift;
-                    // SAFETY: the pointers are valid.
-                    let [re, im] = answer([f64::NAN; 2], |amplitude| unsafe {
-                        tem00_stack_amplitude(*stack, x, y, u, amplitude.cast())
-                    });
-                    let (sin, cos) = (wave.phase_per_height * height).sin_cos();
-                    [root * (re * cos - im * sin), root * (re * sin + im * cos)]
-                });
-                let sum = parts.fold([0.0; 2], |[a, b], [re, im]| [a + re, b + im]);
-                fraction * (sum[0].powi(2) + sum[1].powi(2))
-            })
-            .sum()
-    };
-    let places = (0..51 * 51).map(|i| [5.0 * f64::from(i % 51), 5.0 * f64::from(i / 51)]);
-    let exposed = places.map(|[x, y]| {
-        let sum: f64 = waves.iter().map(|wave| intensity(x, y, wave)).sum();
-        sum / f64::from(WAVES)
-    });
-    let exposed: Vec<f64> = exposed.collect();
-    for stack in stacks {
-        // SAFETY: it was created above and is not used again.
-        unsafe { tem00_stack_destroy(stack) };
-    }
-    let mean = exposed.iter().sum::<f64>() / exposed.len() as f64;
-    let square = exposed
-        .iter()
-        .map(|i| (i / mean - 1.0).powi(2))
-        .sum::<f64>();
-    (square / exposed.len() as f64).sqrt()
-}
-
-#[test]
-fn what_is_drawn_has_the_contrast_of_the_law() {
-    let still = BandwidthDescription {
-        rms_height: 0.8e-6,
-        ..DESCRIPTION
-    };
-    let lorentzian = BandwidthDescription {
-        linewidth: 5e-9,
-        shape: LineShape::Lorentzian as u32,
-        ..DESCRIPTION
-    };
-    for description in [DESCRIPTION, still, lorentzian] {
-        let expected = made(&description).info().contrast;
-        let drawn = drawn_contrast(&description);
-        // 1 % each by the slices and by the heights, and three errors of the contrast of some 2000 speckles.
-        let ratio = drawn / expected;
-        assert!((ratio - 1.0).abs() < 0.045, "{drawn} for {expected}");
-    }
-}
-
 #[test]
 fn the_extent_of_a_source_is_patterns() {
     let wide = made(&BandwidthDescription {
@@ -399,29 +309,6 @@ fn senseless_numbers_are_refused_by_name() {
         let bandwidth = tem00_bandwidth_draw(ptr::null(), 0.5, &raw mut wave);
         pointer_is_refused("bandwidth", bandwidth);
         tem00_bandwidth_destroy(ptr::null_mut());
-    }
-}
-
-#[test]
-fn extreme_cells_are_answered() {
-    let grazing = BandwidthDescription {
-        linewidth: 45e-9,
-        to_pupil: [1.0, 0.0, 1e-5],
-        rms_height: 1e-3,
-        sin_aperture: 1.0,
-        ..DESCRIPTION
-    };
-    let wavy = BandwidthDescription {
-        rms_height: 1e-3,
-        correlation_length: 1e-3,
-        ..DESCRIPTION
-    };
-    for description in [grazing, wavy] {
-        let owned = made(&description);
-        let info = owned.info();
-        assert!((0.0..1.0).contains(&info.contrast), "{info:?}");
-        let told = owned.patterns().len() + owned.heights().len();
-        assert!(told > 0, "{info:?}");
     }
 }
 

@@ -104,7 +104,6 @@ fn stacks_that_cannot_be_are_refused() {
     let field = PupilField::new(64, 32, 1).expect("a field");
     let frugal = StackOptions {
         memory_limit: 65_535,
-        ..StackOptions::default()
     };
     let refused = GpuStack::generate_with(&gpu, &field, PATH, frugal).expect_err("memory");
     let [needed, limit] = [65_536, 65_535];

@@ -17,7 +17,7 @@
 //! - [`laws`]: the intensity at one point and two, the contrast that pixels and exposures leave, speckle in space, and the
 //!   noise of laser lines and spots.
 //! - [`estimate`]: moments, contrast, autocovariance, speckle size, singularities, uneven light.
-//! - [`test`]: Kolmogorov–Smirnov, χ², t, also for images that are rounded to few grey levels.
+//! - [`test`](mod@test): Kolmogorov–Smirnov, χ², t, also for images that are rounded to few grey levels.
 //!
 //! What is asked for most stands here, too.
 //!

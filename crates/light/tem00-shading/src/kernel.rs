@@ -9,8 +9,8 @@ use tem00_speckle::{PupilField, SlicePath, StackPlan};
 
 use crate::{Laser, Motion, PreparedSpeckle, ShadingError, Speckle, patterns::Patterns};
 
-/// The function `tem00_factor` in WGSL, which is [`SpeckleFrame::factor`] in single precision: functions and structs
-/// without bindings.
+/// The function `tem00_factor` in WGSL, which is [`SpeckleFrame::factor`](crate::SpeckleFrame::factor) in single
+/// precision: functions and structs without bindings.
 ///
 /// Its first comment says how to call it and how exact it is. The texts of [`tem00_decorrelation::closed_form`] and
 /// [`tem00_speckle::closed_form`] stand beside it. A frame is a uniform, [`KernelSpeckle::rows`].

@@ -25,7 +25,10 @@ const BINS: u32 = 20;
 /// # Examples
 ///
 /// ```
-/// use tem00_statistics::{///     GoodnessOfFit, exponential_cumulative, kolmogorov_smirnov, ///, test::GreyLevels};
+/// use tem00_statistics::{
+///     exponential_cumulative, kolmogorov_smirnov,
+///     test::{GoodnessOfFit, GreyLevels},
+/// };
 ///
 /// // Speckle of a mean of three grey levels.
 /// let law = |light: f64| exponential_cumulative(light / 3.0);

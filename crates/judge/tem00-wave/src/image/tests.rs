@@ -1,8 +1,9 @@
 use core::f64::consts::PI;
 
-use super::*;
 use proptest::prelude::*;
+use tem00_testkit::refuses;
 
+use super::*;
 use crate::{DMat3, Illumination, Lens, RigidMotion, RoughSurface, Scatterer};
 
 const WAVELENGTH: f64 = 650e-9;
@@ -263,64 +264,12 @@ fn a_field_from_elsewhere_does_not_fit() {
 
 #[test]
 fn constructors_name_what_they_reject() {
-    let good = sampling(64);
-    for (sampling, name) in [
-        (
-            ImageSampling {
-                wavelength: 0.0,
-                ..good
-            },
-            "wavelength",
-        ),
-        (
-            ImageSampling {
-                centre: DVec2::NAN,
-                ..good
-            },
-            "centre",
-        ),
-        (
-            ImageSampling {
-                centre: DVec2::X * 0.7,
-                ..good
-            },
-            "centre",
-        ),
-        (
-            ImageSampling {
-                step: 1.1 * SPECKLE,
-                ..good
-            },
-            "step must",
-        ),
-        (
-            ImageSampling {
-                step: 1e-30,
-                ..good
-            },
-            "step must",
-        ),
-        (
-            ImageSampling {
-                step: f64::NAN,
-                ..good
-            },
-            "step must",
-        ),
-        (ImageSampling { samples: 1, ..good }, "samples must"),
-        (
-            ImageSampling {
-                samples: 1 << 14,
-                ..good
-            },
-            "samples must",
-        ),
-    ] {
-        let message = ImageWindow::new(&camera(), &sampling)
-            .expect_err("an error")
-            .to_string();
-        assert!(message.contains(name), "{name}: {message}");
-    }
+    refuses!(sampling = sampling(64) => ImageWindow::new(&camera(), &sampling);
+        sampling.wavelength: [0.0],
+        sampling.centre: [DVec2::NAN, DVec2::X * 0.7],
+        sampling.step: [1.1 * SPECKLE, 1e-30, f64::NAN],
+        sampling.samples: [1, 1 << 14],
+    );
 }
 
 proptest! {

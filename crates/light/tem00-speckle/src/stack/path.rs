@@ -99,18 +99,14 @@ impl SlicePath {
     pub fn check(self) -> Result<(), SpeckleError> {
         match self {
             Self::Circle { half_period } | Self::Straight { half_period, .. }
-                if half_period == 0 || half_period > Self::MAX_HALF_PERIOD =>
+                if !(1..=Self::MAX_HALF_PERIOD).contains(&half_period) =>
             {
-                let half_period = half_period as f64;
-                Err(SpeckleError::refused(
-                    "half_period",
-                    half_period,
-                    "1 to 32768 slices",
-                ))
+                let allowed = "1 to 32768 slices";
+                Err(SpeckleError::refused("half_period", half_period, allowed))
             }
-            Self::Straight { length, .. } if length < 2 || length > Self::MAX_LENGTH => {
+            Self::Straight { length, .. } if !(2..=Self::MAX_LENGTH).contains(&length) => {
                 let allowed = "2 to 32768 pupil diameters";
-                Err(SpeckleError::refused("length", length as f64, allowed))
+                Err(SpeckleError::refused("length", length, allowed))
             }
             _ => Ok(()),
         }

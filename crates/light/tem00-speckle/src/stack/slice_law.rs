@@ -24,8 +24,7 @@ use crate::{
 /// ```
 ///
 /// as [`intensity_at`](crate::SpeckleStack::intensity_at) has it. On a slice, where f is 0, it is |`U_i`|² / `v_i`.
-/// x and y lie in one period, from 0 to the [size](crate::SpeckleStack::size). For the nearest sample
-/// both are those of the sample, and `fx` and `fy` are 0.
+/// x and y lie in one period, from 0 to the [size](crate::SpeckleStack::size).
 ///
 /// # Examples
 ///

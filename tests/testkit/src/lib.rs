@@ -13,9 +13,11 @@ mod numbers;
 mod p_value;
 mod refusal;
 mod robust;
+mod rows;
 
 pub use close::{assert_absolute, assert_relative, correlation};
 pub use numbers::Numbers;
 pub use p_value::{chi_squared, chi_squared_survival, kolmogorov_smirnov};
 pub use refusal::{assert_accepted, assert_refused};
 pub use robust::robust;
+pub use rows::rows;

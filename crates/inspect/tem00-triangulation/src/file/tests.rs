@@ -1,3 +1,5 @@
+use tem00_testkit::rows;
+
 use crate::{
     FilterOrder, LaserLight, LineMethod, LineShape, Setup, SetupDescription, Spectrum, parse_setup,
     setup::tests::description,
@@ -244,87 +246,29 @@ fn what_may_be_left_out_has_defaults() {
 
 #[test]
 fn what_is_wrong_is_told_at_its_place() {
-    for (line, instead, position, part) in [
-        ("[laser]", "[lasser]", Some((1, 2)), "did you mean `laser`?"),
-        (
-            "wavelength = 6.5e-7",
-            "wavelenght = 1",
-            Some((2, 1)),
-            "did you mean `wavelength`?",
-        ),
-        (
-            "wavelength = 6.5e-7",
-            "wavelength = \"650 mm\"",
-            Some((2, 14)),
-            "from 100 nm to 100 µm",
-        ),
-        (
-            "wavelength = 6.5e-7",
-            "wavelength = nan",
-            Some((2, 14)),
-            "a finite number",
-        ),
-        (
-            "wavelength = 6.5e-7\n",
-            "",
-            Some((1, 1)),
-            "needs the key `wavelength`",
-        ),
-        ("power = 0.005", "power = 1e300", Some((3, 9)), "at most"),
-        (
-            "line_thickness = 2e-4",
-            "line_width = 2e-4",
-            Some((4, 1)),
-            "`line_width` in [laser] is now named `line_thickness`",
-        ),
-        (
-            "line_length = 0.05",
-            "line_length = 1e-5",
-            Some((5, 15)),
-            "thickness of the line",
-        ),
-        (
-            "f_number = 8",
-            "f_number = 0.1",
-            Some((9, 12)),
-            "from 0.5 to 1000",
-        ),
-        (
-            "[640, 480]",
-            "[640]",
-            Some((11, 14)),
-            "two numbers of pixels",
-        ),
-        ("[640, 480]", "[1048576, 1048576]", Some((11, 14)), "pixels"),
-        (
-            "distance = 0.3",
-            "distance = 0.02",
-            Some((12, 12)),
-            "focal lengths",
-        ),
-        (
-            "reflectance = 0.5",
-            "reflectance = 0",
-            Some((31, 15)),
-            "positive, at most 1",
-        ),
-        (
-            "columns = 1",
-            "columns = 641",
-            Some((45, 11)),
-            "columns of the image",
-        ),
-        (
-            "columns = 1",
-            "columns = 1.5",
-            Some((45, 11)),
-            "a whole number",
-        ),
-        ("window = 31", "window = 30", Some((37, 10)), "odd"),
-    ] {
-        let error = parse_setup(&with(line, instead)).unwrap_err();
-        assert!(error.to_string().contains(part), "{instead}: {error}");
-        assert_eq!(error.line_column(), position, "{instead}: {error}");
+    let table = r#"
+        [laser] => [lasser] => 1:2 => did you mean `laser`?
+        wavelength = 6.5e-7 => wavelenght = 1 => 2:1 => did you mean `wavelength`?
+        wavelength = 6.5e-7 => wavelength = "650 mm" => 2:14 => from 100 nm to 100 µm
+        wavelength = 6.5e-7 => wavelength = nan => 2:14 => a finite number
+        wavelength = 6.5e-7\n =>  => 1:1 => needs the key `wavelength`
+        power = 0.005 => power = 1e300 => 3:9 => at most
+        line_thickness = 2e-4 => line_width = 2e-4 => 4:1 => `line_width` in [laser] is now named `line_thickness`
+        line_length = 0.05 => line_length = 1e-5 => 5:15 => thickness of the line
+        f_number = 8 => f_number = 0.1 => 9:12 => from 0.5 to 1000
+        [640, 480] => [640] => 11:14 => two numbers of pixels
+        [640, 480] => [1048576, 1048576] => 11:14 => pixels
+        distance = 0.3 => distance = 0.02 => 12:12 => focal lengths
+        reflectance = 0.5 => reflectance = 0 => 31:15 => positive, at most 1
+        columns = 1 => columns = 641 => 45:11 => columns of the image
+        columns = 1 => columns = 1.5 => 45:11 => a whole number
+        window = 31 => window = 30 => 37:10 => odd
+    "#;
+    for [line, instead, position, part] in rows(table) {
+        let error = parse_setup(&with(&line, &instead)).unwrap_err();
+        assert!(error.to_string().contains(&part), "{instead}: {error}");
+        let (line, column) = error.line_column().unwrap();
+        assert_eq!(format!("{line}:{column}"), position, "{instead}: {error}");
     }
 }
 

@@ -319,6 +319,75 @@ fn a_chosen_exposure_leaves_room_for_bright_grains_and_not_much_more() {
 }
 
 #[test]
+fn each_quantity_is_the_field_of_its_key_in_values_and_in_text() {
+    // Each gets a number of its own, in the order of the table.
+    let mut d = description();
+    for (quantity, number) in SetupQuantity::ALL.iter().zip(1_u32..) {
+        quantity.set(&mut d, 1e-7 * f64::from(number));
+    }
+    let fields = [
+        ("laser.wavelength", d.laser.light.wavelength),
+        ("laser.linewidth", d.laser.light.linewidth),
+        ("laser.source_half_angle", d.laser.light.source_half_angle),
+        ("laser.power", d.laser.power),
+        ("laser.line_thickness", d.laser.line_thickness),
+        ("laser.line_length", d.laser.line_length),
+        ("laser.offset", d.laser.offset),
+        ("laser.tilt", d.laser.tilt),
+        ("camera.focal_length", d.camera.focal_length),
+        ("camera.f_number", d.camera.f_number),
+        ("camera.pixel_pitch", d.sensor.pixel_pitch),
+        ("camera.distance", d.camera.distance),
+        ("camera.angle", d.camera.angle),
+        ("camera.principal_row", d.camera.principal_row.unwrap()),
+        ("sensor.quantum_efficiency", d.sensor.quantum_efficiency),
+        ("sensor.exposure", d.sensor.exposure_time),
+        ("sensor.full_well", d.sensor.full_well),
+        ("sensor.black_level", d.sensor.black_level),
+        ("sensor.gain", d.sensor.gain),
+        ("sensor.dark_noise", d.sensor.dark_noise),
+        ("sensor.dark_current", d.sensor.dark_current),
+        ("sensor.prnu", d.sensor.prnu),
+        ("sensor.dsnu", d.sensor.dsnu),
+        ("sensor.fill_factor", d.sensor.fill_factor),
+        ("surface.reflectance", d.surface.reflectance),
+        ("surface.polarisation", d.surface.polarisation),
+        ("surface.rms_height", d.surface.relief.rms_height),
+        (
+            "surface.correlation_length",
+            d.surface.relief.correlation_length,
+        ),
+        (
+            "environment.temperature_change",
+            d.environment.temperature_change,
+        ),
+        ("environment.base_expansion", d.environment.base_expansion),
+        ("environment.mount_expansion", d.environment.mount_expansion),
+    ];
+    assert_eq!(fields.len(), SetupQuantity::ALL.len(), "all of them");
+    let text = d.to_toml();
+    for ((&quantity, (path, value)), number) in SetupQuantity::ALL.iter().zip(fields).zip(1_u32..) {
+        assert_eq!(quantity.to_string(), path, "the order of a file");
+        assert_eq!(
+            value.to_bits(),
+            (1e-7 * f64::from(number)).to_bits(),
+            "{path}"
+        );
+        assert_eq!(value.to_bits(), quantity.value_in(&d).to_bits(), "{path}");
+        let unit = quantity.unit();
+        let line = format!(
+            "{} = {}",
+            quantity.key(),
+            unit.dimension.text(value, unit.symbol)
+        );
+        assert!(
+            text.lines().any(|found| found.starts_with(&line)),
+            "{line} in\n{text}"
+        );
+    }
+}
+
+#[test]
 fn quantities_outside_their_ranges_are_refused_by_key() {
     for &quantity in SetupQuantity::ALL {
         for bad in [-1e9, f64::NAN, f64::INFINITY] {

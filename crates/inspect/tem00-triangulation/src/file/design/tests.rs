@@ -1,3 +1,5 @@
+use tem00_testkit::rows;
+
 use core::f64::consts::PI;
 
 use tem00_config::ConfigError;
@@ -73,78 +75,32 @@ fn lists_and_ranges_are_read_with_their_units() {
 
 #[test]
 fn what_cannot_be_is_refused_where_it_stands() {
-    let cases = [
-        ("", "no section [design]", None),
-        ("[design]\n", "[design.vary]", Some((1, 1))),
-        ("[design.vary]\n", "varied", Some((1, 1))),
-        (
-            "[design.vary]\nf_numbr = [1]\n",
-            "did you mean `f_number`",
-            Some((2, 1)),
-        ),
-        (
-            "[design.vary]\nline_width = [1e-4]\n",
-            "is now named `line_thickness`",
-            Some((2, 1)),
-        ),
-        (
-            "[design.vary]\nf_number = 8\n",
-            "a list of values",
-            Some((2, 12)),
-        ),
-        (
-            "[design.vary]\nf_number = []\n",
-            "a list of values",
-            Some((2, 12)),
-        ),
-        (
-            "[design.vary]\nangle = [\"3 mm\"]\n",
-            "an angle",
-            Some((2, 10)),
-        ),
-        (
-            "[design.vary]\nangle = [1, -1]\n",
-            "positive",
-            Some((2, 13)),
-        ),
-        (
-            "[design.vary]\nf_number = { from = 4, steps = 3 }\n",
-            "`to`",
-            Some((2, 12)),
-        ),
-        (
-            "[design.vary]\nf_number = { from = 4, to = 8, steps = 1 }\n",
-            "from 2 to",
-            Some((2, 40)),
-        ),
-        (
-            "[design.vary]\nf_number = { from = 4, to = 8, steps = 3, scale = \"lin\" }\n",
-            "did you mean \"linear\"",
-            Some((2, 51)),
-        ),
-        (
-            "[design]\nmax_setups = 3\n[design.vary]\nf_number = [1, 2, 3, 4]\n",
-            "got 4",
-            Some((3, 1)),
-        ),
-        (
-            "[design.vary]\nf_number = [8]\n[design.require]\nrange = \"-1 mm\"\n",
-            "positive",
-            Some((4, 9)),
-        ),
-        (
-            "[design.vary]\nf_number = [8]\n[design.require]\nrang = 1\n",
-            "did you mean `range`",
-            Some((4, 1)),
-        ),
-    ];
+    let table = r#"
+        => no section [design] => -
+        [design]\n => [design.vary] => 1:1
+        [design.vary]\n => varied => 1:1
+        [design.vary]\nf_numbr = [1]\n => did you mean `f_number` => 2:1
+        [design.vary]\nline_width = [1e-4]\n => is now named `line_thickness` => 2:1
+        [design.vary]\nf_number = 8\n => a list of values => 2:12
+        [design.vary]\nf_number = []\n => a list of values => 2:12
+        [design.vary]\nangle = ["3 mm"]\n => an angle => 2:10
+        [design.vary]\nangle = [1, -1]\n => positive => 2:13
+        [design.vary]\nf_number = { from = 4, steps = 3 }\n => `to` => 2:12
+        [design.vary]\nf_number = { from = 4, to = 8, steps = 1 }\n => from 2 to => 2:40
+        [design.vary]\nf_number = { from = 4, to = 8, steps = 3, scale = "lin" }\n => did you mean "linear" => 2:51
+        [design]\nmax_setups = 3\n[design.vary]\nf_number = [1, 2, 3, 4]\n => got 4 => 3:1
+        [design.vary]\nf_number = [8]\n[design.require]\nrange = "-1 mm"\n => positive => 4:9
+        [design.vary]\nf_number = [8]\n[design.require]\nrang = 1\n => did you mean `range` => 4:1
+    "#;
     let before = SETUP.lines().count();
-    for (text, expected, position) in cases {
-        let error = read(text).unwrap_err();
+    for [text, expected, position] in rows(table) {
+        let error = read(&text).unwrap_err();
         let message = format!("{error} {}", error.help().unwrap_or_default());
-        assert!(message.contains(expected), "{text}: {message}");
-        let position = position.map(|(line, column)| (before + line, column));
-        assert_eq!(error.line_column(), position, "{text}: {message}");
+        assert!(message.contains(&expected), "{text}: {message}");
+        let found = error
+            .line_column()
+            .map(|(line, column)| format!("{}:{column}", line - before));
+        assert_eq!(found.unwrap_or("-".into()), position, "{text}: {message}");
     }
 }
 

@@ -1,3 +1,5 @@
+use tem00_testkit::rows;
+
 use std::path::Path;
 
 use tem00_config::{Format, parse_document};
@@ -64,56 +66,26 @@ fn a_gain_that_is_not_told_makes_a_full_well_the_largest_value() {
 #[test]
 fn mistakes_are_named_at_their_place() {
     let usual = "[sensor]\nquantum_efficiency = 0.6\nexposure = \"2 ms\"\n";
-    let cases = [
-        ("", "text: the file needs a sensor"),
-        ("[sensor]\nexposure = 1", "`quantum_efficiency`"),
-        ("[sensor]\nquantum_efficiency = 0.6", "`exposure`"),
-        (
-            "[sensor]\nquantum_efficency = 0.6",
-            ":2:1: unknown key `quantum_efficency`",
-        ),
-        (
-            "[sensor]\nquantum_efficiency = 6\nexposure = 1",
-            ":2:22: quantum_efficiency must be",
-        ),
-        (
-            "[sensor]\nquantum_efficiency = 0.6\nexposure = \"2 mm\"",
-            ":3:12: `exposure` must be a duration",
-        ),
-        (
-            "[sensor]\nquantum_efficiency = 0.6\nexposure = \"auto\"",
-            ":3:12: `exposure` must be a duration, got \"auto\"",
-        ),
-        (
-            &format!("{usual}bit_depth = 9"),
-            ":4:13: bit_depth must be 8, 10, 12, 14 or 16, got 9",
-        ),
-        (
-            &format!("{usual}bit_depth = 4"),
-            ":4:13: `bit_depth` must be a whole number",
-        ),
-        (
-            &format!("{usual}full_well = 0"),
-            ":4:13: full_well must be from 1",
-        ),
-        (
-            &format!("{usual}black_level = 5000"),
-            ":4:15: black_level must be",
-        ),
-        (&format!("{usual}prnu = nan"), ":4:8:"),
-        (&format!("{usual}dsnu = -1"), ":4:8: dsnu must be from 0"),
-        (&format!("{usual}gain = 0"), ":4:8: gain must be above 0"),
-        (
-            &format!("{usual}serial_number = -3"),
-            ":4:17: `serial_number` must be a whole number",
-        ),
-        (
-            &format!("{usual}fill_factor = 1.2"),
-            ":4:15: fill_factor must be above 0 and at most 1",
-        ),
-    ];
-    for (text, part) in cases {
-        let message = read(text).unwrap_err();
-        assert!(message.contains(part), "{text}\n{message}");
+    let table = r#"
+        => text: the file needs a sensor
+        [sensor]\nexposure = 1 => `quantum_efficiency`
+        [sensor]\nquantum_efficiency = 0.6 => `exposure`
+        [sensor]\nquantum_efficency = 0.6 => :2:1: unknown key `quantum_efficency`
+        [sensor]\nquantum_efficiency = 6\nexposure = 1 => :2:22: quantum_efficiency must be
+        [sensor]\nquantum_efficiency = 0.6\nexposure = "2 mm" => :3:12: `exposure` must be a duration
+        [sensor]\nquantum_efficiency = 0.6\nexposure = "auto" => :3:12: `exposure` must be a duration, got "auto"
+        USUAL bit_depth = 9 => :4:13: bit_depth must be 8, 10, 12, 14 or 16, got 9
+        USUAL bit_depth = 4 => :4:13: `bit_depth` must be a whole number
+        USUAL full_well = 0 => :4:13: full_well must be from 1
+        USUAL black_level = 5000 => :4:15: black_level must be
+        USUAL prnu = nan => :4:8:
+        USUAL dsnu = -1 => :4:8: dsnu must be from 0
+        USUAL gain = 0 => :4:8: gain must be above 0
+        USUAL serial_number = -3 => :4:17: `serial_number` must be a whole number
+        USUAL fill_factor = 1.2 => :4:15: fill_factor must be above 0 and at most 1
+    "#;
+    for [text, part] in rows(table) {
+        let message = read(&text.replace("USUAL ", usual)).unwrap_err();
+        assert!(message.contains(&part), "{text}\n{message}");
     }
 }

@@ -1,3 +1,5 @@
+use tem00_testkit::rows;
+
 use super::*;
 use crate::parse_setup_with;
 
@@ -186,64 +188,21 @@ fn assert_refused(text: &str, at: &str, words: &str) {
 
 #[test]
 fn uncertain_values_that_cannot_be_are_refused_where_they_stand() {
-    for (angle, at, words) in [
-        (
-            r#"{ value = "30 deg", uncertanty = 1 }"#,
-            "uncertanty",
-            "did you mean `uncertainty`?",
-        ),
-        (
-            r#"{ value = "30 deg" }"#,
-            "{ value",
-            "needs the key `uncertainty`",
-        ),
-        (
-            r#"{ uncertainty = "1 deg" }"#,
-            "{ uncert",
-            "`angle` must be an angle",
-        ),
-        (
-            r#"{ value = "30 mm", uncertainty = "1 deg" }"#,
-            "\"30 mm\"",
-            "`angle` must be an angle",
-        ),
-        (
-            r#"{ value = "30 deg", uncertainty = "1 mm" }"#,
-            "\"1 mm\"",
-            "`uncertainty` must be an angle",
-        ),
-        (
-            r#"{ value = "30 deg", uncertainty = "-1 deg" }"#,
-            "\"-1 deg\"",
-            "must be at least 0",
-        ),
-        (
-            r#"{ value = "30 deg", uncertainty = "80 deg" }"#,
-            "\"80 deg\"",
-            "one `uncertainty` below its value, angle must be from 1 deg to 89 deg",
-        ),
-        (
-            r#"{ value = "30 deg", uncertainty = 0.01, distribution = "gauss" }"#,
-            "\"gauss\"",
-            "one of \"normal\"",
-        ),
-        (
-            r#"{ value = "30 deg", uncertainty = 0.01, distribution = "t" }"#,
-            "{ value",
-            "`degrees_of_freedom`",
-        ),
-        (
-            r#"{ value = "30 deg", uncertainty = 0.01, degrees_of_freedom = 0 }"#,
-            "0 }",
-            "at least 1",
-        ),
-        (
-            r#"{ value = "30 deg", uncertainty = 0.01, degrees_of_freedom = 2 }"#,
-            "2 }",
-            "`degrees_of_freedom` must be above 2, got 2",
-        ),
-    ] {
-        assert_refused(&text(&[("angle", angle)], ""), at, words);
+    let table = r#"
+        { value = "30 deg", uncertanty = 1 } => uncertanty => did you mean `uncertainty`?
+        { value = "30 deg" } => { value => needs the key `uncertainty`
+        { uncertainty = "1 deg" } => { uncert => `angle` must be an angle
+        { value = "30 mm", uncertainty = "1 deg" } => "30 mm" => `angle` must be an angle
+        { value = "30 deg", uncertainty = "1 mm" } => "1 mm" => `uncertainty` must be an angle
+        { value = "30 deg", uncertainty = "-1 deg" } => "-1 deg" => must be at least 0
+        { value = "30 deg", uncertainty = "80 deg" } => "80 deg" => one `uncertainty` below its value, angle must be from 1 deg to 89 deg
+        { value = "30 deg", uncertainty = 0.01, distribution = "gauss" } => "gauss" => one of "normal"
+        { value = "30 deg", uncertainty = 0.01, distribution = "t" } => { value => `degrees_of_freedom`
+        { value = "30 deg", uncertainty = 0.01, degrees_of_freedom = 0 } => 0 } => at least 1
+        { value = "30 deg", uncertainty = 0.01, degrees_of_freedom = 2 } => 2 } => `degrees_of_freedom` must be above 2, got 2
+    "#;
+    for [angle, at, words] in rows(table) {
+        assert_refused(&text(&[("angle", &angle)], ""), &at, &words);
     }
     let pixels = ("resolution", "{ value = [640, 480], uncertainty = 1 }");
     assert_refused(

@@ -7,6 +7,7 @@ mod normals;
 use std::{fs, io::Cursor, path::PathBuf};
 
 use glam::DVec3;
+use tem00_testkit::rows;
 use tempfile::TempDir;
 
 use tem00_geometry::{Intersector, Shape, TriangleMesh};
@@ -283,47 +284,21 @@ fn scale_is_the_length_of_the_unit() {
 
 #[test]
 fn broken_obj_files_are_explained() {
-    for (content, expected) in [
-        ("", "the mesh has no triangles"),
-        ("v 0 0 0\nv 1 0 0\nv 0 1 0\n", "the mesh has no triangles"),
-        (
-            "v 0 0 0\nv 1 zero 0\n",
-            "line 2: a coordinate must be a number, got \"zero\"",
-        ),
-        ("v 0 0\n", "line 1: a vertex needs three coordinates"),
-        (
-            "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
-            "vertex 0 (from 0) must be finite, got [0, 0, NaN]",
-        ),
-        (
-            "v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 4\n",
-            "line 5: the face refers to vertex 4, but the file has 3",
-        ),
-        (
-            "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n",
-            "line 4: a corner must start with a vertex number, from 1 up or from -1 down to -3, \
-             got \"-4\"",
-        ),
-        (
-            "v 0 0 0\nf 0 1 1\n",
-            "line 2: a corner must start with a vertex number, from 1 up or from -1 down to -1, \
-             got \"0\"",
-        ),
-        (
-            "f 99999999999 1 1\n",
-            "line 1: a corner must start with a vertex number, from 1 up or from -1 down to -0, \
-             got \"99999999999\"",
-        ),
-        (
-            "v 0 0 0\nv 1 0 0\nf 1 2\n",
-            "the mesh has no triangles; left out: 1 face without area",
-        ),
-        (
-            "v 0 0 0\nv 1 0 0\nf 1 2 1\n",
-            "none of the mesh's 1 triangles has an area",
-        ),
-    ] {
-        assert_eq!(complaint("broken.obj", content), expected, "{content:?}");
+    let table = r#"
+        => the mesh has no triangles
+        v 0 0 0\nv 1 0 0\nv 0 1 0\n => the mesh has no triangles
+        v 0 0 0\nv 1 zero 0\n => line 2: a coordinate must be a number, got "zero"
+        v 0 0\n => line 1: a vertex needs three coordinates
+        v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n => vertex 0 (from 0) must be finite, got [0, 0, NaN]
+        v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 4\n => line 5: the face refers to vertex 4, but the file has 3
+        v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n => line 4: a corner must start with a vertex number, from 1 up or from -1 down to -3, got "-4"
+        v 0 0 0\nf 0 1 1\n => line 2: a corner must start with a vertex number, from 1 up or from -1 down to -1, got "0"
+        f 99999999999 1 1\n => line 1: a corner must start with a vertex number, from 1 up or from -1 down to -0, got "99999999999"
+        v 0 0 0\nv 1 0 0\nf 1 2\n => the mesh has no triangles; left out: 1 face without area
+        v 0 0 0\nv 1 0 0\nf 1 2 1\n => none of the mesh's 1 triangles has an area
+    "#;
+    for [content, expected] in rows(table) {
+        assert_eq!(complaint("broken.obj", &content), expected, "{content:?}");
     }
 }
 

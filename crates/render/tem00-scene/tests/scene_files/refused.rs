@@ -22,6 +22,15 @@ pub(super) fn assert_refused(text: &str, line: usize, words: &[&str]) {
     }
 }
 
+/// Asserts that the keys of each row are refused at `line` of a scene with them, with the words behind `=>`.
+#[track_caller]
+pub(super) fn assert_rows_refused(line: usize, scene: impl Fn(&str) -> String, rows: &str) {
+    for [keys, words] in tem00_testkit::rows(rows) {
+        let words: Vec<&str> = words.split(" | ").collect();
+        assert_refused(&scene(&keys), line, &words);
+    }
+}
+
 #[test]
 fn typos_in_keys_are_answered_with_the_nearest_key() {
     let typo = with("wavelength", "wavelenght");
@@ -103,37 +112,22 @@ fn spots_take_one_value_or_one_for_each_of_two_axes() {
         let words = ["`waist_radius`", "one value", "[along, across]", bad];
         assert_refused(&with("\"0.5 mm\"", bad), 7, &words);
     }
-    let cases: [(&str, &[&str]); 6] = [
-        (
-            "waist_radius = [\"1 mm\", \"2 deg\"]",
-            &["element 2 of `waist_radius`", "a length in"],
-        ),
-        (
-            "waist_radius = [0, 1]",
-            &["element 1 of `waist_radius`", "positive"],
-        ),
-        (
-            "waist_radius = [[1, 1], 1]",
-            &["element 1 of `waist_radius`", "a length in"],
-        ),
+    assert_rows_refused(
+        7,
+        |keys| {
+            let spot = format!("spot = {{ {keys} }}");
+            with("spot.waist_radius = \"0.5 mm\"", &spot)
+        },
+        r#"
+        waist_radius = ["1 mm", "2 deg"] => element 2 of `waist_radius` | a length in
+        waist_radius = [0, 1] => element 1 of `waist_radius` | positive
+        waist_radius = [[1, 1], 1] => element 1 of `waist_radius` | a length in
         // 100 nm is below the paraxial limit of 2λ/π = 414 nm.
-        (
-            "waist_radius = [\"1 mm\", \"100 nm\"]",
-            &["waist_radius", "paraxial"],
-        ),
-        (
-            "waist_radius = \"1 mm\", waist_distance = [0, inf]",
-            &["element 2 of `waist_distance`", "finite"],
-        ),
-        (
-            "waist_radius = \"1 mm\", m_squared = [1.5, 0.9]",
-            &["element 2 of `m_squared`", "1 or greater"],
-        ),
-    ];
-    for (keys, words) in cases {
-        let spot = format!("spot = {{ {keys} }}");
-        assert_refused(&with("spot.waist_radius = \"0.5 mm\"", &spot), 7, words);
-    }
+        waist_radius = ["1 mm", "100 nm"] => waist_radius | paraxial
+        waist_radius = "1 mm", waist_distance = [0, inf] => element 2 of `waist_distance` | finite
+        waist_radius = "1 mm", m_squared = [1.5, 0.9] => element 2 of `m_squared` | 1 or greater
+    "#,
+    );
     let line = "line = { fan_angle = 1, thickness = \"1 mm\", m_squared = [1, 2] }";
     let line = with("spot.waist_radius = \"0.5 mm\"", line);
     assert_refused(&line, 7, &["`m_squared`", "a number"]);
@@ -313,34 +307,20 @@ fn tables_of_a_profile_must_be_tables_of_power() {
             &format!("{line}{profile} }}"),
         )
     };
-    let cases: [(&str, &[&str]); 8] = [
-        ("{ angles = [0, 1] }", &["needs the key `powers`"]),
-        ("{ powers = [0, 1] }", &["needs the key `angles`"]),
-        (
-            "{ angles = 1, powers = [0, 1] }",
-            &["`angles`", "a list of angles", "got 1"],
-        ),
-        (
-            "{ angles = [0, 1], powers = [\"x\", 1] }",
-            &["element 1 of `powers`"],
-        ),
-        ("{ angles = [0, 1], powers = [1] }", &["[2, 1]"]),
-        (
-            "{ angles = [0, 1, 0.5], powers = [1, 1, 1] }",
-            &["angles", "at index 2"],
-        ),
-        (
-            "{ angles = [0, 1], powers = [1, -1] }",
-            &["powers", "at index 1"],
-        ),
-        (
-            "{ angles = [0, 1], power = [1, 1] }",
-            &["unknown key `power`", "`powers`"],
-        ),
-    ];
-    for (profile, words) in cases {
-        assert_refused(&with_profile(profile), 7, words);
-    }
+    assert_rows_refused(
+        7,
+        with_profile,
+        r#"
+        { angles = [0, 1] } => needs the key `powers`
+        { powers = [0, 1] } => needs the key `angles`
+        { angles = 1, powers = [0, 1] } => `angles` | a list of angles | got 1
+        { angles = [0, 1], powers = ["x", 1] } => element 1 of `powers`
+        { angles = [0, 1], powers = [1] } => [2, 1]
+        { angles = [0, 1, 0.5], powers = [1, 1, 1] } => angles | at index 2
+        { angles = [0, 1], powers = [1, -1] } => powers | at index 1
+        { angles = [0, 1], power = [1, 1] } => unknown key `power` | `powers`
+    "#,
+    );
     let error = parse(&with_profile(
         "{ angles = [0, 1, 0.5], powers = [1, 1, 1] }",
     ))

@@ -171,21 +171,12 @@ fn normals_that_point_backwards_are_kept() {
 
 #[test]
 fn broken_normals_are_explained() {
-    for (content, expected) in [
-        (
-            "v 0 0 0\nvn 0 1\n",
-            "line 2: a normal needs three coordinates",
-        ),
-        (
-            "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//2 3\n",
-            "line 5: the face refers to normal 2, but the file has 1",
-        ),
-        (
-            "v 0 0 0\nf 1//x 1 1\n",
-            "line 2: a corner must end with a normal number, from 1 up or from -1 down to -0, \
-             got \"1//x\"",
-        ),
-    ] {
-        assert_eq!(complaint("broken.obj", content), expected, "{content:?}");
+    let table = r#"
+        v 0 0 0\nvn 0 1\n => line 2: a normal needs three coordinates
+        v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//2 3\n => line 5: the face refers to normal 2, but the file has 1
+        v 0 0 0\nf 1//x 1 1\n => line 2: a corner must end with a normal number, from 1 up or from -1 down to -0, got "1//x"
+    "#;
+    for [content, expected] in rows(table) {
+        assert_eq!(complaint("broken.obj", &content), expected, "{content:?}");
     }
 }

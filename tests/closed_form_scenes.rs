@@ -1,10 +1,5 @@
 //! Scenes whose radiance is known in closed form: an integrating sphere, and plates under lights.
 
-#![expect(
-    clippy::expect_used,
-    reason = "a test stops at what it does not expect"
-)]
-
 use std::{path::Path, sync::atomic::AtomicBool};
 
 use tem00::{

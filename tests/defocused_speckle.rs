@@ -4,11 +4,6 @@
 //! The tests are statistical but not flaky: all seeds are fixed. At other seeds a correct library
 //! fails with a probability below 1e-4.
 
-#![expect(
-    clippy::expect_used,
-    reason = "a test stops at what it does not expect"
-)]
-
 use tem00::{
     decorrelation::{CorrelationLaw, axial_correlation},
     numerics::Grid,

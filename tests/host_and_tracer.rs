@@ -1,10 +1,5 @@
 //! A host that calls the factor of a hit, and the tracer, show the same speckle: contrast, mean, and what two frames share.
 
-#![expect(
-    clippy::expect_used,
-    reason = "a test stops at what it does not expect"
-)]
-
 use std::{path::Path, sync::atomic::AtomicBool};
 
 use tem00::{

@@ -1,10 +1,5 @@
 //! A rendered laser spot has the power and the profile of its beam, with and without speckle.
 
-#![expect(
-    clippy::expect_used,
-    reason = "a test stops at what it does not expect"
-)]
-
 use std::{
     path::Path,
     sync::atomic::{AtomicBool, AtomicU64, Ordering},

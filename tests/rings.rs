@@ -1,10 +1,5 @@
 //! The rings of the house: an arrow between crates only falls, and what a renderer links stays light.
 
-#![expect(
-    clippy::expect_used,
-    reason = "a test stops at what it does not expect"
-)]
-
 use std::{collections::BTreeMap, fs, path::Path};
 
 use tem00::{beam, decorrelation, shading, speckle};

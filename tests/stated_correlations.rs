@@ -1,10 +1,5 @@
 //! A stack of speckle patterns shows the correlations that the law of motion states.
 
-#![expect(
-    clippy::expect_used,
-    reason = "a test stops at what it does not expect"
-)]
-
 use tem00::{
     decorrelation::{
         CameraFrame, Configuration, ConfigurationData, DVec3, Illumination, ImagingGeometry,

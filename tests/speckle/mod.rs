@@ -4,11 +4,6 @@
 //! The tests are statistical but not flaky: all seeds are fixed. Each says with which probability a
 //! correct generator fails; for no test it exceeds 1e−4.
 
-#![expect(
-    clippy::expect_used,
-    reason = "a test stops at what it does not expect"
-)]
-
 mod first_order;
 mod lattice;
 mod paper;

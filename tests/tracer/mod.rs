@@ -1,12 +1,6 @@
 //! The reference tracer on scenes that are written as text: estimators against closed forms, the film, edge
 //! cases and what becomes of the light of a laser.
 
-#![expect(
-    clippy::unwrap_used,
-    clippy::missing_assert_message,
-    reason = "a test stops at what it does not expect"
-)]
-
 mod edge_cases;
 mod estimate;
 mod inspection;

@@ -1,7 +1,5 @@
 //! Trials with simulated frames, against the formulas of the budget.
 
-#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
-
 use std::sync::atomic::AtomicBool;
 
 use tem00::triangulation::{

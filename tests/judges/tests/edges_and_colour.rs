@@ -4,8 +4,6 @@
 //! Line and pixels are those of their scanner. Each case moves under the line by one pixel per frame, its edge at a
 //! slant, so that 32 columns see it at 32 positions between two rows.
 
-#![expect(clippy::expect_used, reason = "a test ends where something fails")]
-
 use core::f64::consts::PI;
 use std::{path::Path, sync::atomic::AtomicBool};
 

@@ -3,11 +3,6 @@
 //!
 //! The tests are statistical but not flaky: all seeds are fixed.
 
-#![expect(
-    clippy::expect_used,
-    reason = "a test stops at what it does not expect"
-)]
-
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;

@@ -1,5 +1,11 @@
 //! Slow tests across crates: waves, trials and whole renders judge the laws.
 
+#![expect(
+    clippy::expect_used,
+    clippy::unwrap_used,
+    reason = "a test stops at what it does not expect"
+)]
+
 mod budget_trials;
 mod characteristics;
 mod coherence;

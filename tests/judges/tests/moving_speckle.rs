@@ -1,10 +1,5 @@
 //! Speckle moves with the image of the surface and decorrelates as the theory says.
 
-#![expect(
-    clippy::expect_used,
-    reason = "a test stops at what it does not expect"
-)]
-
 use std::{path::Path, sync::atomic::AtomicBool};
 
 use glam::{DVec2, DVec3};

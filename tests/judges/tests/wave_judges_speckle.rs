@@ -1,11 +1,6 @@
 //! Speckle in images, judged by wave optics from first principles: its statistics, and how thin a
 //! laser line may be before its image is no pattern times an irradiance any more.
 
-#![expect(
-    clippy::expect_used,
-    reason = "a scene that cannot be made fails its test"
-)]
-
 use core::f64::consts::PI;
 
 use crate::line_image::{

@@ -28,7 +28,7 @@ pub fn setup_scene(setup: &Setup, height: f64) -> Result<Scene, ScanError> {
     Ok(Scene {
         lasers: vec![laser(setup)?],
         surfaces: vec![surface],
-        ..Scene::new(setup.camera().clone())
+        ..Scene::new(*setup.camera())
     })
 }
 

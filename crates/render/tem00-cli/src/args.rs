@@ -49,6 +49,7 @@ pub struct Cli {
     pub(crate) quiet: bool,
 }
 
+#[expect(clippy::large_enum_variant, reason = "there is one command a process")]
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     Render(RenderArgs),

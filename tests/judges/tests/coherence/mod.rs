@@ -3,11 +3,6 @@
 //! The judge sums the waves of thousands of scatterers with exact distances, one wavelength after the other, and adds
 //! the intensities of the images. It knows nothing of tilts, overlaps of pupils or path spreads.
 
-#![expect(
-    clippy::expect_used,
-    reason = "a scene that cannot be made fails its test"
-)]
-
 mod bench;
 mod comparison;
 mod contrast;

@@ -1,8 +1,6 @@
 //! A step of known height, measured from end to end: rendered, exposed, found, triangulated. The height
 //! comes back within the uncertainty that the measurement states of itself.
 
-#![expect(clippy::expect_used, reason = "a test ends where something fails")]
-
 mod step_artefact;
 
 use step_artefact::{PLATES, STEP, measure, measured_frame, prepare, scene, step};

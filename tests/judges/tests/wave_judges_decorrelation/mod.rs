@@ -4,11 +4,6 @@
 //! and source as rigid bodies, and measures what happened to the pattern. It knows nothing of
 //! wavefront curvatures, stationary phases, pupil overlaps or lines of sight.
 
-#![expect(
-    clippy::expect_used,
-    reason = "a scene that cannot be made fails its test"
-)]
-
 mod correlation;
 mod finite;
 mod geometries;

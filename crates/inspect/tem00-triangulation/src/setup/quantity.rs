@@ -197,7 +197,7 @@ quantities! {
         /// integrates; 1 behind microlenses
         FillFactor: fill_factor = Row::new(field!(sensor.fill_factor), &PLAIN)
             .within(|_| (f64::MIN_POSITIVE, 1.0), "above 0 and at most 1").or("`1`")
-            .written_if(|d| d.sensor.fill_factor != 1.0);
+            .written_if(|d| d.sensor.fill_factor < 1.0);
     }
     surface [patterns] {
         /// number above 0, at most 1: of a Lambertian surface, at the wavelength of the laser. For

@@ -160,14 +160,8 @@ fn headers_of_maps_may_end_as_on_windows_and_the_length_must_fit() {
         .collect();
     let file = [&b"P5 4096 1 4095\n"[..], &pixels].concat();
     let found = raw(&file, RawFormat::Pnm, None).expect("a map").values;
-    assert!(
-        found
-            .values()
-            .iter()
-            .zip(values)
-            .all(|(a, b)| *a == f32::from(b)),
-        "{found:?}"
-    );
+    let expected: Vec<f32> = values.into_iter().map(f32::from).collect();
+    assert_eq!(found.values(), expected);
 }
 
 #[test]

@@ -7,7 +7,7 @@ use super::{budget::SETUP, folder, run, text};
 /// A folder with a set-up of few pixels, changed in one place.
 fn small(from: &str, to: &str) -> tempfile::TempDir {
     let folder = folder();
-    let narrow = SETUP.replacen("[640, 64]", "[100, 96]", 1);
+    let narrow = SETUP.replacen("[640, 64]", "[120, 96]", 1);
     assert!(narrow.contains(from), "{from} is in the set-up");
     fs::write(folder.path().join("a.toml"), narrow.replacen(from, to, 1)).expect("it is written");
     folder
@@ -46,13 +46,18 @@ fn characteristics_have_values_or_reasons() {
         row["value"].as_f64()
     };
     assert!(value("measurement_noise") > value("instrument_noise"));
-    // A comb of 16 Σ 2^(−k/2) + 12 · 16 = 245.8 columns does not fit into nine tenths of 100.
+    // A comb of 16 Σ 2^(−k/2) + 12 · 16 = 245.8 columns does not fit into nine tenths of 120.
     assert_eq!(value("resolution_along_profile"), None);
     assert!(
-        table.contains("the comb of grooves needs 274 points along the profile, and there are 100"),
+        table.contains("the comb of grooves needs 274 points along the profile, and there are 120"),
         "{table}"
     );
     for file in ["characteristics.html", "response.svg", "grooves.png"] {
         assert!(out.join(file).is_file(), "{file}");
     }
+    // The same seed, the same bytes, for any number of threads.
+    let again = run(folder.path(), &format!("{line} --threads 1 -o b"));
+    assert!(again.status.success(), "{}", text(&again.stderr));
+    let again = fs::read(folder.path().join("b/characteristics.json")).expect("it is written");
+    assert_eq!(read, again);
 }

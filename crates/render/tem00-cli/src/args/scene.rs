@@ -17,7 +17,7 @@ pub struct SceneArgs {
     #[command(flatten)]
     pub files: FileArgs,
 
-    /// The folder for the files, made if it is missing [default: out/<name of the scene>].
+    /// The folder for the files, made if it is missing [default: out/ and the name of the scene].
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 

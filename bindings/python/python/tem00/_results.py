@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
+# The package is imported where NumPy is not.
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
-from tem00._typing import FloatArray, Values
+    from tem00._typing import FloatArray, Values
 
 
 class Estimate(float):

@@ -9,7 +9,9 @@ import anywidget
 import traitlets
 
 _HERE = pathlib.Path(__file__).resolve().parent
-_BUILT = _HERE.parents[2] / "target" / "web"
+# Also of a copy below target.
+_ROOT = next((folder for folder in _HERE.parents if (folder / "Cargo.lock").exists()), _HERE)
+_BUILT = _ROOT / "target" / "web"
 
 
 class Part(anywidget.AnyWidget):

@@ -4,7 +4,6 @@ mod constructors;
 mod dielectric;
 mod diffuse;
 mod ggx;
-mod interreflection;
 mod optical_roughness;
 mod oren_nayar;
 mod plastic;
@@ -20,7 +19,6 @@ use self::{
     conductor::Conductor,
     dielectric::Dielectric,
     diffuse::{cosine_pdf, sample_cosine},
-    interreflection::Interreflection,
     oren_nayar::OrenNayar,
     plastic::Plastic,
 };
@@ -64,11 +62,14 @@ pub struct Material {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a scene has few materials, which are looked at where they are"
+)]
 enum Scattering {
     Lambertian { reflectance: f64 },
     OrenNayar(OrenNayar),
     Conductor(Conductor),
-    Interreflection(Interreflection),
     Plastic(Plastic),
     Mirror { reflectance: f64 },
     Polished { metal: Metal },
@@ -99,12 +100,9 @@ impl Material {
     /// Returns an error if the material is a metal that was not measured at the wavelength.
     pub fn check_wavelength(&self, wavelength: f64) -> Result<(), TracerError> {
         match self.scattering {
-            Scattering::Conductor(Conductor { metal, .. })
-            | Scattering::Interreflection(Interreflection {
-                facets: Conductor { metal, .. },
-                ..
-            })
-            | Scattering::Polished { metal } => metal.check_wavelength(wavelength),
+            Scattering::Conductor(Conductor { metal, .. }) | Scattering::Polished { metal } => {
+                metal.check_wavelength(wavelength)
+            }
             _ => Ok(()),
         }
     }
@@ -121,7 +119,6 @@ impl Material {
             Scattering::Lambertian { reflectance } => reflectance * FRAC_1_PI,
             Scattering::OrenNayar(facets) => facets.evaluate(wo, wi),
             Scattering::Conductor(metal) => metal.evaluate(wo, wi, wavelength),
-            Scattering::Interreflection(metal) => metal.evaluate(wo, wi, wavelength),
             Scattering::Plastic(plastic) => plastic.evaluate(wo, wi),
             Scattering::Mirror { .. } | Scattering::Polished { .. } | Scattering::Dielectric(_) => {
                 0.0
@@ -144,7 +141,6 @@ impl Material {
             }
             Scattering::OrenNayar(facets) => facets.sample(above, u),
             Scattering::Conductor(metal) => metal.sample(above, u, wavelength)?,
-            Scattering::Interreflection(metal) => metal.sample(above, u, wavelength)?,
             Scattering::Plastic(plastic) => plastic.sample(above, u)?,
             Scattering::Mirror { reflectance } => BsdfSample::mirrored(above, *reflectance, 1.0),
             Scattering::Polished { metal } => {
@@ -171,7 +167,6 @@ impl Material {
             Scattering::Lambertian { .. } => cosine_pdf(wi),
             Scattering::OrenNayar(facets) => facets.pdf(wo, wi),
             Scattering::Conductor(metal) => metal.pdf(wo, wi),
-            Scattering::Interreflection(metal) => metal.pdf(wo, wi),
             Scattering::Plastic(plastic) => plastic.pdf(wo, wi),
             Scattering::Mirror { .. } | Scattering::Polished { .. } | Scattering::Dielectric(_) => {
                 0.0
@@ -187,9 +182,6 @@ impl Material {
             Scattering::Conductor(metal) => {
                 let above = self.same_side(wo, sample.wi);
                 above.map_or(0.0, |(wo, wi)| metal.weight(wo, wi, wavelength))
-            }
-            Scattering::Interreflection(_) => {
-                self.evaluate(wo, sample.wi, wavelength) * sample.wi.z.abs() / sample.pdf
             }
             Scattering::Polished { metal } => smooth_reflectance(*metal, wo.z.abs(), wavelength),
             _ => sample.weight,

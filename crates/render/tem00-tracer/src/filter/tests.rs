@@ -1,6 +1,6 @@
 use core::f64::consts::PI;
 
-use approx::assert_relative_eq;
+use tem00_testkit::{assert_absolute, assert_relative, refuses};
 
 use super::*;
 
@@ -52,24 +52,15 @@ fn samples_have_the_moments_and_the_frequency_response_of_the_kernel() {
         // for a long piece of x: the midpoint rule errs by up to the weight of a point, 2^−17, at
         // each of up to six such positions.
         let tolerance = 4e-5;
-        assert_relative_eq!(mean(filter, |_| 1.0), 1.0, epsilon = tolerance);
+        assert_absolute(mean(filter, |_| 1.0), 1.0, tolerance);
         for power in 1..=4 {
             let expected = integral(filter, |x| x.powi(power)) / norm;
-            let got = mean(filter, |x| x.powi(power));
             let scale = filter.radius().powi(power);
-            assert!(
-                (got - expected).abs() < tolerance * scale,
-                "{filter:?}: moment {power} is {got}, not {expected}"
-            );
+            assert_absolute(mean(filter, |x| x.powi(power)), expected, tolerance * scale);
         }
         for frequency in [0.25, 0.5, 1.0] {
             let wave = |x: f64| (2.0 * PI * frequency * x).cos();
-            let expected = integral(filter, wave) / norm;
-            let got = mean(filter, wave);
-            assert!(
-                (got - expected).abs() < tolerance,
-                "{filter:?}: {got}, not {expected} at {frequency} per pixel"
-            );
+            assert_absolute(mean(filter, wave), integral(filter, wave) / norm, tolerance);
         }
     }
 }
@@ -84,11 +75,7 @@ fn the_density_is_that_of_the_drawn_positions() {
             let (low, high) = (table.sample(target - h).0, table.sample(target + h).0);
             let (_, density) = table.sample(target);
             // Differences err by ε/h; over the end of a piece the density changes its slope.
-            let product = (high - low) / (2.0 * h) * density;
-            assert!(
-                (product - 1.0).abs() < 1e-6,
-                "{filter:?}: {product} at {target}"
-            );
+            assert_absolute((high - low) / (2.0 * h) * density, 1.0, 1e-6);
         }
     }
 }
@@ -99,7 +86,7 @@ fn kernels_end_at_their_radius() {
         radius: 1.0,
         standard_deviation: 0.5,
     };
-    assert_relative_eq!(gaussian.kernel(0.5), (-0.5_f64).exp(), max_relative = 1e-15);
+    assert_relative(gaussian.kernel(0.5), (-0.5_f64).exp(), 1e-15);
     for filter in filters() {
         let beyond = filter.radius() * 1.001;
         assert!(filter.kernel(beyond).abs() <= 0.0, "{filter:?} ends");
@@ -114,10 +101,8 @@ fn strata_stay_strata() {
         for i in 0..5000 {
             let u = (f64::from(i) + 0.5) / 5000.0;
             let offset = sampler.sample([u, 0.5]).offset.x;
-            assert!(
-                offset >= last && offset <= filter.radius(),
-                "{filter:?} at {u}: {offset} after {last}"
-            );
+            let is_in_order = offset >= last && offset <= filter.radius();
+            assert!(is_in_order, "{filter:?} at {u}: {offset} after {last}");
             let mirrored = sampler.sample([0.5, 1.0 - u]).offset.y;
             // The uniform numbers themselves are mirrored to rounding; the slope of the inverse
             // grows to some 1e6 beside zeros of the density.
@@ -133,7 +118,7 @@ fn the_box_of_one_pixel_leaves_samples_as_they_are() {
     for u in [0.0, 0.1, 1.0 / 3.0, 0.7, 1.0 - 0.5 * f64::EPSILON] {
         let sample = sampler.sample([u, 0.25]);
         assert_eq!(sample.offset, DVec2::new(u - 0.5, -0.25), "at {u}");
-        assert_relative_eq!(sample.weight, 1.0, epsilon = 0.0, max_relative = 0.0);
+        assert_absolute(sample.weight, 1.0, 0.0);
     }
 }
 
@@ -174,19 +159,9 @@ fn every_number_gives_a_sample() {
 
 #[test]
 fn impossible_filters_are_refused() {
-    for filter in [
-        Filter::Box { radius: 0.0 },
-        Filter::Box { radius: f64::NAN },
-        Filter::Box { radius: 17.0 },
-        Filter::Gaussian {
-            radius: 1.0,
-            standard_deviation: 0.1,
-        },
-        Filter::Gaussian {
-            radius: 1.0,
-            standard_deviation: f64::INFINITY,
-        },
-    ] {
-        assert!(FilterSampler::new(filter).is_err(), "{filter:?}");
-    }
+    refuses!(radius = 1.0 => FilterSampler::new(Filter::Box { radius });
+        radius: [0.0, f64::NAN, 17.0]);
+    refuses!(standard_deviation = 0.5
+        => FilterSampler::new(Filter::Gaussian { radius: 1.0, standard_deviation });
+        standard_deviation: [0.1, f64::INFINITY]);
 }

@@ -1,5 +1,5 @@
-use approx::assert_relative_eq;
 use proptest::prelude::*;
+use tem00_testkit::assert_relative;
 
 use super::*;
 
@@ -14,13 +14,8 @@ fn panel() -> Rectangle {
 }
 
 fn small_panel() -> Rectangle {
-    let panel = panel();
-    Rectangle::new(
-        panel.centre(),
-        0.005 * panel.half_u(),
-        0.005 * panel.half_v(),
-    )
-    .unwrap()
+    let (centre, scale) = (panel().centre(), 0.005);
+    Rectangle::new(centre, scale * panel().half_u(), scale * panel().half_v()).unwrap()
 }
 
 fn corners(rectangle: &Rectangle, from: DVec3) -> [DVec3; 4] {
@@ -125,17 +120,18 @@ fn a_panel_lights_a_surface_by_lamberts_formula() {
             irradiance += sample.radiance_over_pdf * sample.direction.dot(normal) / 4096.0;
         }
         // The midpoint rule errs by 1/(24 · 64²) = 1e−5 of a curvature of order 1.
-        assert_relative_eq!(irradiance, expected.abs(), max_relative = 2e-5);
+        assert_relative(irradiance, expected.abs(), 2e-5);
     }
 }
 
 #[test]
 fn no_light_comes_from_behind_or_from_dark_lights() {
     let light = Light::area(panel(), 1.0).unwrap();
+    let beside = panel().centre() + 3.0 * panel().half_u();
     for from in [
         panel().centre() - panel().normal(),
         panel().point(0.3, 0.6),
-        panel().centre() + 3.0 * panel().half_u(),
+        beside,
     ] {
         let sample = light.sample(from, [0.4, 0.9]);
         let seen = sample.map_or(0.0, |sample| sample.radiance_over_pdf);

@@ -2,7 +2,7 @@ use core::{f64::consts::FRAC_PI_2, ops::RangeInclusive};
 
 use super::{
     Material, Scattering, conductor::Conductor, dielectric::Dielectric, ggx::Ggx,
-    interreflection::Interreflection, oren_nayar::OrenNayar, plastic::Plastic,
+    oren_nayar::OrenNayar, plastic::Plastic,
 };
 use crate::{Metal, TracerError};
 
@@ -53,8 +53,7 @@ impl Material {
     ///
     /// `roughness` is the parameter α: facets over half of the surface are inclined by less than
     /// arctan α. The reflectance of each facet is Fresnel's, without approximation. Light that would
-    /// meet a second facet is lost, as in all single-scattering models; see
-    /// [`interreflecting_conductor`](Self::interreflecting_conductor).
+    /// meet a second facet is lost, as in all single-scattering models.
     ///
     /// # Validity
     ///
@@ -84,34 +83,6 @@ impl Material {
             metal,
             facets,
         })))
-    }
-
-    /// Creates a rough metal whose facets pass light on to each other: [`conductor`](Self::conductor)
-    /// and, added to it, a diffuse part that carries what meets more than one facet.
-    ///
-    /// With E the albedo of one reflection by facets that absorb nothing, Ē its mean over all
-    /// directions, and F̄ the mean of the reflectance of the metal:
-    ///
-    /// ```text
-    /// f = f₁ + (F_m / π) (1 − E(θo)) (1 − E(θi)) / (1 − Ē)
-    /// F_m = F̄² Ē / (1 − F̄ (1 − Ē))
-    /// ```
-    ///
-    /// A metal that absorbs nothing then loses nothing, to 3e-4.
-    ///
-    /// # Errors
-    ///
-    /// Returns the errors of [`conductor`](Self::conductor).
-    ///
-    /// # References
-    ///
-    /// - C. Kulla and A. Conty, *Revisiting Physically Based Shading at Imageworks*, 2017.
-    pub fn interreflecting_conductor(metal: Metal, roughness: f64) -> Result<Self, TracerError> {
-        metal.check_index()?;
-        let facets = rough_facets(roughness)?;
-        Ok(Self::new(Scattering::Interreflection(
-            Interreflection::new(Conductor { metal, facets }),
-        )))
     }
 
     /// Creates a plastic, lacquer or glaze: a clear coat of the given `index` with a rough surface

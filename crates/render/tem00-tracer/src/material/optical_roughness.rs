@@ -117,17 +117,6 @@ impl OpticalRoughness {
             .map(|deviation| (-deviation * deviation).exp())
     }
 
-    /// Returns the rms height λ/c, in metres, that spreads the phase by 2π.
-    pub fn height_of_a_turn(&self) -> f64 {
-        self.query.wavelength / self.cosines
-    }
-
-    /// Returns the correlation length 2λ/(αc), in metres, that heights of [this
-    /// size](Self::height_of_a_turn) must have for the slope of the surface.
-    pub fn height_correlation_length_of_a_turn(&self) -> f64 {
-        2.0 * self.height_of_a_turn() / self.roughness
-    }
-
     /// Returns the distance `r_c`, in metres, at which the correlation of the scattered light along
     /// the surface has fallen to 1/e.
     pub fn correlation_length(&self) -> f64 {
@@ -195,7 +184,6 @@ impl Material {
         let roughness = match &self.scattering {
             Scattering::Lambertian { .. } | Scattering::OrenNayar(_) => 1.0,
             Scattering::Conductor(metal) => metal.facets.alpha,
-            Scattering::Interreflection(metal) => metal.facets.facets.alpha,
             Scattering::Plastic(plastic) => plastic.roughness(),
             Scattering::Mirror { .. } | Scattering::Polished { .. } | Scattering::Dielectric(_) => {
                 return Ok(None);

@@ -1,7 +1,6 @@
 mod diffuse;
 mod draws;
 mod every_material;
-mod interreflection;
 mod plastic;
 mod specular;
 
@@ -9,6 +8,7 @@ use core::f64::consts::{PI, TAU};
 use std::sync::LazyLock;
 
 use proptest::prelude::*;
+use tem00_testkit::{Numbers, assert_absolute, assert_relative, refuses};
 
 use super::{ggx::Ggx, *};
 
@@ -23,29 +23,12 @@ fn perfect(roughness: f64) -> Material {
     Material::conductor(Metal::Custom { n: 1e-6, k: 1e3 }, roughness).unwrap()
 }
 
-/// A metal whose facets pass light on to each other.
-fn casting(roughness: f64) -> Material {
-    Material::interreflecting_conductor(Metal::Iron, roughness).unwrap()
-}
-
 fn plaster(sigma: f64) -> Material {
     Material::oren_nayar(0.7, sigma).unwrap()
 }
 
 fn lacquer(roughness: f64) -> Material {
     Material::plastic(0.6, 1.5, roughness).unwrap()
-}
-
-/// A plain additive recurrence would be too even for a χ² test; this is `SplitMix64`.
-fn uniforms(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed;
-    move || {
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 * (0.5_f64).powi(53)
-    }
 }
 
 fn direction(cosine: f64, azimuth: f64) -> DVec3 {
@@ -70,6 +53,11 @@ fn integrate(f: impl Fn(DVec3) -> f64, rings: u32, sectors: u32) -> f64 {
     sum * TAU / (f64::from(rings) * f64::from(sectors))
 }
 
+/// The fraction of the light that a material reflects, by the midpoint rule.
+fn albedo(material: &Material, wo: DVec3, [rings, sectors]: [u32; 2]) -> f64 {
+    integrate(|wi| material.evaluate(wo, wi, RED) * wi.z, rings, sectors)
+}
+
 /// Albedo of the facets of a coat or metal: ∫ f cos θi dωi over facets, dωi = 4 (wo·h) dh.
 ///
 /// Facets resolve lobes of any width and angle.
@@ -92,9 +80,8 @@ fn albedo_of_facets(material: &Material, wo: DVec3) -> f64 {
 fn lambertian_reflects_its_reflectance() {
     let material = Material::lambertian(0.37).unwrap();
     let wo = direction(0.3, 1.0);
-    let albedo = integrate(|wi| material.evaluate(wo, wi, RED) * wi.z, 200, 4);
     // The midpoint rule errs by h²/24 times the change of the derivative, (1/200)² · π/24 · 4.
-    assert!((albedo - 0.37).abs() < 1e-5, "albedo = {albedo}");
+    assert_absolute(albedo(&material, wo, [200, 4]), 0.37, 1e-5);
 }
 
 #[test]
@@ -102,30 +89,11 @@ fn nothing_reflects_more_than_it_receives() {
     for roughness in [0.1, 0.3, 0.6, 1.0] {
         for cosine in [0.05, 0.3, 0.7, 1.0] {
             let wo = direction(cosine, 0.4);
-            let material = perfect(roughness);
-            let albedo = integrate(|wi| material.evaluate(wo, wi, RED) * wi.z, 400, 400);
+            let albedo = albedo(&perfect(roughness), wo, [400, 400]);
             // The quadrature of lobes as narrow as α = 0.1 is good to 1e−4 on this grid.
             assert!(
                 albedo < 1.0 + 1e-4,
                 "α = {roughness}, cos = {cosine}: {albedo}"
-            );
-        }
-    }
-}
-
-#[test]
-fn plaster_reflects_no_more_than_it_receives() {
-    for material in [
-        Material::oren_nayar(1.0, 0.2).unwrap(),
-        Material::oren_nayar(1.0, 1.5).unwrap(),
-    ] {
-        for cosine in [0.02, 0.3, 0.7, 1.0] {
-            let wo = direction(cosine, 0.4);
-            let albedo = integrate(|wi| material.evaluate(wo, wi, RED) * wi.z, 300, 300);
-            // The midpoint rule with its kink at the height of wo: (1/300)² of slopes up to 1/cos.
-            assert!(
-                albedo < 1.0 + 3e-4,
-                "{material:?}, cos = {cosine}: {albedo}"
             );
         }
     }
@@ -140,24 +108,16 @@ fn the_roughest_perfect_metal_is_a_lommel_seeliger_surface() {
         let wo = direction(cosine, 0.4);
         let wi = direction(0.6, 2.5);
         let closed = 1.0 / (TAU * (cosine + 0.6));
-        let got = material.evaluate(wo, wi, RED);
-        assert!((got / closed - 1.0).abs() < 1e-11, "{got}, not {closed}");
-
-        let albedo = integrate(|wi| material.evaluate(wo, wi, RED) * wi.z, 2000, 4);
+        assert_relative(material.evaluate(wo, wi, RED), closed, 1e-11);
         let closed = 1.0 - cosine * (1.0 / cosine).ln_1p();
         // The midpoint rule on 400 rings: (1/400)² / 24 · f'' with f'' up to some 30.
-        assert!(
-            (albedo - closed).abs() < 1e-5,
-            "cos = {cosine}: {albedo}, not {closed}"
-        );
+        assert_absolute(albedo(&material, wo, [2000, 4]), closed, 1e-5);
     }
 }
 
 #[test]
 fn a_nearly_smooth_perfect_metal_reflects_nearly_everything() {
-    let wo = direction(1.0, 0.0);
-    let material = perfect(0.1);
-    let albedo = integrate(|wi| material.evaluate(wo, wi, RED) * wi.z, 400, 4);
+    let albedo = albedo(&perfect(0.1), direction(1.0, 0.0), [400, 4]);
     // At normal incidence G₂ ≥ 1 / (1 + α² tan²θ / 4): facets at 10 α lose 20 % and are 1 %.
     assert!((0.98..1.0 + 1e-4).contains(&albedo), "albedo = {albedo}");
 }
@@ -184,25 +144,21 @@ fn pdf_is_normalised_over_all_that_visible_facets_reflect() {
             500,
             500,
         );
-        let total = above + below;
         // The second integrand ends at a jump, which costs up to one cell in 500.
-        assert!(
-            (total - 1.0).abs() < 2e-3,
-            "α = {roughness}, cos = {cosine}: {total}"
-        );
+        assert_absolute(above + below, 1.0, 2e-3);
     }
     for material in [Material::lambertian(0.5).unwrap(), plaster(0.8)] {
         for cosine in [0.05, 1.0] {
             let total = integrate(|wi| material.pdf(direction(cosine, 0.3), wi), 400, 4);
-            assert!((total - 1.0).abs() < 1e-4, "{material:?}: {total}");
+            assert_absolute(total, 1.0, 1e-4);
         }
     }
 }
 
-/// A lacquer and a casting of about this roughness: tabulating them takes too long for every case.
-fn tabulated(roughness: f64) -> [Material; 2] {
-    static TABULATED: LazyLock<[[Material; 2]; 4]> =
-        LazyLock::new(|| [0.01, 0.05, 0.3, 1.0].map(|alpha| [lacquer(alpha), casting(alpha)]));
+/// A lacquer of about this roughness: tabulating it takes too long for every case.
+fn tabulated(roughness: f64) -> Material {
+    static TABULATED: LazyLock<[Material; 4]> =
+        LazyLock::new(|| [0.01, 0.05, 0.3, 1.0].map(lacquer));
     let [glossy, satin, matt, rough] = *TABULATED;
     match roughness {
         ..0.02 => glossy,
@@ -210,6 +166,16 @@ fn tabulated(roughness: f64) -> [Material; 2] {
         ..0.5 => matt,
         _ => rough,
     }
+}
+
+fn rough_materials(roughness: f64) -> [Material; 4] {
+    let paper = Material::lambertian(0.5).unwrap();
+    [
+        iron(roughness),
+        paper,
+        plaster(1.5 * roughness),
+        tabulated(roughness),
+    ]
 }
 
 proptest! {
@@ -223,8 +189,7 @@ proptest! {
         let side = if below { -1.0 } else { 1.0 };
         let wo = side * direction(cos_o, azimuth_o);
         let wi = side * direction(cos_i, azimuth_i);
-        let [lacquer, casting] = tabulated(roughness);
-        for material in [iron(roughness), Material::lambertian(0.5).unwrap(), plaster(1.5 * roughness), lacquer, casting] {
+        for material in rough_materials(roughness) {
             let (there, back) = (material.evaluate(wo, wi, RED), material.evaluate(wi, wo, RED));
             // The half vector is the same to the bit; cosines with it differ in rounding.
             prop_assert!((there - back).abs() <= 1e-13 * there, "{there} and {back}");
@@ -242,8 +207,7 @@ proptest! {
         below in any::<bool>(),
     ) {
         let wo = direction(cosine, azimuth) * if below { -1.0 } else { 1.0 };
-        let [lacquer, casting] = tabulated(roughness);
-        for material in [iron(roughness), Material::lambertian(0.5).unwrap(), plaster(1.5 * roughness), lacquer, casting] {
+        for material in rough_materials(roughness) {
             let Some(sample) = material.sample(wo, [u, v], RED) else { continue };
             let BsdfSample { wi, weight, pdf, specular, eta_squared } = sample;
             prop_assert!((wi.length() - 1.0).abs() < 1e-13, "|wi| = {}", wi.length());
@@ -253,7 +217,7 @@ proptest! {
             // sum of both lobes' own, 1 each.
             let largest = match material.scattering {
                 Scattering::OrenNayar(_) => 4.0,
-                Scattering::Plastic(_) | Scattering::Interreflection(_) => 2.0,
+                Scattering::Plastic(_) => 2.0,
                 _ => 1.0,
             };
             prop_assert!(weight > 0.0 && weight <= largest, "weight = {weight}");
@@ -277,31 +241,22 @@ fn mirror_direction_is_brightest_for_smooth_metal() {
     // D(0) = 1/(π α²), V = 1/(4 cos²θ) but for α², and the facet sees the light at cos θ.
     let reflectance = fresnel_reflectance(0.8, Metal::Iron.refractive_index(RED).unwrap());
     let peak = reflectance / (PI * 1e-4) / (4.0 * 0.64);
-    let got = material.evaluate(wo, mirror, RED);
     // Masking at α² tan²θ / 4 = 1.4e−5 for each direction is left out above.
-    assert!((got / peak - 1.0).abs() < 4e-5, "{got}, not {peak}");
+    assert_relative(material.evaluate(wo, mirror, RED), peak, 4e-5);
 }
 
 #[test]
 fn no_light_passes_through_or_along_the_surface() {
     let along = DVec3::X;
-    for material in [
-        iron(0.3),
-        Material::lambertian(1.0).unwrap(),
-        plaster(0.3),
-        lacquer(0.3),
-    ] {
+    for material in rough_materials(0.3) {
         for (wo, wi) in [(DVec3::Z, -DVec3::Z), (along, DVec3::Z), (DVec3::Z, along)] {
-            assert!(
-                material.evaluate(wo, wi, RED).abs() < f64::MIN_POSITIVE,
-                "{wo} {wi}"
-            );
-            assert!(material.pdf(wo, wi).abs() < f64::MIN_POSITIVE, "{wo} {wi}");
+            assert_absolute(material.evaluate(wo, wi, RED), 0.0, 0.0);
+            assert_absolute(material.pdf(wo, wi), 0.0, 0.0);
         }
         assert_eq!(
             material.sample(along, [0.5, 0.5], RED),
             None,
-            "nothing to draw"
+            "{material:?}"
         );
     }
 }
@@ -309,26 +264,14 @@ fn no_light_passes_through_or_along_the_surface() {
 #[test]
 fn extreme_uniforms_give_proper_directions() {
     let largest = 1.0 - f64::EPSILON / 2.0;
-    for roughness in [0.01, 1.0] {
-        for u in [0.0, largest] {
-            for v in [0.0, 0.25, largest] {
-                for wo in [DVec3::Z, direction(1e-9, 0.0), -direction(1e-9, 2.0)] {
-                    for material in [
-                        iron(roughness),
-                        Material::lambertian(1.0).unwrap(),
-                        plaster(roughness),
-                        tabulated(roughness)[0],
-                        tabulated(roughness)[1],
-                        Material::dielectric(1.5).unwrap(),
-                    ] {
-                        let Some(s) = material.sample(wo, [u, v], RED) else {
-                            continue;
-                        };
-                        assert!(
-                            s.wi.is_finite() && s.weight.is_finite() && s.pdf > 0.0,
-                            "{material:?}, wo = {wo}, u = {u}, v = {v}: {s:?}"
-                        );
-                    }
+    let glass = Material::dielectric(1.5).unwrap();
+    for material in [rough_materials(0.01), rough_materials(1.0), [glass; 4]].as_flattened() {
+        for wo in [DVec3::Z, direction(1e-9, 0.0), -direction(1e-9, 2.0)] {
+            for u in [0.0, largest] {
+                let samples = [0.0, 0.25, largest].map(|v| material.sample(wo, [u, v], RED));
+                for s in samples.into_iter().flatten() {
+                    let is_proper = s.wi.is_finite() && s.weight.is_finite() && s.pdf > 0.0;
+                    assert!(is_proper, "{material:?}, wo = {wo}, u = {u}: {s:?}");
                 }
             }
         }
@@ -337,49 +280,26 @@ fn extreme_uniforms_give_proper_directions() {
 
 #[test]
 fn impossible_materials_are_refused() {
-    let refused = |result: Result<Material, TracerError>, name: &str| {
-        assert!(
-            matches!(result, Err(TracerError::OutOfRange { parameter, .. }) if parameter == name),
-            "{name}: {result:?}"
-        );
-    };
-    for reflectance in [-0.1, 1.1, f64::NAN] {
-        refused(Material::lambertian(reflectance), "reflectance");
-    }
-    for roughness in [0.0, 0.0099, 1.01, f64::NAN] {
-        refused(Material::conductor(Metal::Gold, roughness), "roughness");
-    }
-    refused(
-        Material::conductor(Metal::Custom { n: -1.0, k: 1.0 }, 0.3),
-        "n",
-    );
-    refused(Material::polished(Metal::Custom { n: 1.0, k: -1.0 }), "k");
-    refused(Material::mirror(1.01), "reflectance");
-    refused(Material::oren_nayar(1.01, 0.3), "reflectance");
-    refused(Material::oren_nayar(0.5, 1.6), "sigma");
-    refused(Material::oren_nayar(0.5, f64::NAN), "sigma");
-    refused(Material::plastic(-0.1, 1.5, 0.1), "reflectance");
-    refused(Material::plastic(0.5, 1.0, 0.1), "index");
-    refused(Material::plastic(0.5, 1.5, 0.001), "roughness");
-    for index in [0.99, 4.1, f64::INFINITY, f64::NAN] {
-        refused(Material::dielectric(index), "index");
-    }
+    refuses!(reflectance = 0.5 => Material::lambertian(reflectance);
+        reflectance: [-0.1, 1.1, f64::NAN]);
+    refuses!(roughness = 0.3, metal = Metal::Gold => Material::conductor(metal, roughness);
+        roughness: [0.0, 0.0099, 1.01, f64::NAN],
+        metal as "n": [Metal::Custom { n: -1.0, k: 1.0 }]);
+    refuses!(metal = Metal::Gold => Material::polished(metal);
+        metal as "k": [Metal::Custom { n: 1.0, k: -1.0 }]);
+    refuses!(reflectance = 0.5 => Material::mirror(reflectance); reflectance: [1.01]);
+    refuses!(reflectance = 0.5, sigma = 0.3 => Material::oren_nayar(reflectance, sigma);
+        reflectance: [1.01], sigma: [1.6, f64::NAN]);
+    refuses!(reflectance = 0.5, index = 1.5, roughness = 0.1
+        => Material::plastic(reflectance, index, roughness);
+        reflectance: [-0.1], index: [1.0], roughness: [0.001]);
+    refuses!(index = 1.5 => Material::dielectric(index);
+        index: [0.99, 4.1, f64::INFINITY, f64::NAN]);
 }
 
 #[test]
 fn metals_say_which_wavelengths_they_know() {
-    assert!(iron(0.3).check_wavelength(RED).is_ok(), "red");
-    let result = iron(0.3).check_wavelength(10.6e-6);
-    assert!(
-        matches!(
-            result,
-            Err(TracerError::OutOfRange {
-                parameter: "wavelength",
-                ..
-            })
-        ),
-        "{result:?}"
-    );
+    refuses!(wavelength = RED => iron(0.3).check_wavelength(wavelength); wavelength: [10.6e-6]);
     let anything = Material::lambertian(0.5).unwrap();
     assert!(anything.check_wavelength(10.6e-6).is_ok(), "grey is grey");
 }

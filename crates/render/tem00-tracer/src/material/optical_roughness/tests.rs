@@ -1,3 +1,5 @@
+use tem00_testkit::{assert_absolute, assert_relative, refuses};
+
 use super::*;
 use crate::Metal;
 
@@ -13,6 +15,14 @@ fn query() -> OpticalRoughnessQuery {
     }
 }
 
+/// The query for a surface of a known rms height.
+fn high(rms_height: f64) -> OpticalRoughnessQuery {
+    OpticalRoughnessQuery {
+        rms_height: Some(rms_height),
+        ..query()
+    }
+}
+
 fn of(roughness: f64, query: &OpticalRoughnessQuery) -> OpticalRoughness {
     let metal = Material::conductor(Metal::Iron, roughness).unwrap();
     metal.optical_roughness(query).unwrap().unwrap()
@@ -23,37 +33,19 @@ fn a_quarter_wave_of_height_turns_the_phase_by_pi_at_normal_incidence() {
     let query = OpticalRoughnessQuery {
         incidence: 0.0,
         viewing: 0.0,
-        rms_height: Some(RED / 4.0),
-        ..query()
+        ..high(RED / 4.0)
     };
     let got = of(0.3, &query);
     // Path there and back: half a wave. exp(−π²) = 5.17e−5.
-    assert!(
-        (got.phase_deviation().unwrap() - PI).abs() < 1e-14,
-        "{got:?}"
-    );
-    assert!(
-        (got.coherent_fraction().unwrap() / 5.172_318_62e-5 - 1.0).abs() < 1e-8,
-        "{got:?}"
-    );
-    // A turn takes four quarters' half: λ/2.
-    assert!(
-        (got.height_of_a_turn() / (RED / 2.0) - 1.0).abs() < 1e-14,
-        "{got:?}"
-    );
+    assert_absolute(got.phase_deviation().unwrap(), PI, 1e-14);
+    assert_relative(got.coherent_fraction().unwrap(), 5.172_318_62e-5, 1e-8);
 }
 
 /// The mean of exp(iφ) over Gaussian phases, by quadrature over the heights.
 #[test]
 fn the_coherent_fraction_is_what_gaussian_heights_leave_in_step() {
     for height in [20e-9, 80e-9, 150e-9] {
-        let got = of(
-            0.3,
-            &OpticalRoughnessQuery {
-                rms_height: Some(height),
-                ..query()
-            },
-        );
+        let got = of(0.3, &high(height));
         let per_metre = TAU / RED * (0.6_f64.cos() + 0.2_f64.cos());
         let mean: f64 = (-8000..=8000_i32)
             .map(|i| {
@@ -62,12 +54,8 @@ fn the_coherent_fraction_is_what_gaussian_heights_leave_in_step() {
                 density * (per_metre * height * x).cos()
             })
             .sum();
-        let fraction = got.coherent_fraction().unwrap();
         // The trapezoidal rule is exact to the cut tails, exp(−32), and 16001 roundings.
-        assert!(
-            (fraction - mean * mean).abs() < 1e-12,
-            "{height}: {fraction}"
-        );
+        assert_absolute(got.coherent_fraction().unwrap(), mean * mean, 1e-12);
     }
 }
 
@@ -75,14 +63,9 @@ fn the_coherent_fraction_is_what_gaussian_heights_leave_in_step() {
 #[test]
 fn light_behind_a_rough_surface_decorrelates_within_the_correlation_length() {
     for roughness in [0.02, 0.3] {
-        let height = 10.0 * of(roughness, &query()).height_of_a_turn();
-        let got = of(
-            roughness,
-            &OpticalRoughnessQuery {
-                rms_height: Some(height),
-                ..query()
-            },
-        );
+        // Ten turns of the phase.
+        let height = 10.0 * RED / (0.6_f64.cos() + 0.2_f64.cos());
+        let got = of(roughness, &high(height));
         let deviation = got.phase_deviation().unwrap();
         // The rms slope of a height correlation exp(−r²/ℓ²) is √2 σ_h/ℓ, and Beckmann's α is √2
         // times that.
@@ -90,18 +73,8 @@ fn light_behind_a_rough_surface_decorrelates_within_the_correlation_length() {
         let heights = (-(got.correlation_length() / length).powi(2)).exp();
         let light = (-deviation * deviation * (1.0 - heights)).exp();
         // The parabola of the correlation errs by 1/(2σ_φ²) of the exponent, 1/7900.
-        assert!((light / (-1.0_f64).exp() - 1.0).abs() < 1.3e-4, "{light}");
+        assert_relative(light, (-1.0_f64).exp(), 1.3e-4);
     }
-}
-
-#[test]
-fn a_phase_of_a_turn_stretches_the_heights_by_two_pi() {
-    let got = of(0.02, &query());
-    let ratio = got.height_correlation_length_of_a_turn() / got.correlation_length();
-    assert!((ratio / TAU - 1.0).abs() < 1e-14, "{ratio}");
-    // The slope of heights of a turn: √2 σ_h/ℓ = α/√2.
-    let slope = 2.0_f64.sqrt() * got.height_of_a_turn() / got.height_correlation_length_of_a_turn();
-    assert!((slope * 2.0_f64.sqrt() - 0.02).abs() < 1e-16, "{slope}");
 }
 
 /// N = A² / ∫∫ |μ|² over a large cell of area A, whose light correlates as `exp(−r²/r_c²)`.
@@ -119,109 +92,55 @@ fn patches_are_the_area_over_the_area_of_correlation() {
         })
         .sum();
     // The midpoint rule errs by (5/4000)² / 24 of derivatives of order 10.
-    assert!(
-        (got.patches() * correlated / area - 1.0).abs() < 1e-6,
-        "{got:?}"
-    );
+    assert_relative(got.patches() * correlated, area, 1e-6);
 }
 
 #[test]
 fn smooth_or_flat_surfaces_are_told_apart() {
-    let flat = OpticalRoughnessQuery {
-        rms_height: Some(50e-9),
-        ..query()
-    };
-    let high = OpticalRoughnessQuery {
-        rms_height: Some(1e-6),
-        ..query()
-    };
-    assert!(of(0.3, &query()).is_fully_developed(), "rough");
-    assert!(of(0.3, &high).is_fully_developed(), "rough and high");
-    assert!(!of(0.3, &flat).is_fully_developed(), "flat");
-    assert!(!of(0.02, &high).is_fully_developed(), "smooth");
+    for (roughness, query, is_developed) in [
+        (0.3, query(), true),
+        (0.3, high(1e-6), true),
+        (0.3, high(50e-9), false),
+        (0.02, high(1e-6), false),
+    ] {
+        let got = of(roughness, &query);
+        assert_eq!(got.is_fully_developed(), is_developed, "{got:?}");
+    }
+    let text = of(0.3, &high(50e-9)).to_string();
     assert!(
-        of(0.3, &flat)
-            .to_string()
-            .ends_with("50 nm leaves 46.70 % of the light in step"),
-        "{}",
-        of(0.3, &flat)
+        text.ends_with("50 nm leaves 46.70 % of the light in step"),
+        "{text}"
     );
 }
 
 #[test]
 fn only_rough_materials_are_judged() {
-    let roughness = |material: Material| {
+    for (material, roughness) in [
+        (Material::mirror(0.9), None),
+        (Material::polished(Metal::Gold), None),
+        (Material::dielectric(1.5), None),
+        (Material::lambertian(0.5), Some(1.0)),
+        (Material::oren_nayar(0.5, 0.3), Some(1.0)),
+        (Material::plastic(0.5, 1.5, 0.1), Some(0.1)),
+    ] {
+        let material = material.unwrap();
         let judged = material.optical_roughness(&query()).unwrap();
-        judged.map(|judged| judged.roughness())
-    };
-    assert_eq!(roughness(Material::mirror(0.9).unwrap()), None, "mirror");
-    assert_eq!(
-        roughness(Material::polished(Metal::Gold).unwrap()),
-        None,
-        "metal"
-    );
-    assert_eq!(roughness(Material::dielectric(1.5).unwrap()), None, "glass");
-    assert_eq!(
-        roughness(Material::lambertian(0.5).unwrap()),
-        Some(1.0),
-        "paper"
-    );
-    assert_eq!(
-        roughness(Material::oren_nayar(0.5, 0.3).unwrap()),
-        Some(1.0),
-        "plaster"
-    );
-    assert_eq!(
-        roughness(Material::plastic(0.5, 1.5, 0.1).unwrap()),
-        Some(0.1),
-        "plastic"
-    );
+        assert_eq!(
+            judged.map(|judged| judged.roughness()),
+            roughness,
+            "{material:?}"
+        );
+    }
 }
 
 #[test]
 fn impossible_circumstances_are_refused() {
     let material = Material::lambertian(0.5).unwrap();
-    for (name, bad) in [
-        (
-            "wavelength",
-            OpticalRoughnessQuery {
-                wavelength: 650.0,
-                ..query()
-            },
-        ),
-        (
-            "incidence",
-            OpticalRoughnessQuery {
-                incidence: 1.6,
-                ..query()
-            },
-        ),
-        (
-            "viewing",
-            OpticalRoughnessQuery {
-                viewing: f64::NAN,
-                ..query()
-            },
-        ),
-        (
-            "resolution_cell",
-            OpticalRoughnessQuery {
-                resolution_cell: 0.0,
-                ..query()
-            },
-        ),
-        (
-            "rms_height",
-            OpticalRoughnessQuery {
-                rms_height: Some(-1e-6),
-                ..query()
-            },
-        ),
-    ] {
-        let result = material.optical_roughness(&bad);
-        assert!(
-            matches!(result, Err(TracerError::OutOfRange { parameter, .. }) if parameter == name),
-            "{name}: {result:?}"
-        );
-    }
+    refuses!(query = query() => material.optical_roughness(&query);
+        query.wavelength: [650.0],
+        query.incidence: [1.6],
+        query.viewing: [f64::NAN],
+        query.resolution_cell: [0.0],
+        query.rms_height: [Some(-1e-6)],
+    );
 }

@@ -13,25 +13,16 @@ fn flat_facets_are_lambertian_to_the_bit() {
         Material::oren_nayar(0.37, 0.0).unwrap(),
         Material::lambertian(0.37).unwrap(),
     );
-    let mut uniform = uniforms(3);
+    let mut numbers = Numbers::new(3);
     for _ in 0..1000 {
-        let wo = direction(uniform(), TAU * uniform());
-        let u = [uniform(), uniform()];
-        let (got, want) = (
-            flat.sample(wo, u, RED).unwrap(),
-            lambertian.sample(wo, u, RED).unwrap(),
-        );
+        let wo = direction(numbers.unit(), TAU * numbers.unit());
+        let u = numbers.units();
+        let [got, want] = [flat, lambertian].map(|m| m.sample(wo, u, RED).unwrap());
         assert_eq!((got.wi, got.pdf), (want.wi, want.pdf), "samples");
         // The cosine cancels in the weight, but for its two roundings.
-        assert!(
-            (got.weight / want.weight - 1.0).abs() < 4e-16,
-            "{got:?}, {want:?}"
-        );
-        let (got, want) = (
-            flat.evaluate(wo, got.wi, RED),
-            lambertian.evaluate(wo, got.wi, RED),
-        );
-        assert!((got - want).abs() < f64::MIN_POSITIVE, "{got}, not {want}");
+        assert_relative(got.weight, want.weight, 4e-16);
+        let [got, want] = [flat, lambertian].map(|m| m.evaluate(wo, got.wi, RED));
+        assert_absolute(got, want, 0.0);
     }
 }
 
@@ -41,12 +32,8 @@ fn white_facets_lose_nothing() {
         let material = Material::oren_nayar(1.0, sigma).unwrap();
         for cosine in [0.02, 0.2, 0.6, 1.0] {
             let wo = direction(cosine, 0.7);
-            let albedo = integrate(|wi| material.evaluate(wo, wi, RED) * wi.z, 500, 500);
             // The midpoint rule with its kink at the height of wo: (1/500)² of slopes up to 1/cos.
-            assert!(
-                (albedo - 1.0).abs() < 2e-4,
-                "σ = {sigma}, cos = {cosine}: {albedo}"
-            );
+            assert_absolute(albedo(&material, wo, [500, 500]), 1.0, 2e-4);
         }
     }
 }
@@ -64,7 +51,7 @@ fn grey_facets_reflect_the_sum_of_all_orders() {
     let scale = integrate(|wi| once(grazing, wi, ratio) * wi.z, 400, 400).recip();
     let single = |wo: DVec3| scale * integrate(|wi| once(wo, wi, ratio) * wi.z, 60, 60);
     let material = Material::oren_nayar(reflectance, sigma).unwrap();
-    let total = |wo: DVec3| integrate(|wi| material.evaluate(wo, wi, RED) * wi.z, 60, 60);
+    let total = |wo: DVec3| albedo(&material, wo, [60, 60]);
     let mean_of = |albedo: &dyn Fn(DVec3) -> f64| {
         (0..60)
             .map(|i| {
@@ -77,10 +64,9 @@ fn grey_facets_reflect_the_sum_of_all_orders() {
     let orders: f64 = (0..200)
         .map(|order| reflectance * mean * (reflectance * (1.0 - mean)).powi(order))
         .sum();
-    let got = mean_of(&total);
     // Both sides share the midpoint rule on 60 points, good to 1/60² / 24 of second derivatives
     // of order 10.
-    assert!((got - orders).abs() < 2e-4, "{got}, not {orders}");
+    assert_absolute(mean_of(&total), orders, 2e-4);
 }
 
 /// In the limit of dark facets only one reflection is left, and in the half space of the light the
@@ -100,27 +86,24 @@ fn dark_facets_retro_reflect_as_published() {
                 direction(theta_o.cos(), 1.0),
                 direction(theta_i.cos(), 1.0 + turn),
             );
-            let got = dark.evaluate(wo, wi, RED) / head_on;
             // More reflections are 1e-12 of one; the rest is some 20 roundings.
-            assert!(
-                (got / published - 1.0).abs() < 1e-11,
-                "σ = {sigma}: {got}, {published}"
-            );
+            assert_relative(dark.evaluate(wo, wi, RED) / head_on, published, 1e-11);
         }
     }
 }
 
 #[test]
 fn a_uniform_number_chooses_a_lobe_and_stays_uniform() {
-    for (u, first, rest) in [
+    let cases = [
         (0.0, true, 0.0),
         (0.1, true, 0.4),
         (0.25, false, 0.0),
         (0.7, false, 0.6),
-    ] {
+    ];
+    for (u, first, rest) in cases {
         let (got, left) = choose_first(0.25, u);
         assert_eq!(got, first, "u = {u}");
-        assert!((left - rest).abs() < 1e-15, "u = {u}: {left}, not {rest}");
+        assert_absolute(left, rest, 1e-15);
     }
     let largest = 1.0 - f64::EPSILON / 2.0;
     for probability in [0.0, 0.3, 1.0 - 1e-16, 1.0] {

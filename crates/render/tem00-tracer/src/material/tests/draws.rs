@@ -67,10 +67,10 @@ fn draws_follow_the_pdf() {
     ];
     for (seed, (material, wo)) in (1..).zip(cases) {
         let probabilities = expected(&material, wo);
-        let mut uniform = uniforms(seed);
+        let mut numbers = Numbers::new(seed);
         let mut observed = vec![0_u64; probabilities.len()];
         for _ in 0..DRAWS {
-            let sample = material.sample(wo, [uniform(), uniform()], RED);
+            let sample = material.sample(wo, numbers.units(), RED);
             observed[sample.map_or(probabilities.len() - 1, |s| bin(s.wi))] += 1;
         }
         let expected: Vec<f64> = probabilities

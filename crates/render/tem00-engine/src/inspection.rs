@@ -3,14 +3,17 @@
 use glam::{DVec2, DVec3};
 use tem00_camera::{Camera, Ray};
 use tem00_geometry::{Hit, Intersector};
-use tem00_tracer::{Crop, Laser, LocalFrame, Scene, TracerError};
+use tem00_tracer::{Crop, Laser, Scene, TracerError};
 
-use crate::spread::even;
+use crate::{
+    sampler::even,
+    walk::{Carried, Met, Roulette, Visitor, Walk, Walker},
+};
 
 /// Rays of each laser, and rays of the camera, that are followed.
 const RAYS: u32 = 4096;
 /// Rays of each laser whose way is kept.
-const KEPT: u32 = 64;
+const KEPT: usize = 64;
 /// The maximum number of mirrors and glass surfaces that a ray is followed over.
 const MAX_SPECULAR: u32 = 16;
 /// The fraction of a laser's power from which on it counts as seen in the image.
@@ -147,6 +150,7 @@ struct Inspector<'a> {
 }
 
 /// A ray at its end.
+#[derive(Clone, Copy)]
 struct Arrival {
     /// The rough surface, unless it met none.
     hit: Option<Hit>,
@@ -158,22 +162,67 @@ struct Arrival {
     weight: f64,
 }
 
+/// Rays that are followed over mirrors and through glass to their first rough surfaces.
+struct Arrivals {
+    rays: Vec<Arrival>,
+    /// The corners of the ways of the first.
+    ways: Vec<Vec<DVec3>>,
+    far: f64,
+}
+
+impl<'a> Visitor<'a> for Arrivals {
+    fn meet(&mut self, _: u32, met: &mut Vec<Met<'a>>) {
+        for Met { walker, vertex } in &*met {
+            let arrival = &mut self.rays[walker.number];
+            arrival.hit = (!vertex.is_specular()).then_some(vertex.hit);
+            arrival.direction = walker.ray.direction;
+            arrival.length += vertex.hit.distance;
+            arrival.weight = walker.carries;
+            self.turn(walker.number, vertex.hit.position);
+        }
+        met.retain(|met| met.vertex.is_specular());
+    }
+
+    fn lose(&mut self, walker: &Walker, light: Option<&Hit>) {
+        self.rays[walker.number].weight = walker.carries;
+        let beyond = || walker.ray.origin + self.far * walker.ray.direction;
+        let end = light.map_or_else(beyond, |hit| hit.position);
+        self.turn(walker.number, end);
+    }
+
+    fn direction(&mut self, path: usize, depth: u32) -> [f64; 2] {
+        let index = u32::try_from(path).unwrap_or(u32::MAX);
+        even(index.wrapping_add((depth - 1).wrapping_mul(RAYS)))
+    }
+
+    fn survival(&mut self, _: usize, _: u32) -> f64 {
+        0.0
+    }
+}
+
+impl Arrivals {
+    fn turn(&mut self, ray: usize, corner: DVec3) {
+        if let Some(way) = self.ways.get_mut(ray) {
+            way.push(corner);
+        }
+    }
+}
+
 impl Inspector<'_> {
     fn laser(&self, laser: &Laser) -> LaserInspection {
+        let emitted = (0..RAYS).map(|index| {
+            let [a, b, c, d, ..] = even::<6>(index);
+            laser.sample_ray([a, b, c, d]).ray
+        });
+        let emitted: Vec<_> = emitted.collect();
+        let arrivals = self.follow(&emitted, laser.wavelength());
         let mut parts = Parts::default();
-        let mut ways = Vec::new();
-        for index in 0..RAYS {
-            let [a, b, c, d, u, v] = even(index);
-            let ray = laser.sample_ray([a, b, c, d]).ray;
-            let mut way = vec![ray.origin];
-            let arrival = self.follow(ray, laser.wavelength(), index, &mut way);
-            if index < KEPT {
-                ways.push(way);
-            }
+        for ((index, ray), arrival) in (0..).zip(&emitted).zip(&arrivals.rays) {
             let fraction = arrival.weight / f64::from(RAYS);
             match &arrival.hit {
                 None => parts.add(LightFate::Misses, None, fraction, ray.origin),
                 Some(hit) => {
+                    let [.., u, v] = even::<6>(index);
                     let fate = self.fate(hit, arrival.direction, [u, v]);
                     parts.add(fate, Some(hit.surface), fraction, hit.position);
                 }
@@ -182,48 +231,38 @@ impl Inspector<'_> {
         LaserInspection {
             parts: parts.finish(&self.camera),
             fraction_in_image: self.fraction_in_image(laser),
-            ways,
+            ways: arrivals.ways,
         }
     }
 
-    /// Follows a ray over mirrors and through glass to its first rough surface.
-    fn follow(&self, ray: Ray, wavelength: f64, index: u32, way: &mut Vec<DVec3>) -> Arrival {
-        // The origin may lie in a surface, as an aperture does in a wall.
-        let mut ray = self
-            .intersector
-            .ray_from(ray.origin, ray.direction, ray.direction);
-        let mut arrival = Arrival {
+    /// Follows rays over mirrors and through glass to their first rough surfaces.
+    fn follow(&self, rays: &[Ray], wavelength: f64) -> Arrivals {
+        let start = |ray: &Ray| Arrival {
             hit: None,
             direction: ray.direction,
             length: 0.0,
             weight: 1.0,
         };
-        for step in 0..=MAX_SPECULAR {
-            arrival.direction = ray.direction;
-            let Some(hit) = self.intersector.intersect(&ray) else {
-                way.push(ray.origin + self.far * ray.direction);
-                return arrival;
-            };
-            way.push(hit.position);
-            arrival.length += hit.distance;
-            let Some(surface) = self.scene.surfaces.get(hit.surface) else {
-                return arrival;
-            };
-            if !surface.material.is_specular() {
-                arrival.hit = Some(hit);
-                return arrival;
-            }
-            let axes = LocalFrame::from_normal(hit.shading_normal);
-            let back = axes.to_local(-ray.direction);
-            let [u, v] = even(index.wrapping_add(step.wrapping_mul(RAYS)));
-            let Some(sample) = surface.material.sample(back, [u, v], wavelength) else {
-                return arrival;
-            };
-            arrival.weight *= sample.weight * sample.eta_squared;
-            let onward = axes.to_world(sample.wi);
-            ray = self.intersector.ray_from(hit.position, hit.normal, onward);
-        }
-        arrival
+        let mut arrivals = Arrivals {
+            rays: rays.iter().map(start).collect(),
+            ways: rays.iter().take(KEPT).map(|ray| vec![ray.origin]).collect(),
+            far: self.far,
+        };
+        let walk = Walk {
+            scene: self.scene,
+            intersector: &self.intersector,
+            wavelength,
+            max_depth: MAX_SPECULAR + 1,
+            carried: Carried::Power { start: 1.0 },
+            roulette: Roulette { certain: u32::MAX },
+        };
+        let walkers = rays.iter().enumerate().map(|(number, ray)| {
+            // The origin may lie in a surface, as an aperture does in a wall.
+            let ray = (self.intersector).ray_from(ray.origin, ray.direction, ray.direction);
+            Walker::new(number, ray, 1.0)
+        });
+        walk.follow(walkers.collect(), &mut arrivals);
+        arrivals
     }
 
     /// Returns what becomes of light that arrives at a rough surface in this direction.
@@ -251,16 +290,11 @@ impl Inspector<'_> {
     }
 
     fn is_rendered(&self, pixel: DVec2) -> bool {
-        let Crop {
-            x,
-            y,
-            width,
-            height,
-        } = self.area;
+        let area = self.area;
         let within = |value: f64, start: usize, length: usize| {
             value >= start as f64 && value < (start + length) as f64
         };
-        within(pixel.x, x, width) && within(pixel.y, y, height)
+        within(pixel.x, area.x, area.width) && within(pixel.y, area.y, area.height)
     }
 
     /// Returns the index of the first shape between a surface point and another point, if any.
@@ -283,25 +317,22 @@ impl Inspector<'_> {
     /// P = Σ E cos θ_i dA,    dA = Ω r² / cos θ_o       Ω the solid angle of each camera ray
     /// ```
     fn fraction_in_image(&self, laser: &Laser) -> f64 {
-        let Crop {
-            x,
-            y,
-            width,
-            height,
-        } = self.area;
-        let corner = DVec2::new(x as f64, y as f64);
-        let size = DVec2::new(width as f64, height as f64);
+        let area = self.area;
+        let corner = DVec2::new(area.x as f64, area.y as f64);
+        let size = DVec2::new(area.width as f64, area.height as f64);
         let pixels_per_ray = size.x * size.y / f64::from(RAYS);
-        let power: f64 = (0..RAYS)
-            .map(|index| {
-                let [s, t, u, v] = even(index);
-                let pixel = corner + DVec2::new(s, t) * size;
-                let ray = self.camera.sample_ray(pixel, [u, v]).ray;
-                let arrival = self.follow(ray, laser.wavelength(), index, &mut Vec::new());
-                let solid_angle = pixels_per_ray * self.camera.solid_angle_per_pixel(pixel);
-                solid_angle * self.power_per_solid_angle(laser, &arrival)
-            })
-            .sum();
+        let seen = (0..RAYS).map(|index| {
+            let [s, t, u, v] = even(index);
+            let pixel = corner + DVec2::new(s, t) * size;
+            (pixel, self.camera.sample_ray(pixel, [u, v]).ray)
+        });
+        let (pixels, rays): (Vec<_>, Vec<_>) = seen.unzip();
+        let arrivals = self.follow(&rays, laser.wavelength()).rays;
+        let powers = pixels.iter().zip(&arrivals).map(|(&pixel, arrival)| {
+            let solid_angle = pixels_per_ray * self.camera.solid_angle_per_pixel(pixel);
+            solid_angle * self.power_per_solid_angle(laser, arrival)
+        });
+        let power: f64 = powers.sum();
         power / laser.power()
     }
 

@@ -5,7 +5,6 @@ mod lasers;
 mod lights;
 mod lit_points;
 mod rules;
-mod vertex;
 mod weights;
 
 use core::mem::take;
@@ -18,20 +17,18 @@ use tem00_tracer::{Laser, Light, RenderOptions, Scene, film::Seen};
 use self::{batch::Path, lit_points::LitPoints, rules::Spectrum};
 pub(crate) use self::{
     batch::{Batch, CameraSample},
-    rules::PathRules,
-    vertex::Vertex,
+    rules::{PathRules, is_plate},
 };
 use crate::{
-    light_tracer::DrawKey,
-    render::sample_counts,
-    sampler::{Sequence, Stream, Use},
+    sampler::{DrawKey, Sequence, Stream, Use, sample_counts},
     speckle::{SpeckleFrame, SpecklePoint},
-    survey::is_plate,
+    vertex::Vertex,
+    walk::Roulette,
 };
 
-/// Vertices from which a path always goes on, before it may end by chance. In a box of albedo 0.6 a second one takes 0.62 of
+/// Surfaces that a path always leaves again before it may end by chance. In a box of albedo 0.6 a second one takes 0.62 of
 /// the variance for 1.3 times the time.
-const CERTAIN_BOUNCES: u32 = 2;
+const ROULETTE: Roulette = Roulette { certain: 2 };
 
 /// Everything that one frame needs to turn camera samples into radiance.
 #[derive(Debug)]
@@ -46,6 +43,7 @@ pub(crate) struct Integrator<'a> {
     intersector: &'a Intersector,
     speckle: Option<&'a SpeckleFrame<'a>>,
     rules: PathRules,
+    roulette: Roulette,
     /// Those of each number of samples that a pixel can get.
     sequences: Vec<Sequence>,
     spectrum: Spectrum,
@@ -95,6 +93,11 @@ impl<'a> Integrator<'a> {
         } else {
             Vec::new()
         };
+        // Where all light is that of lasers, the first vertices have found most of it by their connections.
+        let roulette = match scene.lights.is_empty() && !lit_points.is_empty() {
+            true => Roulette { certain: 0 },
+            false => ROULETTE,
+        };
         Self {
             scene,
             camera,
@@ -104,6 +107,7 @@ impl<'a> Integrator<'a> {
             intersector,
             speckle: None,
             rules,
+            roulette,
             sequences: counts.into_iter().map(Sequence::new).collect(),
             spectrum: Spectrum::new(&scene.lasers, &scene.lights),
             light_shapes: lights(|light| matches!(light, Light::Area { .. })),
@@ -210,7 +214,7 @@ impl<'a> Integrator<'a> {
             path.depth += 1;
             if path.depth == 1 {
                 batch.samples[path.sample].found.seen =
-                    Some(self.seen(vertex.position, vertex.seen_normal()));
+                    Some(self.seen(vertex.hit.position, vertex.seen_normal()));
             }
             if path.depth <= self.rules.max_depth {
                 batch.vertices.push(vertex);
@@ -233,7 +237,7 @@ impl<'a> Integrator<'a> {
     /// Returns the surface point that a ray meets, or `None` where it meets a light.
     fn vertex(&self, ray: &Ray, hit: &Hit) -> Option<Vertex<'a>> {
         let surface = self.scene.surfaces.get(hit.surface)?;
-        Vertex::new(ray, hit, &surface.material)
+        Vertex::seen(ray, hit, &surface.material)
     }
 
     fn seen(&self, position: DVec3, normal: DVec3) -> Seen {
@@ -258,9 +262,9 @@ impl<'a> Integrator<'a> {
             if path.rough == 0 && !vertex.is_specular() {
                 let point = SpecklePoint {
                     pixel: batch.pixels[path.sample],
-                    position: vertex.position,
+                    position: vertex.hit.position,
                     normal: vertex.seen_normal(),
-                    surface: vertex.surface,
+                    surface: vertex.hit.surface,
                     wave: self.drawn_wave(batch.samples[path.sample].stream),
                 };
                 batch.speckle.push(path.sample, point);
@@ -327,17 +331,10 @@ impl<'a> Integrator<'a> {
         }
         // End long and dark paths by chance, without bias; glass makes a path dark only for a while.
         let compression = path.compression * event.eta_squared;
-        if path.depth > self.certain_bounces() {
-            let survival = (largest * compression).min(0.95);
-            if self
-                .sequence(stream)
-                .uniform(stream, Use::Survival(path.depth))
-                >= survival
-            {
-                return None;
-            }
-            throughput.iter_mut().for_each(|value| *value /= survival);
-        }
+        let sequence = self.sequence(stream);
+        let draw = || sequence.uniform(stream, Use::Survival(path.depth));
+        let survived = (self.roulette).survived(path.depth, largest * compression, draw)?;
+        throughput.iter_mut().for_each(|value| *value /= survived);
         let next = Path {
             rough: path.rough + u32::from(!event.specular),
             compression,
@@ -346,16 +343,6 @@ impl<'a> Integrator<'a> {
         };
         let ray = vertex.leave(self.intersector, event.wi);
         (path.depth < self.rules.max_depth || self.finds_light(&ray)).then_some((next, ray))
-    }
-
-    /// Returns the number of vertices from which a path always goes on. Where all light is that of lasers, the first of them
-    /// has found most of it by its connections.
-    fn certain_bounces(&self) -> u32 {
-        if self.scene.lights.is_empty() && !self.lit_points.is_empty() {
-            0
-        } else {
-            CERTAIN_BOUNCES
-        }
     }
 
     /// Tells whether a ray can find light if no surface may follow.

@@ -14,10 +14,11 @@ mod light_tracer;
 mod render;
 mod sampler;
 mod speckle;
-mod spread;
 mod survey;
 #[cfg(test)]
 mod testing;
+mod vertex;
+mod walk;
 
 pub use inspection::{LaserInspection, LightFate, LightPart, inspect_lasers};
 pub use light_tracer::has_specular_surfaces_on_both_sides;

@@ -13,23 +13,21 @@
 //! counts as coherent, and its speckle is looked up at the image point. Where something moves, that
 //! speckle moves and changes as if the light came straight from the laser.
 
-mod draws;
+mod connection;
+mod group;
 mod job;
 mod specular_search;
 mod splats;
-mod walk;
-mod way;
 
 use core::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 use tem00_tracer::{LaserLayers, RenderError};
 
-pub(crate) use self::draws::{DrawKey, Draws};
+pub(crate) use self::group::LightGroup;
 pub(crate) use self::job::{LightJob, LightLayers, LightSelection, LightTracer};
 pub use self::specular_search::has_specular_surfaces_on_both_sides;
-pub(crate) use self::way::WayPoint;
-use self::{splats::SplatFilm, walk::Walk};
+use self::{connection::Connector, splats::SplatFilm};
 
 /// The groups of light paths whose points of phase space are spread evenly.
 #[derive(Clone, Copy, Debug)]
@@ -51,10 +49,10 @@ impl Groups {
     }
 
     /// Returns the number of paths in group `index`; groups differ by one path at most.
-    fn size(self, index: u64) -> u64 {
+    fn size(self, index: u64) -> usize {
         let start =
             |group: u64| u128::from(group) * u128::from(self.paths) / u128::from(self.count);
-        u64::try_from(start(index + 1) - start(index)).unwrap_or(u64::MAX)
+        usize::try_from(start(index + 1) - start(index)).unwrap_or(usize::MAX)
     }
 }
 
@@ -76,7 +74,7 @@ impl LightTracer<'_> {
         progress: &(impl Fn(u64) + Sync),
         cancel: &AtomicBool,
     ) -> Result<LightLayers, RenderError> {
-        let walk = Walk::new(self, job);
+        let connector = Connector::new(self, job);
         let groups = Groups::new(job.paths);
         let mut film = SplatFilm::new(self.area);
         for first in (0..groups.count).step_by(GROUPS_AT_ONCE) {
@@ -87,8 +85,8 @@ impl LightTracer<'_> {
                     if cancel.load(Ordering::Relaxed) {
                         return Err(RenderError::Cancelled);
                     }
-                    let splats = walk.group(index, groups.size(index));
-                    progress(groups.size(index));
+                    let splats = connector.group(index, groups.size(index));
+                    progress(groups.size(index) as u64);
                     Ok(splats)
                 })
                 .collect::<Result<_, _>>()?;

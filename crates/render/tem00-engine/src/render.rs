@@ -7,11 +7,11 @@ use tem00_geometry::Intersector;
 use tem00_tracer::{FilterSampler, Frame, Method, RenderError, RenderOptions, Scene, TracerError};
 
 use self::pass::PathPass;
-pub(crate) use self::pilot::sample_counts;
 use crate::{
     SpeckleModel,
     integrator::Integrator,
     light_tracer::{LightJob, LightSelection, LightTracer},
+    sampler::sample_counts,
     survey::{Survey, asks_for_survey},
 };
 

@@ -1,10 +1,19 @@
 mod displacements;
+mod draws;
 mod lattice;
+mod spread;
+
+use core::iter::once;
 
 use tem00_numerics::{seed::scattered, vectorised};
+use tem00_tracer::{RenderOptions, Sampling};
 
 pub use self::displacements::mean_over_sample_displacements;
 use self::lattice::Lattice;
+pub(crate) use self::{
+    draws::{DrawKey, Draws},
+    spread::even,
+};
 
 /// Sets of points that fill the unit square evenly, anew for every pixel and every use.
 ///
@@ -63,6 +72,23 @@ pub(crate) enum Use {
     Laser(u32, u32),
     /// The point that a laser lights, to which the vertex of this number is connected.
     LitPoint(u32),
+}
+
+/// The maximum number of times that the least number of samples of a pixel is doubled.
+const DOUBLINGS: u32 = 6;
+
+/// Returns the numbers of samples that a pixel can get. If there are several, the first is that of the pilot.
+pub(crate) fn sample_counts(options: &RenderOptions) -> Vec<u32> {
+    let count = options.samples_per_pixel;
+    let counts = |pilot, least: u32| {
+        let doubled = (0..=DOUBLINGS).map(|times| least.saturating_mul(1 << times));
+        once(pilot).chain(doubled).collect()
+    };
+    match options.sampling {
+        Sampling::Adaptive if count >= 4 => counts((count / 4).clamp(2, 8), count / 2),
+        Sampling::Even | Sampling::Adaptive => vec![count],
+        Sampling::TargetError(_) => counts(16, count),
+    }
 }
 
 impl Use {

@@ -12,7 +12,7 @@ mod plan;
 mod prescan;
 
 pub use between_frames::{ReferencePoint, SpeckleChange};
-pub(crate) use change::Change;
+pub(crate) use change::{Change, moves};
 pub use crossing::CorrelationNote;
 use glam::{DVec2, DVec3};
 pub(crate) use model::SpeckleFrame;
@@ -20,6 +20,7 @@ pub use model::SpeckleModel;
 pub(crate) use multiple::{Lattice, LightKey, MultipleMap, MultiplePath, MultipleSums};
 pub use notes::{CascadeNote, RoughnessNote, roughness_notes};
 pub use plan::{PatternPlan, SpecklePlan};
+use tem00_geometry::Hit;
 use tem00_shading::SeenPoint;
 
 /// A point of a surface that a path has met, and where in the image it is seen.
@@ -42,6 +43,17 @@ pub(crate) struct SpecklePoint {
 }
 
 impl SpecklePoint {
+    /// Returns the point at which a ray of an image point meets a surface, in the mean wave number of each line.
+    pub(crate) const fn of_hit(pixel: DVec2, hit: &Hit) -> Self {
+        Self {
+            pixel,
+            position: hit.position,
+            normal: hit.normal,
+            surface: hit.surface,
+            wave: 0.5,
+        }
+    }
+
     fn seen(&self) -> SeenPoint {
         SeenPoint {
             pixel: self.pixel,

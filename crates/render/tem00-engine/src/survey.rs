@@ -1,23 +1,27 @@
 //! A survey of the light that has met several rough surfaces, before a frame is rendered.
 
 mod from_camera;
+mod from_laser;
+mod way;
 
 use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
-use tem00_geometry::{Intersector, Segment, Shape};
-use tem00_tracer::{Crop, RenderOptions, Scene, Surface, TracerError};
+use tem00_camera::Ray;
+use tem00_geometry::Intersector;
+use tem00_tracer::{RenderOptions, Scene, TracerError};
 
+use self::way::WayPoint;
 use crate::{
     SpecklePlan,
-    integrator::Vertex,
-    light_tracer::{LightJob, LightSelection, LightTracer, WayPoint},
+    integrator::is_plate,
     sampler::{pixel_key, point_in_square},
     speckle::{
         CascadeNote, Change, Lattice, LightKey, MultipleMap, MultiplePath, MultipleSums,
-        SpecklePoint,
+        SpecklePoint, moves,
     },
+    vertex::Vertex,
 };
 
 /// Which frame is surveyed, and how finely.
@@ -53,23 +57,6 @@ pub(crate) fn asks_for_survey(scene: &Scene, frame: u32, options: &RenderOptions
 /// Tells whether light cannot meet more than one rough surface.
 fn is_single(scene: &Scene, options: &RenderOptions) -> bool {
     is_plate(scene) || options.max_depth == Some(1)
-}
-
-/// Returns whether a plate is all that light can meet: it meets it once.
-pub(crate) fn is_plate(scene: &Scene) -> bool {
-    matches!(
-        scene.surfaces.as_slice(),
-        [] | [Surface {
-            shape: Shape::Rectangle(_),
-            ..
-        }]
-    )
-}
-
-/// Tells whether anything that matters to speckle moves.
-pub(crate) fn moves(scene: &Scene) -> bool {
-    let mut lasers = 0..scene.lasers.len();
-    lasers.any(|laser| (0..scene.surfaces.len()).any(|surface| scene.speckle_moves(laser, surface)))
 }
 
 /// The cells of a survey that plans the slices.
@@ -168,8 +155,7 @@ impl<'a> Survey<'a> {
     /// light found there, if any.
     pub(crate) fn map(&self) -> Option<MultipleMap> {
         let camera = self.change.camera();
-        let tracer = self.light_tracer();
-        let lit = self.way_points(&tracer);
+        let lit = self.way_points();
         let lattice = Lattice::over([camera.width(), camera.height()], self.cells);
         let lasers = (0..self.scene.lasers.len()).into_par_iter();
         let ways: Vec<Way> = lasers
@@ -216,41 +202,6 @@ impl<'a> Survey<'a> {
         }
     }
 
-    fn light_tracer(&self) -> LightTracer<'a> {
-        let camera = self.change.camera();
-        LightTracer {
-            scene: self.scene,
-            camera,
-            intersector: self.intersector,
-            speckle: None,
-            frame: self.frame,
-            // The surface that the camera sees is one more.
-            max_depth: self.max_depth.map(|depth| depth.saturating_sub(1)),
-            selection: LightSelection::All,
-            area: Crop {
-                x: 0,
-                y: 0,
-                width: camera.width(),
-                height: camera.height(),
-            },
-        }
-    }
-
-    fn way_points<'t>(&self, tracer: &'t LightTracer<'t>) -> WayPoints<'t> {
-        let groups = |laser: usize| {
-            let job = LightJob {
-                laser,
-                paths: PATHS as u64,
-                seed: self.seed ^ SEED,
-            };
-            let groups = (0..GROUPS).into_par_iter();
-            groups
-                .map(|group| tracer.way_points(&job, group as u64, self.change))
-                .collect()
-        };
-        (0..self.scene.lasers.len()).map(groups).collect()
-    }
-
     /// Sums over pairs of paths to the point of one cell that the camera sees.
     fn sums(
         &self,
@@ -264,9 +215,7 @@ impl<'a> Survey<'a> {
             Way::FromLaser => self.multiple(laser, seen, &groups[(number + i) % GROUPS]),
             Way::FromCamera => {
                 let first = (2 * cell + i) * PATHS + 1;
-                let keys = first..first + PATHS;
-                let paths = keys.flat_map(|key| self.multiple_from_camera(laser, seen, key as u64));
-                paths.collect()
+                self.multiple_from_camera(laser, seen, first as u64)
             }
         });
         let line = self.scene.lasers[laser].spectral_line();
@@ -289,7 +238,7 @@ impl<'a> Survey<'a> {
         let ray = camera.ray(pixel);
         let hit = self.intersector.intersect(&ray)?;
         let material = &self.scene.surfaces.get(hit.surface)?.material;
-        let vertex = Vertex::new(&ray, &hit, material)?;
+        let vertex = Vertex::seen(&ray, &hit, material)?;
         let distance = (camera.position() - hit.position).length();
         (!vertex.is_specular()).then_some(SeenPoint {
             point: SpecklePoint {
@@ -300,6 +249,7 @@ impl<'a> Survey<'a> {
                 wave: 0.5,
             },
             vertex,
+            ray,
             to_pupil: -ray.direction,
             sin_aperture: (0.5 * camera.pupil_diameter() / distance).min(1.0),
         })
@@ -308,16 +258,23 @@ impl<'a> Survey<'a> {
     /// The radiance at a vertex of the light of a laser that has met its surface only.
     fn single(&self, laser: usize, vertex: &Vertex<'_>) -> f64 {
         let laser = self.change.laser(laser);
-        let Some(light) = laser.next_event(vertex.position) else {
+        let Some(light) = laser.next_event(vertex.hit.position) else {
             return 0.0;
         };
         let reflected = vertex.reflected_from(light.wi, laser.wavelength());
         let radiance = light.e_perp * reflected;
-        if radiance > 0.0 && self.is_free(vertex.segment_to(light.point)) {
-            radiance
-        } else {
-            0.0
+        let mut is_free = [false];
+        let segment = vertex.segment_to(light.point);
+        if radiance > 0.0 {
+            self.intersector.visible_batch(&[segment], &mut is_free);
         }
+        if is_free[0] { radiance } else { 0.0 }
+    }
+
+    /// The place of a vertex now, and in the reference frame.
+    fn places(&self, vertex: &Vertex<'_>) -> [DVec3; 2] {
+        let position = vertex.hit.position;
+        [position, self.change.origin(vertex.hit.surface, position)]
     }
 
     fn polarisation_of(&self, surface: usize) -> f64 {
@@ -361,12 +318,6 @@ impl<'a> Survey<'a> {
         });
         paths.collect()
     }
-
-    fn is_free(&self, segment: Segment) -> bool {
-        let mut free = [false];
-        self.intersector.visible_batch(&[segment], &mut free);
-        free[0]
-    }
 }
 
 /// The sums of a cell.
@@ -376,6 +327,8 @@ type CellSums = BTreeMap<LightKey, MultipleSums>;
 struct SeenPoint<'a> {
     point: SpecklePoint,
     vertex: Vertex<'a>,
+    /// The ray by which it is seen.
+    ray: Ray,
     /// The unit direction to the pupil, and the sine of the half-angle that it fills.
     to_pupil: DVec3,
     sin_aperture: f64,

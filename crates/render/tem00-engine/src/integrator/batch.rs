@@ -4,10 +4,11 @@ use tem00_geometry::{Hit, Intersector, Segment};
 use tem00_shading::LaserEventBatch;
 use tem00_tracer::film::{LaserSample, Sample};
 
-use super::{PathRules, Vertex};
+use super::PathRules;
 use crate::{
     sampler::Stream,
     speckle::{SpeckleFrame, SpecklePoint},
+    vertex::Vertex,
 };
 
 /// Camera samples that are traced together, and the state of their paths.

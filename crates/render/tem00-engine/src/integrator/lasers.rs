@@ -3,12 +3,12 @@ use tem00_geometry::Hit;
 use tem00_shading::LaserEvent;
 
 use super::{
-    Integrator, Vertex,
+    Integrator,
     batch::{Arrival, Batch, Path},
     lit_points::{LitPoints, density},
     weights::{power_heuristic, random_number},
 };
-use crate::sampler::Use;
+use crate::{sampler::Use, vertex::Vertex};
 
 impl<'a> Integrator<'a> {
     /// Connects every rough surface point to every laser.
@@ -18,7 +18,7 @@ impl<'a> Integrator<'a> {
         }
         let mean_direction = !self.rules.samples_beams;
         if mean_direction {
-            let positions = batch.vertices.iter().map(|vertex| vertex.position);
+            let positions = batch.vertices.iter().map(|vertex| vertex.hit.position);
             batch.lit.place(positions);
         }
         for laser in 0..self.lasers.len() {
@@ -65,9 +65,9 @@ impl<'a> Integrator<'a> {
         let throughput = self.laser_throughput(laser, &path, batch);
         let radiance = weight * throughput * light.e_perp * reflected;
         let power = if path.depth == 1 && vertex.is_seen_side(wi) {
-            let on_surface = light.e_perp * vertex.normal.dot(light.wi).abs();
+            let on_surface = light.e_perp * vertex.hit.normal.dot(light.wi).abs();
             let solid_angle = batch.solid_angles[path.sample];
-            on_surface * solid_angle * vertex.distance.powi(2) / vertex.cosine.abs()
+            on_surface * solid_angle * vertex.hit.distance.powi(2) / vertex.cosine.abs()
         } else {
             0.0
         };
@@ -138,7 +138,7 @@ impl<'a> Integrator<'a> {
     ) -> f64 {
         match path.scattering_pdf {
             Some(pdf) if !self.lit_points.is_empty() => {
-                let density = density(&self.lasers[laser], light, vertex.normal);
+                let density = density(&self.lasers[laser], light, vertex.hit.normal);
                 power_heuristic(vertex.area_pdf(pdf), density)
             }
             _ => 1.0,
@@ -157,7 +157,7 @@ impl<'a> Integrator<'a> {
         let purpose = Use::Laser(path.depth, random_number(laser));
         let stream = batch.samples[path.sample].stream;
         let u = self.sequence(stream).pair(stream, purpose);
-        let event = source.next_event_sampled(vertex.position, u)?;
+        let event = source.next_event_sampled(vertex.hit.position, u)?;
         let light = LaserEvent {
             point: event.point,
             wi: event.wi,

@@ -48,7 +48,7 @@ impl<'a> Integrator<'a> {
         let u = self
             .sequence(stream)
             .pair(stream, Use::Light(path.depth, random_number(index)));
-        let Some(sample) = light.sample(vertex.position, u) else {
+        let Some(sample) = light.sample(vertex.hit.position, u) else {
             return;
         };
         let Some(wi) = vertex.towards(sample.direction) else {
@@ -65,7 +65,7 @@ impl<'a> Integrator<'a> {
             _ => 1.0,
         };
         let segment = if sample.distance.is_finite() {
-            vertex.segment_to(vertex.position + sample.distance * sample.direction)
+            vertex.segment_to(vertex.hit.position + sample.distance * sample.direction)
         } else {
             vertex.segment_along(sample.direction)
         };

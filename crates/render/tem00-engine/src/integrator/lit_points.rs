@@ -12,8 +12,11 @@ use tem00_numerics::cast::to_usize;
 use tem00_shading::LaserEvent;
 use tem00_tracer::{Laser, Material, Scene};
 
-use super::{vertex::Vertex, weights::power_heuristic};
-use crate::light_tracer::{DrawKey, Draws};
+use super::weights::power_heuristic;
+use crate::{
+    sampler::{DrawKey, Draws},
+    vertex::Vertex,
+};
 
 /// Points of a frame that a laser lights.
 #[derive(Debug)]
@@ -111,19 +114,19 @@ impl<'a> LitPoint<'a> {
     /// Returns the weighted radiance that comes from the point over a vertex, by the density of points, if nothing lies
     /// between them.
     pub(super) fn radiance_over(&self, vertex: &Vertex<'a>, wavelength: f64) -> Option<f64> {
-        let offset = self.hit.position - vertex.position;
+        let offset = self.hit.position - vertex.hit.position;
         let distance = offset.length();
         let direction = offset / distance;
         let wi = vertex.towards(direction)?;
         let ray = Ray {
-            origin: vertex.position,
+            origin: vertex.hit.position,
             direction,
         };
         let hit = Hit {
             distance,
             ..self.hit
         };
-        let lit = Vertex::new(&ray, &hit, self.material)?;
+        let lit = Vertex::seen(&ray, &hit, self.material)?;
         // Points of one plane send each other nothing but rounding errors.
         if (wi.z * lit.cosine).abs() < 1e-12 {
             return None;

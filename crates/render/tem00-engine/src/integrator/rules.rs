@@ -1,4 +1,5 @@
-use tem00_tracer::{Laser, Light, LightEvents, Method, RenderOptions};
+use tem00_geometry::Shape;
+use tem00_tracer::{Laser, Light, LightEvents, Method, RenderOptions, Scene, Surface};
 
 /// The wavelength at which materials are evaluated for lights, in metres: lights are white and
 /// materials grey under them.
@@ -35,6 +36,17 @@ impl From<&RenderOptions> for PathRules {
             speckle_in_the_dark: options.speckle_in_the_dark,
         }
     }
+}
+
+/// Returns whether a plate is all that light can meet: it meets it once.
+pub(crate) fn is_plate(scene: &Scene) -> bool {
+    matches!(
+        scene.surfaces.as_slice(),
+        [] | [Surface {
+            shape: Shape::Rectangle(_),
+            ..
+        }]
+    )
 }
 
 /// The distinct wavelengths of all light, in metres.

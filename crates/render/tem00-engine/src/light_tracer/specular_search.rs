@@ -3,7 +3,7 @@ use tem00_camera::Ray;
 use tem00_geometry::Intersector;
 use tem00_tracer::{Scene, TracerError};
 
-use crate::spread::even;
+use crate::sampler::even;
 
 /// Image points on each side of the grid that is looked through.
 const SIDE: u32 = 64;

@@ -3,13 +3,12 @@ use core::f64::consts::PI;
 use glam::{DVec2, DVec3};
 use tem00_camera::CameraDescription;
 use tem00_geometry::{Intersector, Rectangle, Shape, TriangleMesh};
+use tem00_numerics::Grid;
 use tem00_statistics::{Moments, kolmogorov_smirnov, t_test_mean};
+use tem00_testkit::assert_absolute;
 use tem00_tracer::{Crop, LaserDescription, Material, Scene, Surface};
 
-use super::{
-    draws::{DrawKey, Draws},
-    *,
-};
+use super::*;
 use crate::testing;
 
 /// A correct light tracer fails a comparison with this probability at the fixed seeds.
@@ -36,47 +35,42 @@ fn plate() -> Scene {
     testing::scene(camera, &[laser], plate)
 }
 
-fn whole(scene: &Scene) -> Crop {
-    Crop {
-        x: 0,
-        y: 0,
-        width: scene.camera.width(),
-        height: scene.camera.height(),
-    }
-}
-
-/// A scene, the light of it that is followed, and the part of the image.
-type View<'a> = (&'a Scene, LightSelection, Crop);
-
+/// Traces light of a scene that is changed from all of it in the whole image.
 fn try_trace(
-    (scene, selection, area): View<'_>,
-    job: &LightJob,
+    scene: &Scene,
+    change: impl Fn(&mut LightTracer<'_>),
+    [paths, seed]: [u64; 2],
     cancelled: bool,
 ) -> Result<LightLayers, RenderError> {
     let intersector = Intersector::build(&scene.shapes_at(0)).unwrap();
-    let tracer = LightTracer {
+    let mut tracer = LightTracer {
         scene,
         camera: &scene.camera,
         intersector: &intersector,
         speckle: None,
         frame: 0,
         max_depth: None,
-        selection,
-        area,
+        selection: LightSelection::All,
+        area: scene.render.area(&scene.camera).unwrap(),
     };
-    tracer.trace(job, &|_| (), &AtomicBool::new(cancelled))
+    change(&mut tracer);
+    let laser = 0;
+    let job = LightJob { laser, paths, seed };
+    tracer.trace(&job, &|_| (), &AtomicBool::new(cancelled))
 }
 
-fn trace(scene: &Scene, job: &LightJob) -> LightLayers {
-    try_trace((scene, LightSelection::All, whole(scene)), job, false).unwrap()
+fn trace(scene: &Scene, paths: u64, seed: u64) -> LightLayers {
+    try_trace(scene, |_| (), [paths, seed], false).unwrap()
 }
 
-const fn job(paths: u64, seed: u64) -> LightJob {
-    LightJob {
-        laser: 0,
-        paths,
-        seed,
-    }
+/// The light of paths of seeds from 0 on.
+fn traces(scene: &Scene, paths: u64, seeds: u64) -> Vec<LightLayers> {
+    (0..seeds).map(|seed| trace(scene, paths, seed)).collect()
+}
+
+/// The power of each, in parts of that of the laser.
+fn powers(layers: &[LightLayers]) -> Vec<f64> {
+    layers.iter().map(|l| l.power_on_target / POWER).collect()
 }
 
 /// The point of the plate z = 0 that an image point shows.
@@ -109,18 +103,18 @@ fn fraction_of_light(scene: &Scene, pixel: DVec2) -> f64 {
 
 /// Tests that each pixel scatters about the radiance of a plate that is shaded with `normal`.
 fn assert_lit(scene: &Scene, normal: DVec3) {
-    const SEEDS: u64 = 24;
     const PATHS: u64 = 30_000;
-    let images: Vec<_> = (0..SEEDS)
-        .map(|seed| trace(scene, &job(PATHS, seed)).single)
-        .collect();
+    let images = traces(scene, PATHS, 24);
     let mut probabilities = Vec::new();
-    for index in 0..images[0].values().len() {
+    for index in 0..images[0].single.values().len() {
         let (x, y) = (index % scene.camera.width(), index / scene.camera.width());
         let pixel = DVec2::new(x as f64, y as f64);
         // The sum of fewer paths is not normally distributed.
         if fraction_of_light(scene, pixel) * PATHS as f64 > 10.0 {
-            let values: Vec<_> = images.iter().map(|image| image.values()[index]).collect();
+            let values: Vec<_> = images
+                .iter()
+                .map(|image| image.single.values()[index])
+                .collect();
             let test = t_test_mean(&values, lit(scene, pixel, normal)).unwrap();
             probabilities.push(test.p_value);
         }
@@ -150,45 +144,34 @@ fn shading_normals_shade_as_seen_from_the_camera() {
 
 #[test]
 fn the_stated_variance_is_that_from_seed_to_seed() {
-    const SEEDS: u64 = 200;
-    let scene = plate();
-    let images: Vec<_> = (0..SEEDS)
-        .map(|seed| trace(&scene, &job(4_000, seed)))
-        .collect();
+    let images = traces(&plate(), 4_000, 200);
     let (mut stated, mut seen) = (0.0, 0.0);
     for index in 0..images[0].variance.values().len() {
-        let values = images
-            .iter()
-            .map(|image| f64::from(image.radiance.values()[index]));
-        let mean = values.clone().sum::<f64>() / SEEDS as f64;
-        seen += values.map(|v| (v - mean).powi(2)).sum::<f64>() / (SEEDS - 1) as f64;
-        let variances = images
-            .iter()
-            .map(|image| f64::from(image.variance.values()[index]));
-        stated += variances.sum::<f64>() / SEEDS as f64;
+        let at = |layer: &Grid<f32>| f64::from(layer.values()[index]);
+        let values: Vec<_> = images.iter().map(|image| at(&image.radiance)).collect();
+        seen += Moments::from_samples(&values)
+            .unwrap()
+            .standard_deviation()
+            .powi(2);
+        let variances = images.iter().map(|image| at(&image.variance));
+        stated += variances.sum::<f64>() / images.len() as f64;
     }
     // Some 60 pixels and 200 seeds give a standard error of √(2 / 12 000) = 1.3 %, and what pixels
     // fraction of their paths raises it. Four times that, with as much again to spare.
     let ratio = stated / seen;
-    assert!(
-        (ratio - 1.0).abs() < 0.1,
-        "stated {stated:e}, seen {seen:e}"
-    );
+    assert!((ratio - 1.0).abs() < 0.1, "{stated:e}, seen {seen:e}");
 }
 
 #[test]
 fn the_power_on_target_is_that_of_the_laser() {
-    let scene = plate();
-    for seed in 0..5 {
-        let power = trace(&scene, &job(1_000, seed)).power_on_target;
+    for power in powers(&traces(&plate(), 1_000, 5)) {
         // The whole spot is in the image, so that every path counts.
-        assert!((power / POWER - 1.0).abs() < 1e-12, "{power}");
+        assert_absolute(power, 1.0, 1e-12);
     }
 }
 
 #[test]
 fn the_error_of_the_power_is_its_scatter_from_seed_to_seed() {
-    const SEEDS: u64 = 200;
     let mut scene = plate();
     // A plate under one half of the spot, up to a plane that holds the axis of the beam.
     let along = scene.lasers[0]
@@ -199,24 +182,14 @@ fn the_error_of_the_power_is_its_scatter_from_seed_to_seed() {
     let across = along.cross(DVec3::Z);
     let half = Rectangle::new(0.02 * across, 0.02 * across, 0.05 * along).unwrap();
     scene.surfaces[0].shape = Shape::Rectangle(half);
-    let layers: Vec<_> = (0..SEEDS)
-        .map(|seed| trace(&scene, &job(4_096, seed)))
-        .collect();
-    let powers: Vec<f64> = layers
-        .iter()
-        .map(|layers| layers.power_on_target / POWER)
-        .collect();
-    let variance = layers
-        .iter()
-        .map(|layers| (layers.power_error / POWER).powi(2));
-    let stated = (variance.sum::<f64>() / SEEDS as f64).sqrt();
+    let layers = traces(&scene, 4_096, 200);
+    let powers = powers(&layers);
+    let variances = layers.iter().map(|l| (l.power_error / POWER).powi(2));
+    let stated = (variances.sum::<f64>() / layers.len() as f64).sqrt();
     let seen = Moments::from_samples(&powers).unwrap().standard_deviation();
     assert!(t_test_mean(&powers, 0.5).unwrap().p_value > SIGNIFICANCE);
     // Groups of equal size; standard deviations from 200 seeds are known to 5 %.
-    assert!(
-        (stated / seen - 1.0).abs() < 0.2,
-        "stated {stated}, seen {seen}"
-    );
+    assert_absolute(stated / seen, 1.0, 0.2);
 }
 
 #[test]
@@ -231,27 +204,20 @@ fn light_that_enters_glass_keeps_its_power() {
     face.shape = Shape::Rectangle(shape);
     face.material = Material::dielectric(INDEX).unwrap();
     scene.surfaces.push(face);
-    let powers: Vec<_> = (0..20)
-        .map(|seed| trace(&scene, &job(10_000, seed)).power_on_target / POWER)
-        .collect();
+    let powers = powers(&traces(&scene, 10_000, 20));
     // Fresnel at normal incidence. Radiance grows by n² in glass; power does not.
     let transmittance = 4.0 * INDEX / (INDEX + 1.0).powi(2);
-    let test = t_test_mean(&powers, transmittance).unwrap();
-    assert!(
-        test.p_value > SIGNIFICANCE,
-        "p = {:e}: {powers:?}",
-        test.p_value
-    );
+    let p = t_test_mean(&powers, transmittance).unwrap().p_value;
+    assert!(p > SIGNIFICANCE, "p = {p:e}: {powers:?}");
 }
 
 #[test]
 fn threads_and_the_rest_of_the_image_change_no_bit() {
     let scene = plate();
-    let job = job(20_000, 7);
-    let image = trace(&scene, &job);
+    let image = trace(&scene, 20_000, 7);
     for threads in [1, 3] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let again = pool.unwrap().install(|| trace(&scene, &job));
+        let again = pool.unwrap().install(|| trace(&scene, 20_000, 7));
         assert_eq!(again, image, "{threads} threads");
     }
     let area = Crop {
@@ -260,7 +226,7 @@ fn threads_and_the_rest_of_the_image_change_no_bit() {
         width: 7,
         height: 4,
     };
-    let part = try_trace((&scene, LightSelection::All, area), &job, false).unwrap();
+    let part = try_trace(&scene, |tracer| tracer.area = area, [20_000, 7], false).unwrap();
     let pairs = [
         (&part.single, &image.single),
         (&part.variance, &image.variance),
@@ -277,8 +243,7 @@ fn threads_and_the_rest_of_the_image_change_no_bit() {
 #[test]
 fn a_cancelled_trace_stops() {
     let scene = plate();
-    let view = (&scene, LightSelection::All, whole(&scene));
-    let cancelled = try_trace(view, &job(1 << 40, 0), true);
+    let cancelled = try_trace(&scene, |_| (), [1 << 40, 0], true);
     assert_eq!(cancelled, Err(RenderError::Cancelled));
 }
 
@@ -286,8 +251,8 @@ fn a_cancelled_trace_stops() {
 fn light_that_meets_a_rough_surface_first_is_left_to_the_path_tracer() {
     let mut scene = plate();
     assert!(!scene.has_specular_surfaces(), "a diffuse plate");
-    let view = (&scene, LightSelection::SpecularFirst, whole(&scene));
-    let dark = try_trace(view, &job(1_000, 0), false).unwrap();
+    let specular = |tracer: &mut LightTracer<'_>| tracer.selection = LightSelection::SpecularFirst;
+    let dark = try_trace(&scene, specular, [1_000, 0], false).unwrap();
     assert!(dark.power_on_target <= 0.0, "{}", dark.power_on_target);
     scene.surfaces[0].material = Material::mirror(0.9).unwrap();
     assert!(scene.has_specular_surfaces(), "a mirror");
@@ -319,43 +284,10 @@ fn mirrors_that_laser_and_camera_look_at_are_reported() {
 fn groups_share_out_all_paths() {
     for paths in [0, 1, 2, 63, 64, 65, 1_000, 262_144, 262_145, 1_000_003] {
         let groups = Groups::new(paths);
-        let sizes: Vec<u64> = (0..groups.count).map(|index| groups.size(index)).collect();
-        assert_eq!(sizes.iter().sum::<u64>(), paths, "{groups:?}");
+        let sizes: Vec<_> = (0..groups.count).map(|index| groups.size(index)).collect();
+        assert_eq!(sizes.iter().sum::<usize>() as u64, paths, "{groups:?}");
         let unequal = sizes.iter().max().zip(sizes.iter().min());
         assert!(unequal.is_none_or(|(a, b)| a - b <= 1), "{groups:?}");
         assert!(groups.count >= paths.min(64), "{groups:?}");
     }
-}
-
-#[test]
-fn paths_start_from_points_that_are_spread_evenly() {
-    const PATHS: u32 = 4096;
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a number from 0 to 15"
-    )]
-    fn cell(x: f64) -> usize {
-        (16.0 * x) as usize
-    }
-    let key = DrawKey {
-        seed: 3,
-        frame: 1,
-        laser: 0,
-        group: 5,
-    };
-    let mut draws = Draws::new(key);
-    let points: Vec<_> = (0..PATHS).map(|_| draws.start()).collect();
-    for (first, second) in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)] {
-        let mut counts = [0_i32; 256];
-        for point in &points {
-            counts[16 * cell(point[first]) + cell(point[second])] += 1;
-        }
-        // Of independent points each cell would hold 16 ± 4: χ² = 255 ± 23.
-        let squares: i32 = counts.iter().map(|count| (count - 16).pow(2)).sum();
-        let chi_squared = f64::from(squares) / 16.0;
-        assert!(chi_squared < 64.0, "axes {first}, {second}: {chi_squared}");
-    }
-    let [other, ..] = Draws::new(DrawKey { group: 6, ..key }).start();
-    assert!((other - points[0][0]).abs() > 0.0, "groups start alike");
 }

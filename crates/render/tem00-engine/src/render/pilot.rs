@@ -1,7 +1,5 @@
 //! What a few first samples of each pixel say of how many it needs.
 
-use core::iter::once;
-
 use tem00_numerics::{Grid, cast::to_f32};
 use tem00_tracer::{RenderOptions, Sampling, film::PixelSums};
 
@@ -18,23 +16,6 @@ const DARKEST: usize = 64 * STEPS;
 /// The radiance below which a pixel's error is compared with this radiance instead of its own, by the
 /// mean radiance of the image.
 const DARK: f64 = 0.1;
-
-/// The maximum number of times that the least number of samples of a pixel is doubled.
-const DOUBLINGS: u32 = 6;
-
-/// Returns the numbers of samples that a pixel can get. If there are several, the first is that of the pilot.
-pub(crate) fn sample_counts(options: &RenderOptions) -> Vec<u32> {
-    let count = options.samples_per_pixel;
-    let counts = |pilot, least: u32| {
-        let doubled = (0..=DOUBLINGS).map(|times| least.saturating_mul(1 << times));
-        once(pilot).chain(doubled).collect()
-    };
-    match options.sampling {
-        Sampling::Adaptive if count >= 4 => counts((count / 4).clamp(2, 8), count / 2),
-        Sampling::Even | Sampling::Adaptive => vec![count],
-        Sampling::TargetError(_) => counts(16, count),
-    }
-}
 
 /// What the samples of a pilot have found.
 pub(super) struct Pilot {

@@ -11,6 +11,10 @@ fn stream(key: u64, index: u32) -> Stream {
     Stream { key, level, index }
 }
 
+fn key_of(seed: u64, column: u64) -> u64 {
+    pixel_key(seed, [0, column, 0])
+}
+
 fn position(sequence: &Sequence, stream: Stream) -> [f64; 2] {
     let mut position = [[0.0; 2]];
     sequence.positions(stream, &mut position);
@@ -27,7 +31,7 @@ fn mean_square(count: u32, error: impl Fn(u32, &[[f64; 2]]) -> f64) -> f64 {
     const PIXELS: u32 = 4000;
     let sequence = Sequence::new(count);
     let square = |pixel: u32| {
-        let key = pixel_key(8, [0, pixel.into(), 0]);
+        let key = key_of(8, pixel.into());
         error(pixel, &positions(&sequence, key)).powi(2)
     };
     (0..PIXELS).map(square).sum::<f64>() / f64::from(PIXELS)
@@ -74,12 +78,10 @@ fn every_column_and_every_row_of_a_pixel_holds_one_sample() {
     for count in [1, 2, 3, 5, 12, 16, 17, 64, 121, 257] {
         let sequence = Sequence::new(count);
         for pixel in 0..20 {
-            let points = positions(&sequence, pixel_key(5, [0, pixel, 0]));
-            for (columns, rows) in [(count, 1), (1, count)] {
-                assert!(
-                    one_in_each_cell(&points, columns as usize, rows as usize),
-                    "pixel {pixel}, {columns} columns of {count}"
-                );
+            let points = positions(&sequence, key_of(5, pixel));
+            for [columns, rows] in [[count, 1], [1, count]] {
+                let is_even = one_in_each_cell(&points, columns as usize, rows as usize);
+                assert!(is_even, "pixel {pixel}, {columns} columns of {count}");
             }
         }
     }
@@ -135,7 +137,7 @@ fn smooth_functions_of_any_use_are_integrated_to_second_order() {
     for count in [5, 64, 121] {
         let sequence = Sequence::new(count);
         for pixel in 0..20 {
-            let points = pairs(&sequence, pixel_key(2, [0, pixel, 0]), count, Use::Lens);
+            let points = pairs(&sequence, key_of(2, pixel), count, Use::Lens);
             for axis in [0, 1] {
                 let mean = points.iter().map(|p| p[axis]).sum::<f64>() / f64::from(count);
                 // At each of the two folds the slope jumps by 4: an error of h² / 3 at most, h = 1/N.
@@ -165,7 +167,7 @@ fn a_few_samples_of_many_pixels_are_uniform() {
     let sequence = Sequence::new(3);
     let mut cells = [0_u32; 64];
     for pixel in 0..4096 {
-        for [x, y] in pairs(&sequence, pixel_key(1, [0, pixel, 0]), 3, Use::Lens) {
+        for [x, y] in pairs(&sequence, key_of(1, pixel), 3, Use::Lens) {
             cells[place(y, 8) * 8 + place(x, 8)] += 1;
         }
     }
@@ -195,8 +197,8 @@ fn uses_and_vertices_are_independent_of_each_other() {
     ];
     let correlation = |first, second, [k, l]: [usize; 2]| {
         let of_pixel = |pixel| {
-            let a = pairs(&sequence, pixel_key(3, [0, pixel, 0]), SAMPLES, first);
-            let b = pairs(&sequence, pixel_key(3, [0, pixel, 0]), SAMPLES, second);
+            let a = pairs(&sequence, key_of(3, pixel), SAMPLES, first);
+            let b = pairs(&sequence, key_of(3, pixel), SAMPLES, second);
             let products = a.iter().zip(&b).map(|(a, b)| (a[k] - 0.5) * (b[l] - 0.5));
             12.0 * products.sum::<f64>() / f64::from(SAMPLES)
         };
@@ -209,10 +211,8 @@ fn uses_and_vertices_are_independent_of_each_other() {
                 // Points come in pairs in opposite halves, so only 128 of a pixel are independent:
                 // the standard deviation is 1/√(128 · 64) at most, and 4.7 of them have a
                 // probability of 3e-6 for each of the 112 pairs.
-                assert!(
-                    correlation.abs() < 4.7 / 90.5,
-                    "{first:?}, {second:?}, {axes:?}: {correlation}"
-                );
+                let is_small = correlation.abs() < 4.7 / 90.5;
+                assert!(is_small, "{first:?}, {second:?}, {axes:?}: {correlation}");
             }
         }
     }
@@ -246,12 +246,13 @@ fn streams_differ_by_seed_frame_and_pixel_and_repeat() {
     };
     let reference = first(1, [2, 3, 4]);
     assert_eq!(reference, first(1, [2, 3, 4]), "the same again");
-    for (seed, place) in [
+    let others = [
         (2, [2, 3, 4]),
         (1, [3, 3, 4]),
         (1, [2, 4, 4]),
         (1, [2, 3, 5]),
-    ] {
+    ];
+    for (seed, place) in others {
         assert_ne!(reference, first(seed, place), "{seed}, {place:?}");
     }
 }
@@ -272,11 +273,8 @@ fn runs_of_samples_are_those_of_single_calls() {
                 position(&sequence, stream),
             ];
             let together = [*points.0, *points.1];
-            assert_eq!(
-                alone.map(|x| x.map(f64::to_bits)),
-                together.map(|x| x.map(f64::to_bits)),
-                "{stream:?}"
-            );
+            let bits = |points: [[f64; 2]; 2]| points.map(|x| x.map(f64::to_bits));
+            assert_eq!(bits(alone), bits(together), "{stream:?}");
         }
     }
 }
@@ -285,23 +283,37 @@ fn runs_of_samples_are_those_of_single_calls() {
 fn quotients_are_those_of_whole_numbers() {
     let numbers =
         |around: u32| (0..5).map(move |step| around.saturating_sub(2).saturating_add(step));
-    for by in [
-        1,
-        2,
-        3,
-        7,
-        64,
-        100,
-        641,
-        65_537,
-        1 << 31,
-        u32::MAX - 1,
-        u32::MAX,
-    ] {
+    const LARGE: [u32; 4] = [65_537, 1 << 31, u32::MAX - 1, u32::MAX];
+    for by in [1, 2, 3, 7, 64, 100, 641].into_iter().chain(LARGE) {
         for times in [0, 1, 2, 3, 1000, u32::MAX / by / 2, u32::MAX / by] {
             for number in numbers(by.saturating_mul(times)) {
                 assert_eq!(quotient(number, by), number / by, "{number} / {by}");
             }
         }
     }
+}
+
+#[test]
+fn paths_start_from_points_that_are_spread_evenly() {
+    const PATHS: u32 = 4096;
+    let key = DrawKey {
+        seed: 3,
+        frame: 1,
+        laser: 0,
+        group: 5,
+    };
+    let mut draws = Draws::new(key);
+    let points: Vec<_> = (0..PATHS).map(|_| draws.start()).collect();
+    for (first, second) in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)] {
+        let mut counts = [0_i32; 256];
+        for point in &points {
+            counts[16 * place(point[first], 16) + place(point[second], 16)] += 1;
+        }
+        // Of independent points each cell would hold 16 ± 4: χ² = 255 ± 23.
+        let squares: i32 = counts.iter().map(|count| (count - 16).pow(2)).sum();
+        let chi_squared = f64::from(squares) / 16.0;
+        assert!(chi_squared < 64.0, "axes {first}, {second}: {chi_squared}");
+    }
+    let [other, ..] = Draws::new(DrawKey { group: 6, ..key }).start();
+    assert!((other - points[0][0]).abs() > 0.0, "groups start alike");
 }

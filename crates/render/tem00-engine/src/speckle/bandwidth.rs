@@ -10,10 +10,9 @@ use tem00_tracer::{Laser, Scene, TracerError};
 
 use super::{
     SpecklePoint,
-    change::Change,
+    change::{Change, moves},
     prescan::{LaserGroups, RAYS_PER_SIDE, first_ray, pixels_of, rays_per_side},
 };
-use crate::survey::moves;
 
 /// Follows rays of the reference frame to what the camera sees, and returns the light of each laser on each surface. Those
 /// of other frames show surfaces that are not seen there.
@@ -65,13 +64,7 @@ fn points_seen(
     };
     let point = |pixel: DVec2| {
         let hit = intersector.intersect(&change.camera().ray(pixel))?;
-        Some(SpecklePoint {
-            pixel,
-            position: hit.position,
-            normal: hit.normal,
-            surface: hit.surface,
-            wave: 0.5,
-        })
+        Some(SpecklePoint::of_hit(pixel, &hit))
     };
     let pixels = pixels_of(change.camera(), side, first_ray(change, side));
     Ok(pixels.filter_map(point).collect())

@@ -1,17 +1,23 @@
+mod region;
+mod sample;
+
 use std::collections::BTreeMap;
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use rayon::prelude::*;
 use tem00_camera::Camera;
 use tem00_decorrelation::ImagingGeometry;
 use tem00_geometry::Intersector;
 use tem00_numerics::cast::to_i64;
-use tem00_shading::{LightPath, Perspective, SpeckleShift};
+use tem00_shading::Perspective;
 use tem00_speckle::StackPlan;
 use tem00_tracer::{Scene, TracerError};
 
+use self::{
+    region::Region,
+    sample::{FrameSample, add_multiple_light, frame_samples},
+};
 use super::{
-    SpecklePoint,
     change::{Change, ReferencePoint},
     multiple::MultipleMap,
 };
@@ -63,69 +69,11 @@ pub(super) struct FrameNeeds {
     pub ways: Region,
 }
 
-/// A rectangle: in the image in perspective, in pixels with y down, or in the pupil.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Region {
-    low: DVec2,
-    high: DVec2,
-}
-
-/// What was seen of a group of surfaces in one frame.
-#[derive(Clone, Debug)]
-struct FrameSample {
-    region: Region,
-    /// The smallest and the largest motion of the pupil over the speckle, in pupil diameters.
-    shifts: [f64; 2],
-    ways: Region,
-    /// The point where it is largest.
-    farthest: Option<SpecklePoint>,
-    /// The same in the reference frame, if the theory has a value.
-    reference_point: Option<ReferencePoint>,
-    /// Points that are spread over the image.
-    kept: Vec<ReferencePoint>,
-}
-
 /// Points of a group of surfaces that were seen in some frames.
 struct SeenPoints {
     /// The one over whose speckle the pupil has moved farthest.
     farthest: Option<ReferencePoint>,
     all: Vec<ReferencePoint>,
-}
-
-impl Region {
-    const NONE: Self = Self {
-        low: DVec2::INFINITY,
-        high: DVec2::NEG_INFINITY,
-    };
-
-    const fn of(point: DVec2) -> Self {
-        Self {
-            low: point,
-            high: point,
-        }
-    }
-
-    /// Returns the smallest and the largest component along a unit vector.
-    pub(super) fn along(&self, axis: DVec2) -> [f64; 2] {
-        let middle = self.middle().dot(axis);
-        let half = 0.5 * self.size().dot(axis.abs());
-        [middle - half, middle + half]
-    }
-
-    pub(super) fn middle(&self) -> DVec2 {
-        0.5 * (self.low + self.high)
-    }
-
-    fn joined(self, other: Self) -> Self {
-        Self {
-            low: self.low.min(other.low),
-            high: self.high.max(other.high),
-        }
-    }
-
-    pub(super) fn size(&self) -> DVec2 {
-        self.high - self.low
-    }
 }
 
 impl MotionPrescan {
@@ -329,113 +277,6 @@ impl MotionPrescan {
         self.region = self.region.joined(needs.region);
         let [low, high] = needs.span;
         self.shifts = [self.shifts[0].max(-low), self.shifts[1].max(high)];
-    }
-}
-
-/// Samples one frame with so many rays per image side, and keeps the points of the middle one of so many along each.
-fn frame_samples(
-    laser_groups: LaserGroups<'_>,
-    intersector: &Intersector,
-    change: &Change,
-    [side, stride]: [u32; 2],
-) -> Vec<Vec<FrameSample>> {
-    let none = FrameSample {
-        region: Region::NONE,
-        shifts: [f64::INFINITY, 0.0],
-        ways: Region::NONE,
-        farthest: None,
-        reference_point: None,
-        kept: Vec::new(),
-    };
-    let mut samples = vec![vec![none; laser_groups.count()]; laser_groups.geometries.len()];
-    let first = first_ray(change, side);
-    for (index, pixel) in (0..).zip(pixels_of(change.camera(), side, first)) {
-        let is_kept = [index % side, index / side].map(|i| i % stride) == [stride / 2; 2];
-        let Some(hit) = intersector.intersect(&change.camera().ray(pixel)) else {
-            continue;
-        };
-        let Some(&group) = laser_groups.groups.get(hit.surface) else {
-            continue;
-        };
-        let point = SpecklePoint {
-            pixel,
-            position: hit.position,
-            normal: hit.normal,
-            surface: hit.surface,
-            wave: 0.5,
-        };
-        for (laser, geometry) in laser_groups.geometries.iter().enumerate() {
-            if change.laser(laser).next_event(hit.position).is_some() {
-                let sample = &mut samples[laser][group];
-                sample.add_point(change, (laser, geometry), &point);
-                let kept = is_kept.then(|| change.reference_point_along(&point, DVec3::ZERO));
-                sample.kept.extend(kept.flatten());
-            }
-        }
-    }
-    samples
-}
-
-/// Adds what the speckle of light that has met several surfaces asks for, where it is not faint.
-fn add_multiple_light(
-    samples: &mut [Vec<FrameSample>],
-    laser_groups: LaserGroups<'_>,
-    map: &MultipleMap,
-    change: &Change,
-) {
-    for (laser, geometry) in laser_groups.geometries.iter().enumerate() {
-        for ((_, surface), light) in map.bright().filter(|((of, _), _)| *of == laser) {
-            let point = &light.point;
-            let fraction = light.fraction_beside(light.single);
-            let single = change.speckle_shift(laser, geometry, point);
-            let carried = change.known_shift(laser, geometry, point, LightPath::Carried);
-            let shift = match carried {
-                Some(carried) if !change.is_reference() => light.shift([single, carried], fraction),
-                _ => single,
-            };
-            if let Some(&group) = laser_groups.groups.get(surface) {
-                samples[laser][group].add(change, point, &shift);
-            }
-        }
-    }
-}
-
-impl FrameSample {
-    /// Adds a point, and what has become of its speckle.
-    fn add_point(
-        &mut self,
-        change: &Change,
-        (laser, geometry): (usize, &ImagingGeometry),
-        point: &SpecklePoint,
-    ) {
-        self.add(change, point, &change.speckle_shift(laser, geometry, point));
-    }
-
-    fn add(&mut self, change: &Change, point: &SpecklePoint, shift: &SpeckleShift) {
-        let origin = change.perspective().point(point.pixel) - shift.displacement;
-        self.region = self.region.joined(Region::of(origin));
-        self.ways = self.ways.joined(Region::of(shift.pupil_vector()));
-        let [smallest, largest] = &mut self.shifts;
-        *smallest = smallest.min(shift.pupil);
-        if self.farthest.is_none() || shift.pupil > *largest {
-            *largest = shift.pupil;
-            self.farthest = Some(*point);
-        }
-    }
-
-    /// Returns what the frame asks for on a side of the reference frame, if something was seen.
-    fn needs(&self, side: f64) -> Option<FrameNeeds> {
-        let [smallest, largest] = self.shifts;
-        let span = if side > 0.0 {
-            [smallest, largest]
-        } else {
-            [-largest, -smallest]
-        };
-        self.farthest.map(|_| FrameNeeds {
-            region: self.region,
-            span,
-            ways: self.ways,
-        })
     }
 }
 

@@ -1,112 +1,125 @@
-use super::{SEED, SeenPoint, Survey};
+use glam::DVec3;
+use tem00_geometry::Hit;
+
+use super::{PATHS, SEED, SeenPoint, Survey, way::Way};
 use crate::{
-    integrator::Vertex,
     sampler::{pixel_key, point_in_square},
     speckle::MultiplePath,
+    vertex::Vertex,
+    walk::{Carried, Met, Roulette, Visitor, Walk, Walker},
 };
 
-/// Surfaces after which a path may end by chance.
-const CERTAIN_BOUNCES: u32 = 3;
+/// Surfaces that a path always leaves again before it may end by chance.
+const ROULETTE: Roulette = Roulette { certain: 2 };
 
-/// The way of a path back from the surface that the camera sees.
-struct WayBack {
-    /// The optical length, in metres, and what motion has added to it.
-    length: f64,
-    added: f64,
-    polarisation: f64,
-    throughput: f64,
-    /// The product of the changes of radiance by refraction.
-    compression: f64,
+/// The paths back from a point that the camera sees, and the light of a laser on what they meet.
+struct Sight<'s, 'a> {
+    survey: &'s Survey<'a>,
+    laser: usize,
+    seen: &'s SeenPoint<'a>,
+    /// The key of the first path.
+    first: u64,
+    ways: Vec<Way>,
+    /// Where in the pupil a change of the first direction of each moves the field.
+    pupils: Vec<DVec3>,
+    found: Vec<Vec<MultiplePath>>,
 }
 
-impl Survey<'_> {
-    /// Follows a path back from a point that the camera sees and returns the light of a laser on the further rough
-    /// surfaces that it meets.
+impl<'a> Survey<'a> {
+    /// Follows a group of paths back from a point that the camera sees and returns the light of a laser on the further
+    /// rough surfaces that they meet.
     pub(super) fn multiple_from_camera(
         &self,
         laser: usize,
-        seen: &SeenPoint<'_>,
-        key: u64,
+        seen: &SeenPoint<'a>,
+        first: u64,
     ) -> Vec<MultiplePath> {
-        let wavelength = self.change.laser(laser).wavelength();
-        let direct = self
-            .change
-            .paths_to(laser, seen.point.surface, seen.point.position);
-        let [now, before] = direct.unwrap_or_default();
-        let mut way = WayBack {
-            length: -now,
-            added: before - now,
-            polarisation: self.polarisation_of(seen.point.surface),
-            throughput: 1.0,
-            compression: 1.0,
-        };
-        let mut paths = Vec::new();
-        let mut vertex = seen.vertex;
-        let mut pupil = None;
-        let depths = 1..self.max_depth.unwrap_or(u32::MAX);
-        for depth in depths {
-            let draw = |purpose: u64| {
-                point_in_square(pixel_key(
-                    self.seed ^ SEED,
-                    [key, u64::from(depth), purpose],
-                ))
-            };
-            // Choose the direction, and end long and dark paths by chance.
-            let Some(event) = vertex.sample(draw(1), wavelength) else {
-                break;
-            };
-            way.throughput *= vertex.weight(&event, wavelength);
-            way.compression *= event.eta_squared;
-            if depth >= CERTAIN_BOUNCES {
-                let survival = (way.throughput * way.compression).min(0.95);
-                if draw(2)[0] >= survival {
-                    break;
-                }
-                way.throughput /= survival;
-            }
-            let ray = vertex.leave(self.intersector, event.wi);
-            pupil = pupil.or(Some(seen.pupil_of(ray.direction)));
-            // Find the next surface.
-            let Some(hit) = self.intersector.intersect(&ray) else {
-                break;
-            };
-            let Some(surface) = self.scene.surfaces.get(hit.surface) else {
-                break;
-            };
-            let Some(next) = Vertex::new(&ray, &hit, &surface.material) else {
-                break;
-            };
-            let index = way.compression.sqrt();
-            let [here, last] =
-                [&next, &vertex].map(|v| [v.position, self.change.origin(v.surface, v.position)]);
-            let [now, before] = [0, 1].map(|time| here[time].distance(last[time]));
-            way.length += index * now;
-            way.added += index * (now - before);
-            vertex = next;
-            if !vertex.is_specular() {
-                way.polarisation *= self.polarisation_of(vertex.surface);
-                let pupil = pupil.unwrap_or_default();
-                paths.extend(
-                    self.lit(laser, &vertex, &way)
-                        .map(|path| MultiplePath { pupil, ..path }),
-                );
-            }
-        }
-        paths
-    }
-
-    /// The light of a laser that a path finds at a vertex.
-    fn lit(&self, laser: usize, vertex: &Vertex<'_>, way: &WayBack) -> Option<MultiplePath> {
-        let radiance = way.throughput * self.single(laser, vertex);
+        let Hit {
+            surface, position, ..
+        } = seen.vertex.hit;
         let [now, before] = self
             .change
-            .paths_to(laser, vertex.surface, vertex.position)?;
+            .paths_to(laser, surface, position)
+            .unwrap_or_default();
+        let start = Way {
+            length: -now,
+            change: before - now,
+            polarisation: self.polarisation_of(surface),
+            last: self.places(&seen.vertex),
+        };
+        let mut sight = Sight {
+            survey: self,
+            laser,
+            seen,
+            first,
+            ways: vec![start; PATHS],
+            pupils: vec![DVec3::ZERO; PATHS],
+            found: vec![Vec::new(); PATHS],
+        };
+        let walk = Walk {
+            scene: self.scene,
+            intersector: self.intersector,
+            wavelength: self.change.laser(laser).wavelength(),
+            max_depth: self.max_depth.unwrap_or(u32::MAX),
+            carried: Carried::Radiance,
+            roulette: ROULETTE,
+        };
+        let walkers = (0..PATHS).map(|number| Walker::new(number, seen.ray, 1.0));
+        walk.follow(walkers.collect(), &mut sight);
+        sight.found.concat()
+    }
+}
+
+impl<'a> Visitor<'a> for Sight<'_, 'a> {
+    fn meet(&mut self, depth: u32, met: &mut Vec<Met<'a>>) {
+        // The first surface is the one that the camera sees.
+        for Met { walker, vertex } in met.iter().filter(|_| depth > 1) {
+            let number = walker.number;
+            if depth == 2 {
+                self.pupils[number] = self.seen.pupil_of(walker.ray.direction);
+            }
+            let way = &mut self.ways[number];
+            *way = way.on_to(self.survey.places(vertex), walker.index());
+            if !vertex.is_specular() {
+                way.polarisation *= self.survey.polarisation_of(vertex.hit.surface);
+                let found = self.lit(number, walker.carries, vertex);
+                self.found[number].extend(found);
+            }
+        }
+    }
+
+    fn direction(&mut self, path: usize, depth: u32) -> [f64; 2] {
+        self.draw(path, depth, 1)
+    }
+
+    fn survival(&mut self, path: usize, depth: u32) -> f64 {
+        self.draw(path, depth, 2)[0]
+    }
+}
+
+impl Sight<'_, '_> {
+    fn draw(&self, path: usize, depth: u32, purpose: u64) -> [f64; 2] {
+        let key = self.first + path as u64;
+        point_in_square(pixel_key(
+            self.survey.seed ^ SEED,
+            [key, depth.into(), purpose],
+        ))
+    }
+
+    /// The light of the laser that a path finds at a vertex.
+    fn lit(&self, number: usize, carries: f64, vertex: &Vertex<'_>) -> Option<MultiplePath> {
+        let Hit {
+            surface, position, ..
+        } = vertex.hit;
+        let radiance = carries * self.survey.single(self.laser, vertex);
+        let [now, before] = self.survey.change.paths_to(self.laser, surface, position)?;
+        let way = &self.ways[number];
         (radiance > 0.0).then_some(MultiplePath {
             radiance,
             delay: way.length + now,
-            added: way.added + now - before,
+            added: way.change + now - before,
             polarisation: way.polarisation,
-            pupil: glam::DVec3::ZERO,
+            pupil: self.pupils[number],
         })
     }
 }

@@ -60,12 +60,12 @@ impl Draws {
     }
 
     /// Returns a number in [0, 1).
-    pub(super) fn uniform(&mut self) -> f64 {
+    pub(crate) fn uniform(&mut self) -> f64 {
         unit(self.generator.next_u64())
     }
 
     /// Returns two numbers in [0, 1).
-    pub(super) fn uniform_2d(&mut self) -> [f64; 2] {
+    pub(crate) fn uniform_2d(&mut self) -> [f64; 2] {
         [self.uniform(), self.uniform()]
     }
 }

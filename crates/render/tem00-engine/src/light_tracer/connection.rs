@@ -1,0 +1,165 @@
+use glam::{DVec2, DVec3};
+use tem00_geometry::Segment;
+use tem00_tracer::{Crop, Laser, LocalFrame};
+
+use super::{
+    LightGroup, LightJob, LightSelection, LightTracer,
+    splats::{Splat, Splats},
+};
+use crate::{
+    sampler::{DrawKey, Draws},
+    speckle::{SpeckleFrame, SpecklePoint},
+    walk::Met,
+};
+
+/// Follows the light of one laser, group by group, and connects what it meets to the camera.
+#[derive(Debug)]
+pub(super) struct Connector<'a> {
+    tracer: &'a LightTracer<'a>,
+    job: LightJob,
+    /// The laser as it stands in the frame.
+    laser: Laser,
+}
+
+/// Light that reaches the camera unless something stands in the way.
+struct Connection<'a> {
+    met: &'a Met<'a>,
+    /// Where it is seen.
+    point: SpecklePoint,
+    /// The number of the pixel in the part of the image that is rendered.
+    index: usize,
+    /// In W/(m² sr).
+    radiance: f64,
+    /// The power on the first rough surface, on the side that the camera sees, in watts.
+    power: f64,
+}
+
+impl<'a> Connector<'a> {
+    pub(super) fn new(tracer: &'a LightTracer<'a>, job: &LightJob) -> Self {
+        Self {
+            tracer,
+            job: *job,
+            laser: tracer.scene.lasers[job.laser].in_frame(tracer.frame),
+        }
+    }
+
+    /// Follows a group of `paths` light paths and returns what they bring to the image.
+    pub(super) fn group(&self, group: u64, paths: usize) -> Splats {
+        let tracer = self.tracer;
+        let group = LightGroup {
+            scene: tracer.scene,
+            intersector: tracer.intersector,
+            laser: &self.laser,
+            max_depth: tracer.max_depth,
+            key: DrawKey {
+                seed: self.job.seed,
+                frame: tracer.frame,
+                laser: self.job.laser,
+                group,
+            },
+            paths,
+        };
+        let mut splats = Splats::default();
+        group.follow(|depth, met, draws| {
+            if depth == 1 && tracer.selection == LightSelection::SpecularFirst {
+                met.retain(|met| met.vertex.is_specular());
+            }
+            self.connect(met, draws, &mut splats);
+        });
+        splats.merge();
+        splats
+    }
+
+    /// Adds the light that goes straight from rough surfaces to the camera.
+    fn connect(&self, met: &[Met<'a>], draws: &mut Draws, splats: &mut Splats) {
+        let (mut connections, mut segments) = (Vec::new(), Vec::new());
+        for met in met.iter().filter(|met| !met.vertex.is_specular()) {
+            let lens = draws.uniform_2d();
+            let is_single = self.laser.spectral_line().is_monochromatic();
+            let wave = if is_single { 0.5 } else { draws.uniform() };
+            if let Some((connection, segment)) = self.connection(met, lens, wave) {
+                connections.push(connection);
+                segments.push(segment);
+            }
+        }
+        let mut visible = vec![false; segments.len()];
+        let intersector = self.tracer.intersector;
+        intersector.visible_batch(&segments, &mut visible);
+        for (connection, _) in connections.iter().zip(visible).filter(|&(_, free)| free) {
+            self.add(connection, splats);
+        }
+    }
+
+    fn connection<'v>(
+        &self,
+        met: &'v Met<'a>,
+        lens: [f64; 2],
+        wave: f64,
+    ) -> Option<(Connection<'v>, Segment)> {
+        let hit = &met.vertex.hit;
+        let seen = self.tracer.camera.connect(hit.position, lens)?;
+        let index = pixel_index(seen.pixel, &self.tracer.area)?;
+        let towards = (seen.lens_point - hit.position).try_normalize()?;
+        let axes = LocalFrame::from_normal(hit.normal_seen_from(towards));
+        let sent = met.sent(towards, &axes, self.laser.wavelength());
+        let radiance = met.walker.carries * sent * seen.importance;
+        let power = met.power_seen_from(towards);
+        let connection = Connection {
+            met,
+            point: SpecklePoint {
+                pixel: seen.pixel,
+                position: hit.position,
+                normal: axes.normal() * axes.normal().dot(towards).signum(),
+                surface: hit.surface,
+                wave,
+            },
+            index,
+            radiance,
+            power,
+        };
+        // Power counts on black surfaces, too.
+        let segment = met.vertex.segment_to(seen.lens_point);
+        (radiance > 0.0 || power > 0.0).then_some((connection, segment))
+    }
+
+    fn add(&self, connection: &Connection<'_>, splats: &mut Splats) {
+        let radiance = connection.radiance;
+        let is_single = connection.met.walker.rough == 0;
+        let speckle = self.tracer.speckle;
+        let factor = |speckle: &SpeckleFrame<'_>| speckle.factor(self.job.laser, &connection.point);
+        splats.push(Splat {
+            pixel: connection.index,
+            single: if is_single { radiance } else { 0.0 },
+            multiple: if is_single { 0.0 } else { radiance },
+            radiance: radiance * speckle.map_or(1.0, factor),
+        });
+        if is_single {
+            splats.power += connection.power;
+        }
+    }
+}
+
+impl Met<'_> {
+    /// Returns the power with which light that has met no rough surface before lights the side that
+    /// is seen from the unit direction `out`, in watts.
+    fn power_seen_from(&self, out: DVec3) -> f64 {
+        let is_lit = self.vertex.cosine * out.dot(self.vertex.hit.normal) > 0.0;
+        if is_lit && self.walker.rough == 0 {
+            self.walker.carries
+        } else {
+            0.0
+        }
+    }
+}
+
+/// Returns the number of the pixel at an image point, row by row in `area`, if it is there.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a point of the image is not negative and below 2²⁸"
+)]
+fn pixel_index(pixel: DVec2, area: &Crop) -> Option<usize> {
+    let x = (pixel.x as usize).checked_sub(area.x)?;
+    let y = (pixel.y as usize).checked_sub(area.y)?;
+    (x < area.width && y < area.height).then_some(y * area.width + x)
+}

@@ -131,18 +131,21 @@ mod tests {
         }
     }
 
+    fn shapes() -> [Shape; 3] {
+        let corners = vec![DVec3::ZERO, 0.3 * DVec3::X, 0.1 * DVec3::Y];
+        [
+            Shape::Rectangle(Rectangle::new(DVec3::ZERO, 0.2 * DVec3::X, 0.1 * DVec3::Y).unwrap()),
+            Shape::Cylinder(Cylinder::new(DVec3::ZERO, DVec3::X, 0.1, 0.5).unwrap()),
+            Shape::from(TriangleMesh::new(corners, vec![[0, 1, 2]]).unwrap()),
+        ]
+    }
+
     #[test]
     fn translation_moves_the_bounds() {
-        let mesh = TriangleMesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]]);
-        let shapes = [
-            Shape::Rectangle(Rectangle::new(DVec3::ONE, 0.2 * DVec3::X, 0.1 * DVec3::Z).unwrap()),
-            Shape::Sphere(Sphere::new(DVec3::ONE, 0.25).unwrap()),
-            Shape::Cylinder(Cylinder::new(DVec3::ONE, DVec3::ONE, 0.1, 0.3).unwrap()),
-            Shape::from(mesh.unwrap()),
-        ];
         let by = DVec3::new(0.25, -0.5, 0.125);
         let motion = RigidMotion::along(by).unwrap();
-        for shape in shapes {
+        let ball = Shape::Sphere(Sphere::new(DVec3::ONE, 0.25).unwrap());
+        for shape in shapes().into_iter().chain([ball]) {
             let (low, high) = shape.bounds();
             let (moved_low, moved_high) = shape.moved(&motion).bounds();
             // Two roundings of numbers up to 1.5.
@@ -153,15 +156,9 @@ mod tests {
 
     #[test]
     fn a_quarter_turn_swaps_the_sides_of_every_shape() {
-        let corners = vec![DVec3::ZERO, 0.3 * DVec3::X, 0.1 * DVec3::Y];
-        let shapes = [
-            Shape::Rectangle(Rectangle::new(DVec3::ZERO, 0.2 * DVec3::X, 0.1 * DVec3::Y).unwrap()),
-            Shape::Cylinder(Cylinder::new(DVec3::ZERO, DVec3::X, 0.1, 0.5).unwrap()),
-            Shape::from(TriangleMesh::new(corners, vec![[0, 1, 2]]).unwrap()),
-        ];
         let turn = RigidMotion::about(DVec3::ZERO, DVec3::Z, core::f64::consts::FRAC_PI_2);
         let turn = turn.unwrap();
-        for shape in shapes {
+        for shape in shapes() {
             // (x, y) turns to (−y, x).
             let (low, high) = shape.bounds();
             let (turned_low, turned_high) = shape.moved(&turn).bounds();

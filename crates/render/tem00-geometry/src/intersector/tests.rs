@@ -8,6 +8,7 @@ mod watertight;
 use core::f64::consts::{PI, TAU};
 
 use tem00_decorrelation::RigidMotion;
+use tem00_testkit::{Numbers, assert_absolute};
 
 use super::{primitive::Primitive, *};
 use crate::{Cylinder, MeshInstance, Rectangle, Sphere, TriangleMesh, hierarchy::MeshHierarchy};
@@ -40,16 +41,9 @@ fn direction(cosine: f64, azimuth: f64) -> DVec3 {
     DVec3::new(radius * azimuth.cos(), radius * azimuth.sin(), cosine)
 }
 
-/// Uniform numbers in [0, 1) from `SplitMix64`.
-fn uniforms(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed;
-    move || {
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 * 0.5_f64.powi(53)
-    }
+/// A point in the cube of side 1 about the origin.
+fn anywhere(numbers: &mut Numbers) -> DVec3 {
+    DVec3::from_array(numbers.units()) - 0.5
 }
 
 /// A closed, bumpy ball around the origin: `rings` × 2 `rings` quadrilaterals, each two
@@ -83,34 +77,27 @@ fn ball(rings: u32, radius: f64) -> TriangleMesh {
 }
 
 fn mixed_scene() -> Vec<Shape> {
+    let (u, v) = (DVec3::new(0.01, 0.02, 0.02), DVec3::new(0.02, -0.02, 0.01));
+    let axis = DVec3::new(1.0, 0.2, 0.3);
     vec![
         rectangle(DVec3::new(0.0, 0.0, -0.3), 0.5 * DVec3::X, 0.4 * DVec3::Y),
         Shape::from(ball(12, 0.1)),
         sphere(DVec3::new(0.2, 0.1, 0.0), 0.05),
         sphere(DVec3::new(-0.2, 0.15, -0.1), 1e-4),
         Shape::from(ball(6, 0.004)).translated(DVec3::new(-0.1, -0.2, 0.2)),
-        rectangle(
-            DVec3::new(0.0, 0.2, 0.2),
-            DVec3::new(0.01, 0.02, 0.02),
-            DVec3::new(0.02, -0.02, 0.01),
-        ),
-        tube(
-            DVec3::new(0.35, -0.3, 0.0),
-            DVec3::new(1.0, 0.2, 0.3),
-            0.03,
-            0.2,
-        ),
+        rectangle(DVec3::new(0.0, 0.2, 0.2), u, v),
+        tube(DVec3::new(0.35, -0.3, 0.0), axis, 0.03, 0.2),
     ]
 }
 
 /// Triangles without order, of all sizes from 1 down to 1e−3 of `size`, of which many are slivers.
-fn soup(triangles: u32, size: f64, uniform: &mut impl FnMut() -> f64) -> TriangleMesh {
+fn soup(triangles: u32, size: f64, numbers: &mut Numbers) -> TriangleMesh {
     let mut vertices = Vec::new();
     for _ in 0..triangles {
-        let mut point = || size * (DVec3::new(uniform(), uniform(), uniform()) - 0.5);
+        let mut point = || size * (anywhere(numbers));
         let (a, u, v) = (point(), point(), point());
-        let extent = 10.0_f64.powf(-3.0 * uniform());
-        let sliver = 10.0_f64.powf(-8.0 * uniform() * uniform());
+        let extent = 10.0_f64.powf(-3.0 * numbers.unit());
+        let sliver = 10.0_f64.powf(-8.0 * numbers.unit() * numbers.unit());
         vertices.extend([a, a + extent * u, a + extent * (u + sliver * v)]);
     }
     let corners = (0..triangles).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
@@ -119,11 +106,11 @@ fn soup(triangles: u32, size: f64, uniform: &mut impl FnMut() -> f64) -> Triangl
 
 /// Rays through pixels of a pinhole and from anywhere to anywhere, in turns of 100, in a scene
 /// within `size` of the origin.
-fn rays(count: usize, size: f64, uniform: &mut impl FnMut() -> f64) -> Vec<Ray> {
+fn rays(count: usize, size: f64, numbers: &mut Numbers) -> Vec<Ray> {
     let eye = size * DVec3::new(0.3, 0.2, 1.4);
     (0..count)
         .map(|i| {
-            let mut point = || size * (DVec3::new(uniform(), uniform(), uniform()) - 0.5);
+            let mut point = || size * (anywhere(numbers));
             let pixel = (i / 100) as f64;
             let corner = 0.4 * size * DVec3::new(pixel.sin(), pixel.cos(), 0.0);
             let target = corner + 0.01 * point();
@@ -160,6 +147,22 @@ fn brute_force(shapes: &[Shape], ray: &Ray) -> Option<(f64, usize)> {
     distances.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
+/// Asserts that a ray meets what a search of all primitives finds, at the same distance, and returns it.
+#[track_caller]
+fn assert_found(intersector: &Intersector, shapes: &[Shape], ray: &Ray) -> Option<Hit> {
+    let found = intersector.intersect(ray);
+    let expected = brute_force(shapes, ray).map(|(distance, _)| distance);
+    assert_eq!(found.map(|hit| hit.distance), expected, "{ray:?}");
+    found
+}
+
+/// Asserts that a hit lies at a distance on a surface that faces along a normal.
+#[track_caller]
+fn assert_hit(hit: &Hit, distance: f64, normal: DVec3, tolerance: f64) {
+    assert_absolute(hit.distance, distance, tolerance);
+    assert!(hit.normal.abs_diff_eq(normal, 10.0 * tolerance), "{hit:?}");
+}
+
 #[test]
 fn rays_that_are_no_rays_meet_nothing() {
     let floor = build(&[rectangle(DVec3::ZERO, DVec3::X, DVec3::Y)]);
@@ -169,11 +172,8 @@ fn rays_that_are_no_rays_meet_nothing() {
         (DVec3::Z, DVec3::ZERO),
         (DVec3::INFINITY, -DVec3::Z),
     ] {
-        assert_eq!(
-            floor.intersect(&Ray { origin, direction }),
-            None,
-            "{origin} {direction}"
-        );
+        let ray = Ray { origin, direction };
+        assert_eq!(floor.intersect(&ray), None, "{origin} {direction}");
     }
 }
 

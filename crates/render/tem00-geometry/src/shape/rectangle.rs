@@ -137,12 +137,8 @@ mod tests {
     use crate::Shape;
 
     fn tilted() -> Rectangle {
-        Rectangle::new(
-            DVec3::new(0.1, 0.2, 0.3),
-            DVec3::new(0.03, 0.04, 0.0),
-            DVec3::new(0.0, 0.0, 0.2),
-        )
-        .unwrap()
+        let half_u = DVec3::new(0.03, 0.04, 0.0);
+        Rectangle::new(DVec3::new(0.1, 0.2, 0.3), half_u, 0.2 * DVec3::Z).unwrap()
     }
 
     #[test]
@@ -153,28 +149,28 @@ mod tests {
         let normal = DVec3::new(0.8, -0.6, 0.0);
         assert!(
             rectangle.normal().abs_diff_eq(normal, 1e-15),
-            "normal = {}",
-            rectangle.normal()
+            "{rectangle:?}"
         );
         let (low, high) = Shape::Rectangle(rectangle).bounds();
         assert!(low.abs_diff_eq(DVec3::new(0.07, 0.16, 0.1), 1e-15), "{low}");
-        assert!(
-            high.abs_diff_eq(DVec3::new(0.13, 0.24, 0.5), 1e-15),
-            "{high}"
-        );
+        let top = DVec3::new(0.13, 0.24, 0.5);
+        assert!(high.abs_diff_eq(top, 1e-15), "{high}");
     }
 
     #[test]
     fn points_of_a_rectangle_run_from_corner_to_corner() {
         let r = tilted();
-        let corner = r.centre() - r.half_u() - r.half_v();
-        assert!(r.point(0.0, 0.0).abs_diff_eq(corner, 1e-15), "first corner");
-        assert!(r.point(0.5, 0.5).abs_diff_eq(r.centre(), 1e-15), "centre");
-        let edge = r.centre() + 0.5 * r.half_u();
-        assert!(
-            r.point(0.75, 0.5).abs_diff_eq(edge, 1e-15),
-            "u runs along half_u"
-        );
+        for (u, v, half_edges) in [
+            (0.0, 0.0, -r.half_u() - r.half_v()),
+            (0.5, 0.5, DVec3::ZERO),
+            (0.75, 0.5, 0.5 * r.half_u()),
+        ] {
+            let point = r.point(u, v);
+            assert!(
+                point.abs_diff_eq(r.centre() + half_edges, 1e-15),
+                "{u}, {v}: {point}"
+            );
+        }
     }
 
     #[test]

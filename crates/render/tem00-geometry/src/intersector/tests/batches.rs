@@ -17,24 +17,24 @@ fn segments(
     intersector: &Intersector,
     rays: &[Ray],
     around: DVec3,
-    uniform: &mut impl FnMut() -> f64,
+    numbers: &mut Numbers,
 ) -> Vec<Segment> {
     let hits = rays.iter().filter_map(|ray| intersector.intersect(ray));
     hits.map(|hit| Segment {
         from: hit.position,
         from_normal: hit.normal,
-        to: around + 0.3 * (DVec3::new(uniform(), uniform(), uniform()) - 0.5),
+        to: around + 0.3 * anywhere(numbers),
     })
     .collect()
 }
 
 #[test]
 fn a_batch_of_any_length_is_answered_as_its_rays_are_alone() {
-    let mut uniform = uniforms(11);
+    let mut numbers = Numbers::new(11);
     let mut shapes = mixed_scene();
-    shapes.push(soup(3000, 1.0, &mut uniform).into());
+    shapes.push(soup(3000, 1.0, &mut numbers).into());
     let intersector = build(&shapes);
-    let mut rays = rays(3000, 1.0, &mut uniform);
+    let mut rays = rays(3000, 1.0, &mut numbers);
     rays[70].direction = DVec3::NAN;
     rays[71].origin = DVec3::INFINITY;
     rays[72].direction = DVec3::ZERO;
@@ -44,17 +44,13 @@ fn a_batch_of_any_length_is_answered_as_its_rays_are_alone() {
         let hits = intersect_all(&intersector, &rays[..length]);
         assert_eq!(hits, alone[..length], "{length} rays");
     }
-    let segments = segments(&intersector, &rays, 0.7 * DVec3::Z, &mut uniform);
+    let segments = segments(&intersector, &rays, 0.7 * DVec3::Z, &mut numbers);
     let alone: Vec<_> = segments
         .iter()
         .map(|way| intersector.visible(way.from, way.from_normal, way.to))
         .collect();
     let open = alone.iter().filter(|&&open| open).count();
-    assert!(
-        open > 100 && open < alone.len() - 100,
-        "{open} of {}",
-        alone.len()
-    );
+    assert!(open > 100 && open < alone.len() - 100, "{open} are open");
     for length in [0, 1, 63, 64, 65, 200, segments.len()] {
         let visible = all_visible(&intersector, &segments[..length]);
         assert_eq!(visible, alone[..length], "{length} segments");
@@ -63,33 +59,27 @@ fn a_batch_of_any_length_is_answered_as_its_rays_are_alone() {
 
 #[test]
 fn every_processor_gives_the_same_answers() {
-    let mut uniform = uniforms(12);
+    let mut numbers = Numbers::new(12);
     let mut shapes = mixed_scene();
-    shapes.push(soup(2000, 1.0, &mut uniform).into());
+    shapes.push(soup(2000, 1.0, &mut numbers).into());
     let widest = build(&shapes);
     let mut narrowest = widest.clone();
     narrowest.level = Level::baseline();
-    let rays = rays(2000, 1.0, &mut uniform);
-    assert_eq!(
-        intersect_all(&widest, &rays),
-        intersect_all(&narrowest, &rays),
-        "hits"
-    );
-    let segments = segments(&widest, &rays, 0.7 * DVec3::Z, &mut uniform);
-    assert_eq!(
-        all_visible(&widest, &segments),
-        all_visible(&narrowest, &segments),
-        "shadows"
-    );
+    let rays = rays(2000, 1.0, &mut numbers);
+    let [wide, narrow] = [&widest, &narrowest].map(|level| intersect_all(level, &rays));
+    assert_eq!(wide, narrow, "hits");
+    let segments = segments(&widest, &rays, 0.7 * DVec3::Z, &mut numbers);
+    let [wide, narrow] = [&widest, &narrowest].map(|level| all_visible(level, &segments));
+    assert_eq!(wide, narrow, "shadows");
 }
 
 #[test]
 fn batches_find_what_a_search_of_all_triangles_finds_at_any_scale() {
     for (seed, size) in [(1, 1e-9), (2, 1e-3), (3, 1.0), (4, 1e6)] {
-        let mut uniform = uniforms(seed);
-        let shapes = [Shape::from(soup(400, size, &mut uniform))];
+        let mut numbers = Numbers::new(seed);
+        let shapes = [Shape::from(soup(400, size, &mut numbers))];
         let intersector = build(&shapes);
-        let rays = rays(1500, size, &mut uniform);
+        let rays = rays(1500, size, &mut numbers);
         let hits = intersect_all(&intersector, &rays);
         assert!(
             hits.iter().flatten().count() > 100,
@@ -104,13 +94,13 @@ fn batches_find_what_a_search_of_all_triangles_finds_at_any_scale() {
 
 #[test]
 fn shadows_are_those_of_a_search_of_all_primitives() {
-    let mut uniform = uniforms(13);
+    let mut numbers = Numbers::new(13);
     let mut shapes = mixed_scene();
-    shapes.push(soup(300, 1.0, &mut uniform).into());
+    shapes.push(soup(300, 1.0, &mut numbers).into());
     let intersector = build(&shapes);
     let primitives: Vec<_> = shapes.iter().flat_map(primitives).collect();
-    let rays = rays(2000, 1.0, &mut uniform);
-    let mut segments = segments(&intersector, &rays, 0.7 * DVec3::Z, &mut uniform);
+    let rays = rays(2000, 1.0, &mut numbers);
+    let mut segments = segments(&intersector, &rays, 0.7 * DVec3::Z, &mut numbers);
     // Some end on a surface, which does not hide its own points.
     let ends: Vec<_> = segments.iter().map(|segment| segment.from).collect();
     for (segment, end) in segments.iter_mut().zip(ends.iter().rev()).step_by(3) {
@@ -120,13 +110,8 @@ fn shadows_are_those_of_a_search_of_all_primitives() {
     for (segment, visible) in segments.iter().zip(visible) {
         let mut query = Shadow::new(segment, intersector.clearance);
         for primitive in &primitives {
-            query.offer(
-                primitive,
-                query::PrimitiveIndex {
-                    body: 0,
-                    triangle: 0,
-                },
-            );
+            let (body, triangle) = (0, 0);
+            query.offer(primitive, query::PrimitiveIndex { body, triangle });
         }
         assert_eq!(visible, !query.hidden, "{segment:?}");
     }

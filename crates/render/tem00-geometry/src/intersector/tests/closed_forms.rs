@@ -10,21 +10,21 @@ fn a_plane_is_met_where_geometry_says() {
         let hit = wall.intersect(&ray).unwrap();
         let distance = 0.5 * 1.0_f64.hypot(tangent);
         // Ten roundings of numbers up to 1.1.
-        assert!((hit.distance - distance).abs() < 1e-15, "{}", hit.distance);
+        assert_hit(&hit, distance, -DVec3::X, 1e-15);
         let position = DVec3::new(0.5, 0.5 * tangent, 0.0);
-        assert!(
-            hit.position.abs_diff_eq(position, 1e-15),
-            "{}",
-            hit.position
-        );
-        assert!(hit.normal.abs_diff_eq(-DVec3::X, 1e-15), "{}", hit.normal);
+        assert!(hit.position.abs_diff_eq(position, 1e-15), "{hit:?}");
     }
-    let past = ray(DVec3::ZERO, DVec3::new(1.0, 2.1, 0.0));
-    assert_eq!(wall.intersect(&past), None, "beyond the edge at 1 m");
-    let away = ray(DVec3::ZERO, -DVec3::X);
-    assert_eq!(wall.intersect(&away), None, "behind");
-    let along = ray(DVec3::new(0.5, -2.0, 0.0), DVec3::Y);
-    assert_eq!(wall.intersect(&along), None, "in the plane");
+    for (origin, toward, case) in [
+        (
+            DVec3::ZERO,
+            DVec3::new(1.0, 2.1, 0.0),
+            "beyond the edge at 1 m",
+        ),
+        (DVec3::ZERO, -DVec3::X, "behind"),
+        (DVec3::new(0.5, -2.0, 0.0), DVec3::Y, "in the plane"),
+    ] {
+        assert_eq!(wall.intersect(&ray(origin, toward)), None, "{case}");
+    }
 }
 
 #[test]
@@ -36,8 +36,7 @@ fn a_ball_is_met_where_geometry_says() {
         let half_chord = ((0.02 - miss) * (0.02 + miss)).sqrt();
         // The half chord c changes by Δmiss r/c for a rounding of the 0.5 m: c is 2e−5 m last.
         let tolerance = 1e-15 + 2e-16 * 0.02 / half_chord;
-        let distance = 0.5 - half_chord;
-        assert!((hit.distance - distance).abs() < tolerance, "miss = {miss}");
+        assert_absolute(hit.distance, 0.5 - half_chord, tolerance);
         let normal = DVec3::new(miss, 0.0, -half_chord) / 0.02;
         // Relative to the radius, 1 / 0.02 times as much.
         assert!(
@@ -45,25 +44,30 @@ fn a_ball_is_met_where_geometry_says() {
             "miss = {miss}"
         );
     }
-    let past = ray(DVec3::new(0.020_000_001, 0.0, 0.0), DVec3::Z);
-    assert_eq!(ball.intersect(&past), None, "just beside");
-    let away = ray(DVec3::ZERO, -DVec3::Z);
-    assert_eq!(ball.intersect(&away), None, "behind");
     let unit = build(&[sphere(DVec3::ZERO, 1.0)]);
-    let tangent = ray(DVec3::X, DVec3::Y);
-    assert_eq!(unit.intersect(&tangent), None, "touching where it starts");
+    for (ball, origin, toward, case) in [
+        (
+            &ball,
+            DVec3::new(0.020_000_001, 0.0, 0.0),
+            DVec3::Z,
+            "just beside",
+        ),
+        (&ball, DVec3::ZERO, -DVec3::Z, "behind"),
+        (&unit, DVec3::X, DVec3::Y, "touching where it starts"),
+    ] {
+        assert_eq!(ball.intersect(&ray(origin, toward)), None, "{case}");
+    }
 }
 
 #[test]
 fn from_inside_the_far_side_of_a_ball_is_met_with_its_outward_normal() {
     let ball = build(&[sphere(DVec3::ONE, 0.1)]);
-    let inside = ray(DVec3::new(1.0, 1.0, 1.06), DVec3::Z);
-    let hit = ball.intersect(&inside).unwrap();
-    assert!((hit.distance - 0.04).abs() < 1e-15, "{}", hit.distance);
-    assert!(hit.normal.abs_diff_eq(DVec3::Z, 1e-14), "{}", hit.normal);
-    let back = ray(DVec3::new(1.0, 1.0, 1.06), -DVec3::Z);
-    let hit = ball.intersect(&back).unwrap();
-    assert!((hit.distance - 0.16).abs() < 1e-15, "{}", hit.distance);
+    for (distance, side) in [(0.04, DVec3::Z), (0.16, -DVec3::Z)] {
+        let hit = ball
+            .intersect(&ray(DVec3::new(1.0, 1.0, 1.06), side))
+            .unwrap();
+        assert_hit(&hit, distance, side, 1e-15);
+    }
 }
 
 #[test]
@@ -75,7 +79,7 @@ fn triangle_normals_follow_the_order_of_corners_and_never_flip() {
         let ray = ray(DVec3::new(0.25, 0.5, side), -side * DVec3::Z);
         let hit = mesh.intersect(&ray).unwrap();
         assert_eq!(hit.normal, DVec3::Z, "seen from z = {side}");
-        assert!((hit.distance - 1.0).abs() < 1e-15, "{}", hit.distance);
+        assert_absolute(hit.distance, 1.0, 1e-15);
         assert_eq!(hit.position, DVec3::new(0.25, 0.5, 0.0), "position");
     }
 }
@@ -94,16 +98,8 @@ fn grazing_rays_meet_a_mesh_to_a_nanometre_at_half_a_metre() {
         // The direction is rounded to 1e−16: 0.5 m · 1e−16 · 0.5 / height along the floor.
         let tolerance = 1e-15 + 2e-16 / height;
         assert!(tolerance < 1e-9, "the promise");
-        assert!(
-            hit.position.abs_diff_eq(target, tolerance),
-            "{}",
-            hit.position
-        );
-        assert!(
-            hit.position.z.abs() < 1e-16,
-            "on the floor: {}",
-            hit.position.z
-        );
+        assert!(hit.position.abs_diff_eq(target, tolerance), "{hit:?}");
+        assert!(hit.position.z.abs() < 1e-16, "on the floor: {hit:?}");
     }
 }
 
@@ -118,8 +114,7 @@ fn near_hits_are_found_in_scenes_of_any_size() {
         for gap in [0.5, 1e-3, 1e-6, 1e-9] {
             let ray = ray(size * (1.0 + gap) * DVec3::Z, -DVec3::Z);
             let hit = ball.intersect(&ray).unwrap();
-            let error = (hit.distance - gap * size).abs();
-            assert!(error < 5e-16 * size, "size {size}, gap {gap}: {error}");
+            assert_absolute(hit.distance, gap * size, 5e-16 * size);
         }
     }
 }
@@ -134,57 +129,31 @@ fn a_tube_is_met_where_geometry_says() {
     );
     let grazing = 0.099_999;
     let half_chord = |y: f64| ((0.1 - y) * (0.1 + y)).sqrt();
+    let (outside, inside) = (DVec3::new(-0.3, 0.0, 0.1), DVec3::new(0.06, 0.0, 0.1));
     let down = DVec3::new(0.1, 0.0, -0.45);
-    for (origin, toward, distance, normal, case) in [
+    let chord = half_chord(grazing);
+    let beside = DVec3::new(-chord, grazing, 0.0) / 0.1;
+    // A chord of half length c moves its ends by r / c times a rounding: 220 times at most.
+    for (origin, toward, distance, normal, tolerance) in [
+        (outside, DVec3::X, 0.2, -DVec3::X, 4e-16),
+        (inside, DVec3::X, 0.04, DVec3::X, 4e-16),
+        (inside, -DVec3::X, 0.16, -DVec3::X, 4e-16),
         (
-            DVec3::new(-0.3, 0.0, 0.1),
+            outside.with_y(grazing),
             DVec3::X,
-            0.2,
-            -DVec3::X,
-            "from outside",
+            0.3 - chord,
+            beside,
+            1e-14,
         ),
-        (
-            DVec3::new(0.06, 0.0, 0.1),
-            DVec3::X,
-            0.04,
-            DVec3::X,
-            "from inside",
-        ),
-        (
-            DVec3::new(0.06, 0.0, 0.1),
-            -DVec3::X,
-            0.16,
-            -DVec3::X,
-            "from inside, back",
-        ),
-        (
-            DVec3::new(-0.3, grazing, 0.1),
-            DVec3::X,
-            0.3 - half_chord(grazing),
-            DVec3::new(-half_chord(grazing), grazing, 0.0) / 0.1,
-            "grazing",
-        ),
-        (
-            0.5 * DVec3::Z,
-            down,
-            down.length(),
-            DVec3::X,
-            "through the open end",
-        ),
+        // Through the open end.
+        (0.5 * DVec3::Z, down, down.length(), DVec3::X, 4e-16),
     ] {
         let ray = ray(origin, toward);
-        let hit = upright.intersect(&ray).unwrap();
-        // A chord of half length c moves its ends by r / c times a rounding: 220 times at most.
-        let tolerance = if case == "grazing" { 1e-14 } else { 4e-16 };
-        assert!(
-            (hit.distance - distance).abs() < tolerance,
-            "{case}: {}",
-            hit.distance
-        );
-        assert!(
-            hit.normal.abs_diff_eq(normal, 10.0 * tolerance),
-            "{case}: {}",
-            hit.normal
+        assert_hit(
+            &upright.intersect(&ray).unwrap(),
+            distance,
+            normal,
+            tolerance,
         );
         let moved = Ray {
             origin: motion.point(ray.origin),
@@ -193,17 +162,9 @@ fn a_tube_is_met_where_geometry_says() {
         let hit = tilted.intersect(&moved).unwrap();
         // Coordinates of 2 are rounded ten times as coarsely as those of 0.2.
         let tolerance = 20.0 * tolerance;
-        assert!(
-            (hit.distance - distance).abs() < tolerance,
-            "{case}, tilted: {}",
-            hit.distance
-        );
+        assert_absolute(hit.distance, distance, tolerance);
         let point = motion.point(ray.origin + distance * ray.direction);
-        assert!(
-            hit.position.abs_diff_eq(point, tolerance),
-            "{case}, tilted: {}",
-            hit.position
-        );
+        assert!(hit.position.abs_diff_eq(point, tolerance), "{hit:?}");
     }
     for (origin, toward, case) in [
         (DVec3::new(-0.3, 0.0, 0.21), DVec3::X, "above"),

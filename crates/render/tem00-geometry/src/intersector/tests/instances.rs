@@ -11,22 +11,21 @@ fn baked(instance: &MeshInstance) -> TriangleMesh {
 
 #[test]
 fn instances_are_met_as_the_meshes_that_stand_where_they_do() {
-    let mut uniform = uniforms(21);
-    let mesh = Arc::new(soup(500, 40.0, &mut uniform));
+    let mut numbers = Numbers::new(21);
+    let mesh = Arc::new(soup(500, 40.0, &mut numbers));
     let instances = [0.0, 1.0, 2.0].map(|angle| {
         let pivot = DVec3::new(0.3, -0.2, 0.1);
         let axis = DVec3::new(1.0, angle, -0.5);
         let motion = RigidMotion::about(pivot, axis, angle).unwrap();
         let motion = motion.then(&RigidMotion::along(0.2 * angle * DVec3::X).unwrap());
         let scale = 1e-2 * (1.0 + angle);
-        MeshInstance::new(Arc::clone(&mesh))
-            .placed(scale, &motion)
-            .unwrap()
+        let mesh = MeshInstance::new(Arc::clone(&mesh));
+        mesh.placed(scale, &motion).unwrap()
     });
     let as_instances = build(&instances.clone().map(Shape::Mesh));
     let as_meshes = build(&instances.map(|instance| Shape::from(baked(&instance))));
     let mut met = [0; 3];
-    for ray in rays(4000, 1.0, &mut uniform) {
+    for ray in rays(4000, 1.0, &mut numbers) {
         let hit = as_instances.intersect(&ray);
         assert_eq!(hit, as_meshes.intersect(&ray), "{ray:?}");
         if let Some(hit) = hit {
@@ -44,25 +43,18 @@ fn an_instance_far_smaller_than_the_scene_is_met_exactly() {
     let place = DVec3::new(0.7, 0.6, 0.5);
     for scale in [1e-13, 1e-9, 1e-6] {
         let motion = RigidMotion::along(place).unwrap();
-        let tiny = MeshInstance::new(Arc::clone(&mesh))
-            .placed(scale, &motion)
-            .unwrap();
-        let shapes = [
-            rectangle(DVec3::ZERO, DVec3::X, DVec3::Y),
-            Shape::Mesh(tiny),
-        ];
+        let tiny = MeshInstance::new(Arc::clone(&mesh)).placed(scale, &motion);
+        let floor = rectangle(DVec3::ZERO, DVec3::X, DVec3::Y);
+        let shapes = [floor, Shape::Mesh(tiny.unwrap())];
         let intersector = build(&shapes);
-        let mut uniform = uniforms(22);
+        let mut numbers = Numbers::new(22);
         let mut hits = 0;
         for _ in 0..500 {
-            let aside = 1.2 * scale * (2.0 * DVec3::new(uniform(), uniform(), uniform()) - 1.0);
-            let from = DVec3::new(uniform(), uniform(), 2.0);
+            let aside = 1.2 * scale * (2.0 * DVec3::from_array(numbers.units()) - 1.0);
+            let from = DVec3::new(numbers.unit(), numbers.unit(), 2.0);
             let ray = ray(from, place + aside - from);
-            let hit = intersector
-                .intersect(&ray)
-                .map(|hit| (hit.distance, hit.surface));
-            assert_eq!(hit, brute_force(&shapes, &ray), "scale {scale:e}: {ray:?}");
-            hits += usize::from(hit.is_some_and(|(_, surface)| surface == 1));
+            let hit = assert_found(&intersector, &shapes, &ray);
+            hits += usize::from(hit.is_some_and(|hit| hit.surface == 1));
         }
         assert!(hits > 100, "scale {scale:e}: {hits} meet the ball");
     }
@@ -104,15 +96,14 @@ fn shading_normals_of_a_ball_are_those_of_the_sphere() {
         .unwrap();
     let centre = ball.point(DVec3::ZERO);
     let intersector = build(&[Shape::Mesh(ball)]);
-    let mut uniform = uniforms(23);
+    let mut numbers = Numbers::new(23);
     let mut worst = 0.0_f64;
     for _ in 0..2000 {
-        let outward = direction(2.0 * uniform() - 1.0, TAU * uniform());
-        let aside = 0.3 * direction(2.0 * uniform() - 1.0, TAU * uniform());
+        let outward = direction(2.0 * numbers.unit() - 1.0, TAU * numbers.unit());
+        let aside = 0.3 * direction(2.0 * numbers.unit() - 1.0, TAU * numbers.unit());
         let hit = intersector.intersect(&ray(centre + 2.0 * outward, aside - 2.0 * outward));
         let hit = hit.unwrap();
-        let length = hit.shading_normal.length();
-        assert!((length - 1.0).abs() < 4e-16, "unit length: {length}");
+        assert_absolute(hit.shading_normal.length(), 1.0, 4e-16);
         let sphere = (hit.position - centre).normalize();
         worst = worst.max((hit.shading_normal - sphere).length());
         // Normals interpolated between those of a sphere are proportional to the interpolated

@@ -15,20 +15,13 @@ fn no_ray_leaves_a_closed_mesh_through_an_edge_or_a_corner() {
     for triangle in 0..moved.mesh().triangles().len() {
         let corners = moved.mesh().corners(triangle);
         let [a, b, c] = corners.map(|corner| moved.point(corner));
-        for target in [
-            a,
-            b,
-            c,
-            0.5 * (a + b),
-            0.25 * a + 0.75 * c,
-            0.3 * b + 0.7 * c,
-        ] {
+        let edges = [0.5 * (a + b), 0.25 * a + 0.75 * c, 0.3 * b + 0.7 * c];
+        for target in edges.into_iter().chain([a, b, c]) {
             let hit = intersector.intersect(&ray(inside, target - inside));
             let hit = hit.unwrap_or_else(|| panic!("the ray to {target} left the mesh"));
             assert!(
                 hit.position.abs_diff_eq(target, 1e-15),
-                "{} is not {target}",
-                hit.position
+                "{hit:?} is not {target}"
             );
             assert!(hit.normal.dot(target - inside) > 0.0, "outward from inside");
         }
@@ -92,16 +85,16 @@ fn no_ray_falls_through_the_edges_of_a_turned_and_scaled_grid() {
     for scale in [1.0, 1e-4] {
         let placed = grid.placed(scale, &turn).unwrap();
         let intersector = build(&[Shape::Mesh(placed.clone())]);
-        let mut uniform = uniforms(31);
+        let mut numbers = Numbers::new(31);
         let mut rays = Vec::new();
         for [a, b, _] in grid.mesh().triangles() {
             let [a, b] = [a, b].map(|&i| grid.mesh().vertices()[i as usize]);
-            let target = a.lerp(b, (2.0 * uniform()).min(1.0));
+            let target = a.lerp(b, (2.0 * numbers.unit()).min(1.0));
             // At the rim a ray may pass beside the grid.
             if (target.truncate() - 0.5).abs().max_element() > 0.49 {
                 continue;
             }
-            let from = DVec3::new(uniform(), uniform(), 0.3 + uniform());
+            let from = DVec3::new(numbers.unit(), numbers.unit(), 0.3 + numbers.unit());
             let (from, target) = (placed.point(from), placed.point(target));
             rays.push(ray(from, target - from));
         }

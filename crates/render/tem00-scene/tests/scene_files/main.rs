@@ -7,13 +7,12 @@
 )]
 
 mod accepted;
-mod accepted_parts;
 mod any_text;
 mod includes;
 mod refused;
-mod refused_parts;
 mod repository;
 mod schema;
+mod transcript;
 
 use std::fs;
 use std::path::Path;

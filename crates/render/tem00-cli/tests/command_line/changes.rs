@@ -13,7 +13,7 @@ fn replaced(text: &str, from: &str, to: &str) -> String {
 fn a_changed_scene_is_rendered_as_if_its_file_said_so() {
     let pixels = |scene: &str, changes: &[&str]| {
         let folder = folder();
-        fs::write(folder.path().join("a.toml"), scene).expect("written");
+        write(folder.path(), "a.toml", scene);
         let mut command = tem00(folder.path(), "render a.toml -o . --spp 1");
         for change in changes {
             command.args(["--set", change]);
@@ -46,18 +46,13 @@ fn a_changed_scene_is_rendered_as_if_its_file_said_so() {
 #[test]
 fn a_render_of_other_values_is_another_render() {
     let folder = folder();
-    fs::write(folder.path().join("a.toml"), format!("{SCENE}frames = 2\n")).expect("written");
-    let with = |change: &str, more: &str| {
-        let line = format!("render a.toml -o . --spp 1 --set {change} {more}");
-        run(folder.path(), &line)
-    };
-    assert_code(&with("render.seed=1", "--frames 0"), 0);
-    let other = with("render.seed=2", "--resume");
-    assert_code(&other, 2);
-    assert!(
-        message(&other).contains("belongs to another render"),
-        "{}",
-        message(&other)
+    write(folder.path(), "a.toml", format!("{SCENE}frames = 2\n"));
+    let with = |more: &str| format!("render a.toml -o . --spp 1 --set render.seed={more}");
+    done(folder.path(), &with("1 --frames 0"));
+    refused(
+        folder.path(),
+        &with("2 --resume"),
+        &["belongs to another render"],
     );
-    assert_code(&with("render.seed=1", "--resume"), 0);
+    done(folder.path(), &with("1 --resume"));
 }

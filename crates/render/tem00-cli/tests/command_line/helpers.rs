@@ -5,10 +5,13 @@
 use std::{
     fs,
     path::Path,
-    process::{Command, Output, Stdio},
+    process::{Child, Command, Output, Stdio},
+    thread::sleep,
+    time::Duration,
 };
 
 use png::{BitDepth, ColorType, Encoder};
+use serde_json::Value;
 
 pub(crate) fn tem00(folder: &Path, line: &str) -> Command {
     let mut command = Command::new(super::PROGRAM);
@@ -53,9 +56,62 @@ pub(crate) fn assert_code(output: &Output, code: i32) {
     assert_eq!(output.status.code(), Some(code), "{}", text(&output.stderr));
 }
 
+/// Runs a command that succeeds.
+#[track_caller]
+pub(crate) fn done(folder: &Path, line: &str) -> Output {
+    let output = run(folder, line);
+    assert_code(&output, 0);
+    output
+}
+
+/// Runs a command that succeeds and prints nothing but JSON.
+#[track_caller]
+pub(crate) fn json(folder: &Path, line: &str) -> Value {
+    serde_json::from_slice(&done(folder, line).stdout).expect("JSON and nothing else")
+}
+
+#[track_caller]
+pub(crate) fn json_of(file: &Path) -> Value {
+    serde_json::from_slice(&fs::read(file).expect("a file")).expect("JSON")
+}
+
+/// Runs a command that is refused, and returns what it says, with all of these words.
+#[track_caller]
+pub(crate) fn refused(folder: &Path, line: &str, words: &[&str]) -> String {
+    let output = run(folder, line);
+    assert_code(&output, 2);
+    let said = message(&output);
+    for word in words {
+        assert!(said.contains(word), "{line}: {word:?} is not in {said}");
+    }
+    said
+}
+
+#[track_caller]
+pub(crate) fn write(folder: &Path, name: &str, content: impl AsRef<[u8]>) {
+    fs::write(folder.join(name), content).expect("written");
+}
+
+/// Starts a command, whose output is kept.
+pub(crate) fn start(folder: &Path, line: &str) -> Child {
+    let mut command = tem00(folder, line);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    command.spawn().expect("the program starts")
+}
+
+/// Waits until something has happened, for at most a minute.
+#[track_caller]
+pub(crate) fn wait_until(what: &str, mut happened: impl FnMut() -> bool) {
+    let has_happened = (0..12_000).any(|_| {
+        sleep(Duration::from_millis(5));
+        happened()
+    });
+    assert!(has_happened, "{what}");
+}
+
 /// Sends an interrupt, as Ctrl-C does.
 #[cfg(unix)]
-pub(crate) fn interrupt(child: &std::process::Child) {
+pub(crate) fn interrupt(child: &Child) {
     let interrupt = format!("kill -INT {}", child.id());
     let sent = Command::new("sh").args(["-c", &interrupt]).status();
     assert!(sent.expect("a shell").success(), "the signal is sent");
@@ -111,6 +167,16 @@ pub(crate) fn play(name: &str, prepare: impl FnOnce(&Path)) -> tempfile::TempDir
     let assert = snapbox::Assert::new().action_env("SNAPSHOTS");
     assert.eq(found, expected);
     folder
+}
+
+/// Makes a pattern of a size, from a pupil of a diameter, and returns its intensities, whose mean is 1.
+pub(crate) fn pattern(folder: &Path, name: &str, [size, diameter]: [usize; 2]) -> Vec<f64> {
+    let line = format!("pattern -o {name} --size {size} --diameter {diameter} --seed 5");
+    done(folder, &line);
+    let file = fs::read(folder.join(name)).expect("the pattern");
+    let (values, _) = file[file.len() - 4 * size * size..].as_chunks::<4>();
+    let values = values.iter().map(|bytes| f32::from_le_bytes(*bytes).into());
+    values.collect()
 }
 
 /// Noise of a pixel, uniform from −1 to 1.

@@ -17,7 +17,10 @@ mod speckle;
 
 use std::fs;
 
-use self::helpers::{assert_code, files, folder, interrupt, message, run, tem00, text};
+use self::helpers::{
+    assert_code, done, files, folder, interrupt, json, json_of, message, refused, run, start,
+    tem00, text, wait_until, write,
+};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_tem00");
 
@@ -26,7 +29,7 @@ const SCENE: &str = include_str!("../cmd/files/a.toml");
 
 pub(crate) fn scene_folder() -> tempfile::TempDir {
     let folder = folder();
-    fs::write(folder.path().join("a.toml"), SCENE).expect("the scene is written");
+    write(folder.path(), "a.toml", SCENE);
     folder
 }
 

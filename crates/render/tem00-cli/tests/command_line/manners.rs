@@ -3,7 +3,6 @@
 use std::{
     fs,
     io::{BufRead, BufReader},
-    process::Stdio,
 };
 
 use super::*;
@@ -12,9 +11,8 @@ use super::*;
 fn darkness_is_called_so() {
     let folder = folder();
     let away = SCENE.replace("centre = [0, 0, 0]", "centre = [\"70 mm\", 0, 0]");
-    fs::write(folder.path().join("a.toml"), away).expect("written");
-    let output = run(folder.path(), "render a.toml --spp 1");
-    assert_code(&output, 0);
+    write(folder.path(), "a.toml", away);
+    let output = done(folder.path(), "render a.toml --spp 1");
     let said = text(&output.stderr);
     assert!(said.contains("laser 0: no light on target"), "{said}");
     assert!(!said.contains("0.0000e0"), "{said}");
@@ -22,10 +20,8 @@ fn darkness_is_called_so() {
     let rendered = said.find("a.png: laser 0").expect("the result");
     assert!(warned < rendered, "{said}");
     let written = files(&folder.path().join("out/a"));
-    assert!(
-        written.contains(&"a_overview.svg".to_owned()),
-        "{written:?}"
-    );
+    let is_drawn = written.contains(&"a_overview.svg".to_owned());
+    assert!(is_drawn, "{written:?}");
 }
 
 #[test]
@@ -34,31 +30,22 @@ fn quiet_leaves_notes_out_and_keeps_results_and_errors() {
     let loud = run(folder.path(), "render a.toml --spp 1");
     assert!(!loud.stderr.is_empty(), "there are notes");
     for line in ["render a.toml --spp 1 -q", "--quiet render a.toml --spp 1"] {
-        let quiet = run(folder.path(), line);
-        assert_code(&quiet, 0);
+        let quiet = done(folder.path(), line);
         assert_eq!(text(&quiet.stderr), "", "{line}");
         assert_eq!(quiet.stdout, loud.stdout, "{line}");
     }
-    let failed = run(folder.path(), "render missing.toml -q");
-    assert_code(&failed, 2);
-    assert!(message(&failed).contains("missing.toml"), "errors are told");
+    refused(folder.path(), "render missing.toml -q", &["missing.toml"]);
 }
 
 #[cfg(unix)]
 #[test]
 fn progress_is_told_in_lines_where_there_is_no_terminal() {
     let folder = scene_folder();
-    let mut child = tem00(folder.path(), "render a.toml --spp 1000000")
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts");
+    let mut child = start(folder.path(), "render a.toml --spp 1000000");
     let stderr = BufReader::new(child.stderr.take().expect("it is piped"));
     let lines = stderr.lines().map_while(Result::ok);
-    let line = lines
-        .filter(|line| line.starts_with("a: "))
-        .find(|line| line.contains(" %, "));
-    let line = line.expect("a line of progress");
+    let mut lines = lines.filter(|line| line.starts_with("a: ") && line.contains(" %, "));
+    let line = lines.next().expect("a line of progress");
     interrupt(&child);
     child.wait().expect("the program ends");
     assert!(
@@ -71,18 +58,13 @@ fn progress_is_told_in_lines_where_there_is_no_terminal() {
 fn shells_and_man_know_every_command_and_option() {
     let folder = folder();
     for shell in ["bash", "zsh", "fish"] {
-        let output = run(folder.path(), &format!("completions {shell}"));
-        assert_code(&output, 0);
+        let output = done(folder.path(), &format!("completions {shell}"));
         let script = text(&output.stdout);
         for word in ["pattern", "speckle", "white-level", "pupil-magnification"] {
-            assert!(
-                script.contains(word),
-                "{word} is not in the script for {shell}"
-            );
+            assert!(script.contains(word), "{word} is not told to {shell}");
         }
     }
-    let output = run(folder.path(), "man pages");
-    assert_code(&output, 0);
+    done(folder.path(), "man pages");
     let pages = files(&folder.path().join("pages"));
     for page in [
         "tem00.1",
@@ -90,10 +72,7 @@ fn shells_and_man_know_every_command_and_option() {
         "tem00-speckle.1",
         "tem00-man.1",
     ] {
-        assert!(
-            pages.contains(&page.to_owned()),
-            "{page} is not in {pages:?}"
-        );
+        assert!(pages.contains(&page.to_owned()), "{page}: {pages:?}");
     }
     let render = fs::read_to_string(folder.path().join("pages/tem00-render.1")).expect("a page");
     // Hyphens are escaped in troff.

@@ -239,6 +239,7 @@ mod tests {
             "white level {white} of the light"
         );
     }
+
     fn empty(dark: &Grid<f32>) -> Frame {
         Frame {
             lasers: Vec::new(),
@@ -311,27 +312,26 @@ mod tests {
                 .values
         };
         let laser = &frame.lasers[0];
-        assert_eq!(read("laser_0.single"), laser.single);
-        assert_eq!(read("laser_0.speckle"), laser.speckle);
-        assert_eq!(read("laser_0.radiance"), laser.radiance);
-        assert_eq!(read("laser_0.multiple"), laser.multiple);
-        assert_eq!(read("laser_0.variance"), laser.variance);
-        assert_eq!(read("lights.radiance"), frame.lights);
-        assert_eq!(read("lights.variance"), frame.lights_variance);
-        assert_eq!(read("depth.Z"), frame.depth);
-        assert_eq!(read("normal.X"), frame.normal[0]);
-        assert_eq!(read("normal.Y"), frame.normal[1]);
-        assert_eq!(read("normal.Z"), frame.normal[2]);
-        assert_eq!(read("samples.count"), frame.samples);
+        for (name, layer) in [
+            ("laser_0.single", &laser.single),
+            ("laser_0.speckle", &laser.speckle),
+            ("laser_0.radiance", &laser.radiance),
+            ("laser_0.multiple", &laser.multiple),
+            ("laser_0.variance", &laser.variance),
+            ("lights.radiance", &frame.lights),
+            ("lights.variance", &frame.lights_variance),
+            ("depth.Z", &frame.depth),
+            ("normal.X", &frame.normal[0]),
+            ("normal.Y", &frame.normal[1]),
+            ("normal.Z", &frame.normal[2]),
+            ("samples.count", &frame.samples),
+        ] {
+            assert_eq!(read(name), *layer, "{name}");
+        }
         // Red laser light and lights: (3 + i) + (0.5 + i) at pixel i; blue holds no laser light.
-        assert!(
-            (read("picture.R")[(2, 0)] - 7.5).abs() < 1e-5,
-            "red is all light"
-        );
-        assert!(
-            (read("picture.B")[(2, 0)] - 2.5).abs() < 1e-5,
-            "blue is the lights'"
-        );
+        let [red, blue] = ["picture.R", "picture.B"].map(|name| read(name)[(2, 0)]);
+        assert!((red - 7.5).abs() < 1e-5, "red is all light: {red}");
+        assert!((blue - 2.5).abs() < 1e-5, "blue is the lights': {blue}");
     }
 
     #[test]

@@ -307,10 +307,32 @@ mod tests {
         }
     }
 
-    fn row<'a>(measurement: &'a Measurement, quantity: &str) -> &'a Row {
-        let mut rows = measurement.rows.iter();
-        rows.find(|row| row.quantity == quantity)
-            .expect("the row is there")
+    fn row<'a>(found: &'a Measurement, quantity: &str) -> &'a Row {
+        let mut rows = found.rows.iter();
+        let row = rows.find(|row| row.quantity == quantity);
+        row.expect("the row is there")
+    }
+
+    fn value(found: &Measurement, quantity: &str) -> f64 {
+        row(found, quantity).measured
+    }
+
+    /// Returns the difference from theory in tolerances.
+    fn deviation(found: &Measurement, quantity: &str) -> f64 {
+        match row(found, quantity).theory {
+            Expectation::Near { value, tolerance } => {
+                (row(found, quantity).measured - value).abs() / tolerance
+            }
+            _ => panic!("{quantity} has a theory"),
+        }
+    }
+
+    fn drawn(measurement: &Measurement) -> String {
+        let page = page::Page {
+            title: "speckle & <light>",
+            curves: &measurement.curves,
+        };
+        page.draw().svg().to_owned()
     }
 
     /// A window out of a pattern with speckles of 4 samples, and a brightness of its own.
@@ -322,23 +344,17 @@ mod tests {
     #[test]
     fn fully_developed_speckle_is_recognised() {
         let found = measured(window(3));
-        let Expectation::Near { value, tolerance } = row(&found, "contrast").theory else {
-            panic!("the contrast has a theory");
-        };
-        assert!(
-            (row(&found, "contrast").measured - value).abs() < tolerance,
-            "{found:?}"
-        );
+        assert!(deviation(&found, "contrast") < 1.0, "{found:?}");
         // The size spreads by 0.58 / n; the window is at least 75 speckles wide: 3 % are 4 σ.
         for axis in ["x", "y"] {
-            let size = row(&found, &format!("speckle size {axis} (pixels)")).measured;
+            let size = value(&found, &format!("speckle size {axis} (pixels)"));
             assert!(
                 (size / 4.0 - 1.0).abs() < 0.031,
                 "speckle size {axis} is {size}"
             );
         }
         assert!(
-            row(&found, "KS p-value of exponential").measured > 1e-3,
+            value(&found, "KS p-value of exponential") > 1e-3,
             "{found:?}"
         );
     }
@@ -349,19 +365,28 @@ mod tests {
         let sum = Grid::from_fn(400, 300, |x, y| a[(x, y)] + b[(x, y)]);
         let found = measured(sum);
         assert!(
-            row(&found, "KS p-value of exponential").measured < 1e-6,
+            value(&found, "KS p-value of exponential") < 1e-6,
             "{found:?}"
         );
-        assert!(
-            row(&found, "KS p-value of Gamma").measured > 1e-3,
-            "{found:?}"
-        );
+        assert!(value(&found, "KS p-value of Gamma") > 1e-3, "{found:?}");
         // The shape is 2 to the error that is stated, and some 3/n of bias.
-        let error = row(&found, "its standard error").measured;
+        let error = value(&found, "its standard error");
         assert!(
-            (row(&found, "shape of Gamma").measured - 2.0).abs() < 4.0 * error + 1e-3,
+            (value(&found, "shape of Gamma") - 2.0).abs() < 4.0 * error + 1e-3,
             "{found:?}"
         );
+        let page = drawn(&found);
+        for text in [
+            "speckle &amp; &lt;light&gt;",
+            "Histogram",
+            "Gamma, M = ",
+            "Autocovariance",
+            "Airy, x",
+            "Power spectrum",
+        ] {
+            assert!(page.contains(text), "{text} is on the page");
+        }
+        assert!(!page.contains("NaN"), "every point has a place");
     }
 
     #[test]
@@ -370,12 +395,12 @@ mod tests {
         // Every fifth sample at a speckle size of 2: nothing correlates.
         let sparse = Grid::from_fn(100, 100, |x, y| pattern.values()[(5 * x, 5 * y)]);
         let found = measured(sparse);
+        let mut quantities = found.rows.iter().map(|row| &row.quantity);
+        assert!(quantities.all(|name| !name.contains("size")), "{found:?}");
+        let page = drawn(&found);
+        assert!(!page.contains("Airy") && !page.contains("pupil"), "no size");
         assert!(
-            found.rows.iter().all(|row| !row.quantity.contains("size")),
-            "{found:?}"
-        );
-        assert!(
-            row(&found, "KS p-value of exponential").measured > 1e-3,
+            value(&found, "KS p-value of exponential") > 1e-3,
             "{found:?}"
         );
     }
@@ -386,17 +411,11 @@ mod tests {
             let light = window(seed).map(|value| (value / 7.0 * mean).round());
             let found = measured(light);
             for test in ["KS", "χ²"] {
-                let p_value = row(&found, &format!("{test} p-value of exponential")).measured;
+                let p_value = value(&found, &format!("{test} p-value of exponential"));
                 assert!(p_value > 1e-3, "{test} at {mean} levels: {found:?}");
             }
-            let Expectation::Near { value, tolerance } = row(&found, "contrast").theory else {
-                panic!("the contrast has a theory");
-            };
-            let contrast = row(&found, "contrast").measured;
-            assert!(
-                (contrast - value).abs() < tolerance,
-                "{contrast} at {mean} levels"
-            );
+            let off = deviation(&found, "contrast");
+            assert!(off < 1.0, "{off} at {mean} levels");
         }
     }
 
@@ -436,18 +455,12 @@ mod tests {
         ] {
             let raw = window(21).map(|value| (value / 7.0 * mean + level).round());
             let told = pedestal(raw).expect("a warning");
-            let number = told.split("--black-level ").nth(1).and_then(|rest| {
-                rest.split(|c: char| !c.is_ascii_digit() && c != '.')
-                    .next()?
-                    .parse::<f32>()
-                    .ok()
-            });
+            let mut words = told.split("--black-level ").nth(1).into_iter();
+            let number = words.find_map(|rest| rest.split(' ').next()?.parse::<f32>().ok());
             let number = number.expect("a number");
             // A thousandth of the pixels have less than a thousandth of the mean.
-            assert!(
-                (number - level).abs() < 2e-3 * mean + 1.0,
-                "{mean} + {level}: {told}"
-            );
+            let is_near = (number - level).abs() < 2e-3 * mean + 1.0;
+            assert!(is_near, "{mean} + {level}: {told}");
         }
         let two = |degree: f32| {
             let (a, b) = (window(22), window(23));
@@ -482,25 +495,17 @@ mod tests {
             samples.sum::<f32>()
         };
         let found = measured(Grid::from_fn(170, 170, sum));
-        let deviation = |quantity: &str| match row(&found, quantity).theory {
-            Expectation::Near { value, tolerance } => {
-                (row(&found, quantity).measured - value).abs() / tolerance
-            }
-            _ => panic!("{quantity} has a theory"),
-        };
-        assert!(
-            deviation("contrast, if pixels have no gaps") < 1.0,
-            "{found:?}"
-        );
-        assert!(deviation("contrast") > 2.0, "{found:?}");
+        let off = deviation(&found, "contrast, if pixels have no gaps");
+        assert!(off < 1.0, "{found:?}");
+        assert!(deviation(&found, "contrast") > 2.0, "{found:?}");
     }
 
     #[test]
     fn an_interval_holds_the_contrast() {
         let found = measured(window(11));
-        let contrast = row(&found, "contrast").measured;
+        let contrast = value(&found, "contrast");
         let [low, high] =
-            ["from", "to"].map(|end| row(&found, &format!("contrast, {end} (95 %)")).measured);
+            ["from", "to"].map(|end| value(&found, &format!("contrast, {end} (95 %)")));
         assert!(low < contrast && contrast < high, "{low} {contrast} {high}");
         // ± 1.96 · 0.765 / n in the logarithm, for n = √(400 · 300) / 4 = 87; the error is estimated
         // from the samples.
@@ -511,9 +516,7 @@ mod tests {
     #[test]
     fn an_even_image_is_no_speckle() {
         let image = loaded(Grid::filled(20, 20, 1.0));
-        assert!(
-            measure(Path::new("grey"), &image, (None, true)).is_err(),
-            "nothing varies"
-        );
+        let found = measure(Path::new("grey"), &image, (None, true));
+        assert!(found.is_err(), "nothing varies");
     }
 }

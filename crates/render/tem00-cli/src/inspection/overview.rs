@@ -388,18 +388,13 @@ mod tests {
             let found = clipped([from.into(), to.into()], [DVec2::ZERO, DVec2::splat(10.0)]);
             found.map(|ends| ends.map(|p| (p.x, p.y)))
         };
-        assert_eq!(
-            within((2.0, 5.0), (20.0, 5.0)),
-            Some([(2.0, 5.0), (10.0, 5.0)])
-        );
-        assert_eq!(
-            within((-5.0, -5.0), (15.0, 15.0)),
-            Some([(0.0, 0.0), (10.0, 10.0)])
-        );
-        assert_eq!(
-            within((1.0, 1.0), (2.0, 3.0)),
-            Some([(1.0, 1.0), (2.0, 3.0)])
-        );
+        for (from, to, ends) in [
+            ((2.0, 5.0), (20.0, 5.0), [(2.0, 5.0), (10.0, 5.0)]),
+            ((-5.0, -5.0), (15.0, 15.0), [(0.0, 0.0), (10.0, 10.0)]),
+            ((1.0, 1.0), (2.0, 3.0), [(1.0, 1.0), (2.0, 3.0)]),
+        ] {
+            assert_eq!(within(from, to), Some(ends));
+        }
         assert_eq!(within((-5.0, 12.0), (15.0, 12.0)), None);
         assert_eq!(within((-1.0, 9.0), (3.0, 15.0)), None);
     }

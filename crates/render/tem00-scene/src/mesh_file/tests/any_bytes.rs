@@ -4,18 +4,12 @@ use super::*;
 
 fn valid_files() -> [(MeshFormat, Vec<u8>); 7] {
     let nodes = r#"[{ "children": [1, 2] }, { "mesh": 0, "scale": [2, 2, 2] }, { "mesh": 2 }]"#;
-    let ply = binary_ply(
-        "binary_little_endian",
-        f64::to_le_bytes,
-        u32::to_le_bytes,
-        u16::to_le_bytes,
-    );
     [
         (MeshFormat::Obj, OBJ.as_bytes().to_vec()),
         (MeshFormat::Stl, ascii_stl().into_bytes()),
         (MeshFormat::Stl, binary_stl("exported")),
         (MeshFormat::Ply, ascii_ply().into_bytes()),
-        (MeshFormat::Ply, ply),
+        (MeshFormat::Ply, little_ply()),
         (MeshFormat::Gltf, gltf::embedded(nodes).into_bytes()),
         (MeshFormat::Gltf, gltf::binary(nodes)),
     ]

@@ -19,27 +19,18 @@ vn 0.5 0 0.5
 
 /// The position and the normal of each corner, triangle by triangle.
 fn corners(mesh: &TriangleMesh) -> Vec<(DVec3, DVec3)> {
-    let indices = mesh.triangles().as_flattened().iter();
-    indices
-        .map(|&i| (mesh.vertices()[i as usize], mesh.normals()[i as usize]))
-        .collect()
+    let corner = |&i: &u32| (mesh.vertices()[i as usize], mesh.normals()[i as usize]);
+    mesh.triangles().as_flattened().iter().map(corner).collect()
 }
 
 #[test]
 fn each_corner_of_an_obj_file_keeps_its_normal() {
     let mesh = read_mesh_bytes(ROOF.as_bytes(), MeshFormat::Obj, 1.0).unwrap();
     let slope = 0.5_f64.sqrt();
-    let (left, right) = (
-        DVec3::new(-slope, 0.0, slope),
-        DVec3::new(slope, 0.0, slope),
-    );
+    let [left, right] = [-slope, slope].map(|x| DVec3::new(x, 0.0, slope));
     let point = |n: usize| {
         let (column, row) = (n % 3, n / 3);
-        DVec3::new(
-            [0.0, 1.0, 2.0][column],
-            [0.0, 3.0][row],
-            [0.0, 1.0, 0.0][column],
-        )
+        DVec3::new(column as f64, 3.0 * row as f64, (column % 2) as f64)
     };
     let expected = [
         [(0, left), (1, left), (4, left)],
@@ -52,19 +43,14 @@ fn each_corner_of_an_obj_file_keeps_its_normal() {
     for (got, (index, normal)) in got.iter().zip(expected.as_flattened()) {
         assert_eq!(got.0, point(*index), "vertex {index} of the file");
         // The normals are made unit vectors: a few roundings.
-        assert!(
-            (got.1 - normal).length() < 4e-16,
-            "{} is not {normal}",
-            got.1
-        );
+        let got = got.1;
+        assert!((got - normal).length() < 4e-16, "{got} is not {normal}");
     }
     assert_eq!(got.len(), 15, "five triangles");
     // The ridge has one vertex for each side; the eaves and the gable share.
+    // Two sides and the gable at one end, two sides at the other.
     let ridge = mesh.vertices().iter().filter(|v| v.z > 0.5).count();
-    assert_eq!(
-        ridge, 5,
-        "two sides and the gable at one end, two sides at the other"
-    );
+    assert_eq!(ridge, 5);
 }
 
 #[test]
@@ -91,9 +77,8 @@ fn an_independent_reader_sees_the_same_normals() {
     .unwrap();
     let tobj = &models[0].mesh;
     let vector = |values: &[f32], i: u32| {
-        let start = 3 * i as usize;
-        let [x, y, z] = [0, 1, 2].map(|axis| f64::from(values[start + axis]));
-        DVec3::new(x, y, z)
+        let axis = |axis: usize| f64::from(values[3 * i as usize + axis]);
+        DVec3::new(axis(0), axis(1), axis(2))
     };
     let expected = tobj.indices.iter().map(|&i| {
         let normal = vector(&tobj.normals, i).normalize();
@@ -128,7 +113,7 @@ fn normals_of_ply_files_are_read() {
                 bytes.extend(values.iter().flat_map(|v| v.to_be_bytes()));
             }
         }
-        for face in std::iter::once(BASE.as_slice()).chain(SIDES.iter().map(|s| s.as_slice())) {
+        for face in faces() {
             if format == "ascii" {
                 let words: Vec<String> = face.iter().map(u32::to_string).collect();
                 bytes.extend(format!("{} {}\n", face.len(), words.join(" ")).bytes());
@@ -150,15 +135,13 @@ fn normals_of_ply_files_are_read() {
 
 #[test]
 fn files_without_normals_give_none() {
-    let obj = read_mesh_bytes(OBJ.as_bytes(), MeshFormat::Obj, 1.0);
-    let ply = read_mesh_bytes(ascii_ply().as_bytes(), MeshFormat::Ply, 1.0);
-    let stl = read_mesh_bytes(&binary_stl("plain"), MeshFormat::Stl, 1.0);
-    for mesh in [
-        obj.as_ref().map(|_| ()).and(stl.as_ref()),
-        ply.as_ref(),
-        stl.as_ref(),
+    for (content, format) in [
+        (OBJ.as_bytes(), MeshFormat::Obj),
+        (ascii_ply().as_bytes(), MeshFormat::Ply),
+        (&binary_stl("plain"), MeshFormat::Stl),
     ] {
-        assert!(mesh.unwrap().normals().is_empty(), "flat triangles");
+        let mesh = read_mesh_bytes(content, format, 1.0).unwrap();
+        assert!(mesh.normals().is_empty(), "flat triangles: {format:?}");
     }
 }
 

@@ -32,6 +32,18 @@ pub(crate) enum Expectation {
 }
 
 impl Expectation {
+    pub(crate) const fn near(value: f64, tolerance: f64) -> Self {
+        Self::Near { value, tolerance }
+    }
+
+    pub(crate) const fn at_least(at_least: f64) -> Self {
+        Self::AtLeast { at_least }
+    }
+
+    pub(crate) const fn at_most(at_most: f64) -> Self {
+        Self::AtMost { at_most }
+    }
+
     /// Returns in words whether a measured value is what theory says, if it says anything.
     fn verdict(self, measured: f64) -> Option<String> {
         let agrees = match self {
@@ -138,13 +150,7 @@ mod tests {
 
     #[test]
     fn the_rows_come_to_one_sentence() {
-        let near = |name: &str, measured| {
-            let theory = Expectation::Near {
-                value: 1.0,
-                tolerance: 0.05,
-            };
-            Row::new(name, measured, theory)
-        };
+        let near = |name: &str, measured| Row::new(name, measured, Expectation::near(1.0, 0.05));
         let open = Row::new("mean", 3.0, Expectation::Open);
         for (rows, expected) in [
             (vec![open.clone()], "Nothing here is compared with theory."),
@@ -170,20 +176,14 @@ mod tests {
     fn theory_is_null_where_there_is_none() {
         let json = |theory| serde_json::to_string(&theory).expect("numbers are JSON");
         assert_eq!(json(Expectation::Open), "null");
-        assert_eq!(
-            json(Expectation::AtMost { at_most: 0.5 }),
-            r#"{"at_most":0.5}"#
-        );
+        assert_eq!(json(Expectation::at_most(0.5)), r#"{"at_most":0.5}"#);
     }
 
     #[test]
     fn verdicts_say_on_which_side_a_value_lies() {
-        let near = Expectation::Near {
-            value: 2.0,
-            tolerance: 0.1,
-        };
-        let least = Expectation::AtLeast { at_least: 1e-3 };
-        let most = Expectation::AtMost { at_most: 1e-3 };
+        let near = Expectation::near(2.0, 0.1);
+        let least = Expectation::at_least(1e-3);
+        let most = Expectation::at_most(1e-3);
         for (theory, measured, expected) in [
             (near, 2.09, Some("agrees")),
             (near, 2.25, Some("high by 0.25")),

@@ -1,6 +1,9 @@
 //! From radiance to a picture for the eye.
 
-use tem00_numerics::Grid;
+use tem00_numerics::{
+    Grid,
+    cast::{to_f32, to_usize},
+};
 use tem00_report::colour::rgb_of_wavelength;
 
 /// The fraction of the lit pixels that the automatic exposure leaves below white.
@@ -41,7 +44,6 @@ impl Picture {
         self.add(layer, [1.0; 3]);
     }
 
-    #[expect(clippy::cast_possible_truncation, reason = "pixels are stored as f32")]
     fn add(&mut self, layer: &Grid<f32>, colour: [f64; 3]) {
         assert_eq!(
             (layer.width(), layer.height()),
@@ -50,7 +52,7 @@ impl Picture {
         );
         for (pixel, value) in self.0.values_mut().iter_mut().zip(layer.values()) {
             for (component, weight) in pixel.iter_mut().zip(colour) {
-                *component += weight as f32 * value;
+                *component += to_f32(weight) * value;
             }
         }
     }
@@ -79,12 +81,7 @@ impl Picture {
         let brightest = levels.iter().copied().fold(0.0, f32::max);
         levels.retain(|&level| level > LIT * brightest);
         levels.sort_by(f32::total_cmp);
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "the index lies in [0, 2²⁸]"
-        )]
-        let index = (levels.len() as f64 * BELOW_WHITE) as usize;
+        let index = to_usize(levels.len() as f64 * BELOW_WHITE);
         levels.get(index).or(levels.last()).copied().unwrap_or(1.0)
     }
 

@@ -49,8 +49,7 @@ struct Decorrelation {
     by: &'static str,
     words: &'static str,
     /// `None` where the change does not decorrelate the pattern at first order.
-    half: Option<f64>,
-    none: Option<f64>,
+    half_and_none: Option<[f64; 2]>,
 }
 
 impl Decorrelation {
@@ -59,7 +58,10 @@ impl Decorrelation {
             "tilt" => DEGREES.quantity(value),
             _ => length(value),
         };
-        let [half, none] = [self.half, self.none].map(|value| Cell::or_dash(value.map(amount)));
+        let amounts = self
+            .half_and_none
+            .map(|amounts| amounts.map(|x| Some(amount(x))));
+        let [half, none] = amounts.unwrap_or_default().map(Cell::or_dash);
         [Cell::new(self.by, self.words), half, none]
     }
 }
@@ -89,13 +91,15 @@ impl Speckle {
              phase, which is not counted here.",
         );
         report.section("What changes it").table(self.changes());
+        let geometry = &self.geometry;
         let section = report.section("Its size").table(self.sizes());
         if let Some(pitch) = args.pixel_pitch {
-            let size = self.geometry.speckle_size() / pitch;
+            let size = geometry.speckle_size() / pitch;
             let contrast = pixel_contrast(size.recip());
             // Light that the surface has depolarised makes two patterns of half the power each.
             let depolarised = contrast * core::f64::consts::FRAC_1_SQRT_2;
             let contrast_of = |value| NUMBER.with_digits(3).quantity(value);
+            let [polarised, depolarised] = [contrast, depolarised].map(contrast_of);
             section
                 .fact("pixel_pitch", "pixel pitch", length(pitch))
                 .fact(
@@ -103,45 +107,44 @@ impl Speckle {
                     "size h in pixels",
                     NUMBER.quantity(size),
                 )
-                .fact(
-                    "contrast",
-                    "contrast in a pixel, polarised",
-                    contrast_of(contrast),
-                )
+                .fact("contrast", "contrast in a pixel, polarised", polarised)
                 .fact(
                     "contrast_depolarised",
                     "contrast in a pixel, depolarised",
-                    contrast_of(depolarised),
+                    depolarised,
                 );
         }
-        let geometry = &self.geometry;
-        report
-            .section("The lens")
-            .fact("wavelength", "wavelength", length(args.wavelength))
-            .fact("focal_length", "focal length", length(args.focal_length))
-            .fact("f_number", "f-number", NUMBER.quantity(args.f_number))
-            .fact("distance", "distance of the surface", length(args.distance))
-            .fact("angle", "angle of the light", DEGREES.quantity(args.angle))
-            .fact(
+        let number = |value| NUMBER.quantity(value);
+        let section = report.section("The lens");
+        for (key, name, value) in [
+            ("wavelength", "wavelength", length(args.wavelength)),
+            ("focal_length", "focal length", length(args.focal_length)),
+            ("f_number", "f-number", number(args.f_number)),
+            ("distance", "distance of the surface", length(args.distance)),
+            ("angle", "angle of the light", DEGREES.quantity(args.angle)),
+            (
                 "pupil_magnification",
                 "pupil magnification",
-                NUMBER.quantity(args.pupil_magnification),
-            )
-            .fact(
+                number(args.pupil_magnification),
+            ),
+            (
                 "magnification",
                 "magnification",
-                NUMBER.quantity(geometry.magnification()),
-            )
-            .fact(
+                number(geometry.magnification()),
+            ),
+            (
                 "working_f_number",
                 "working f-number",
-                NUMBER.quantity(geometry.working_f_number()),
-            )
-            .fact(
+                number(geometry.working_f_number()),
+            ),
+            (
                 "pupil_diameter",
                 "pupil diameter",
                 length(geometry.pupil_diameter()),
-            );
+            ),
+        ] {
+            section.fact(key, name, value);
+        }
         report
     }
 
@@ -158,17 +161,13 @@ impl Speckle {
             self.geometry.speckle_size(),
             self.geometry.object_speckle_size(),
         ];
+        let [fringes, half] = [
+            "size h, the period of the finest fringes",
+            "full width at half maximum, 1.03 h",
+        ];
         for (key, name, factor) in [
-            (
-                "speckle_size",
-                "size h, the period of the finest fringes",
-                1.0,
-            ),
-            (
-                "full_width_at_half_maximum",
-                "full width at half maximum, 1.03 h",
-                2.0 * AIRY_HALF_WIDTH,
-            ),
+            ("speckle_size", fringes, 1.0),
+            ("full_width_at_half_maximum", half, 2.0 * AIRY_HALF_WIDTH),
             (
                 "first_zero",
                 "first zero of the autocovariance, 1.22 h",
@@ -215,33 +214,30 @@ fn decorrelation(
     let halving = equivalent_pupil_shift(0.5)?;
     // What rounding leaves of a shift is none.
     let reach = |shift: f64| (shift > 1e-9).then(|| geometry.pupil_diameter() / shift);
-    let change = |by, words, half, none| Decorrelation {
-        by,
-        words,
-        half,
-        none,
-    };
-    let sliding = |by, words, reach: Option<f64>| {
-        change(by, words, reach.map(|reach| halving * reach), reach)
-    };
+    let sliding = |reach: Option<f64>| reach.map(|reach| [halving * reach, reach]);
     let by_wavelength = reach(wavelength).map(|share| share * geometry.wavelength());
-    let along = equivalent_axial_shift(0.5)? * axial;
-    Ok([
-        change(
+    let in_a_pixel = [AIRY_HALF_WIDTH * cell, AIRY_FIRST_ZERO * cell];
+    let along = [equivalent_axial_shift(0.5)? * axial, axial];
+    let changes = [
+        (
             "across_in_a_pixel",
             "surface across the sight, in a pixel",
-            Some(AIRY_HALF_WIDTH * cell),
-            Some(AIRY_FIRST_ZERO * cell),
+            Some(in_a_pixel),
         ),
-        sliding(
+        (
             "across",
             "surface across the sight, followed",
-            reach(across),
+            sliding(reach(across)),
         ),
-        change("along", "surface along the sight", Some(along), Some(axial)),
-        sliding("tilt", "surface tilted", reach(tilt)),
-        sliding("wavelength", "wavelength", by_wavelength),
-    ])
+        ("along", "surface along the sight", Some(along)),
+        ("tilt", "surface tilted", sliding(reach(tilt))),
+        ("wavelength", "wavelength", sliding(by_wavelength)),
+    ];
+    Ok(changes.map(|(by, words, half_and_none)| Decorrelation {
+        by,
+        words,
+        half_and_none,
+    }))
 }
 
 /// Returns how far the speckle field slides over the pupil: per length across the sight, per radian of
@@ -306,13 +302,11 @@ mod tests {
         }
     }
 
-    /// Returns what leaves nothing of the pattern.
-    fn none(speckle: &Speckle, change: &str) -> Option<f64> {
+    /// Returns what leaves half of the pattern, and nothing.
+    fn half_and_none(speckle: &Speckle, change: &str) -> Option<[f64; 2]> {
         let mut changes = speckle.decorrelation.iter();
-        changes
-            .find(|found| found.by == change)
-            .expect("it is listed")
-            .none
+        let change = changes.find(|found| found.by == change);
+        change.expect("it is listed").half_and_none
     }
 
     #[test]
@@ -324,7 +318,7 @@ mod tests {
         for degrees in [0.0, 30.0, 60.0_f64] {
             let theta = degrees.to_radians();
             let speckle = Speckle::new(&args(theta)).expect("a lens");
-            let found = |change| none(&speckle, change);
+            let found = |change| half_and_none(&speckle, change).map(|[_, none]| none);
             let close = |found: Option<f64>, expected: f64| {
                 assert_relative_eq!(found.expect("a length"), expected, max_relative = 2e-6);
             };
@@ -343,10 +337,8 @@ mod tests {
         let speckle = Speckle::new(&args(0.0)).expect("a lens");
         let overlap = |s: f64| core::f64::consts::FRAC_2_PI * (s.acos() - s * (1.0 - s * s).sqrt());
         for change in ["across", "tilt"] {
-            let mut found = speckle.decorrelation.iter();
-            let found = found.find(|found| found.by == change).expect("listed");
-            let shift = found.half.expect("a length") / found.none.expect("a length");
-            assert_relative_eq!(overlap(shift).powi(2), 0.5, epsilon = 1e-9);
+            let [half, none] = half_and_none(&speckle, change).expect("lengths");
+            assert_relative_eq!(overlap(half / none).powi(2), 0.5, epsilon = 1e-9);
         }
     }
 }

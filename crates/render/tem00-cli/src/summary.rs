@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use tem00_engine::{PatternPlan, SpecklePlan, mean_over_sample_displacements};
+use tem00_numerics::cast::to_f32;
 use tem00_statistics::{Contrast, StatisticsError, airy_autocovariance};
 use tem00_tracer::{Laser, LaserLayers, Scene};
 
@@ -19,11 +20,10 @@ pub(crate) struct Exposure {
 
 impl Exposure {
     /// The white level that the user asked for.
-    #[expect(clippy::cast_possible_truncation, reason = "pixels are stored as f32")]
     pub(crate) fn asked(level: f64) -> Self {
         Self {
             // What f32 cannot hold is shown as black or white all the same.
-            white_level: (level as f32).clamp(f32::MIN_POSITIVE, f32::MAX),
+            white_level: to_f32(level).clamp(f32::MIN_POSITIVE, f32::MAX),
             chosen_by: Cow::Borrowed("as asked"),
         }
     }

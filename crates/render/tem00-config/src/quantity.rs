@@ -1,3 +1,5 @@
+use tem00_numerics::{Shown, cast::to_usize};
+
 /// A kind of quantity, with the units in which a file may state it.
 ///
 /// A bare number is in the SI unit; a string is a number followed by a unit.
@@ -41,12 +43,7 @@ fn bare(word: &str) -> &str {
 /// Writes a number with four significant digits at most.
 fn digits(value: f64) -> String {
     // Reading it back drops the zeros at its end.
-    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
-    if (1e-3..1e7).contains(&rounded.abs()) || rounded == 0.0 {
-        format!("{rounded}")
-    } else {
-        format!("{rounded:e}")
-    }
+    Shown(format!("{value:.3e}").parse().unwrap_or(value)).to_string()
 }
 
 const fn unit(symbol: &'static str, multiplier: f64, divisor: f64) -> Unit {
@@ -55,13 +52,6 @@ const fn unit(symbol: &'static str, multiplier: f64, divisor: f64) -> Unit {
         multiplier,
         divisor,
     }
-}
-
-/// A number as it is written.
-#[derive(Debug)]
-struct Written {
-    digits: usize,
-    text: String,
 }
 
 impl Unit {
@@ -80,9 +70,9 @@ impl Unit {
         value * self.divisor / self.multiplier
     }
 
-    /// Returns the shortest number, without an exponent, that reads back as the same bits; `None` if it
-    /// would be long.
-    fn shortest(&self, value: f64) -> Option<Written> {
+    /// Returns the number of digits and the text of the shortest number, without an exponent, that reads back as the
+    /// same bits; `None` if it would be long.
+    fn shortest(&self, value: f64) -> Option<(usize, String)> {
         const MAX_DIGITS: usize = 9;
         let number = self.of(value);
         if !(1e-3..1e6).contains(&number.abs()) {
@@ -91,10 +81,7 @@ impl Unit {
         (1..=MAX_DIGITS).find_map(|digits| {
             let rounded: f64 = format!("{number:.*e}", digits - 1).parse().ok()?;
             let is_same = self.si(rounded).to_bits() == value.to_bits();
-            is_same.then(|| Written {
-                digits,
-                text: rounded.to_string(),
-            })
+            is_same.then(|| (digits, rounded.to_string()))
         })
     }
 }
@@ -119,7 +106,6 @@ pub const LENGTH: Dimension = Dimension {
         unit("um", 1.0, 1e6),
         unit("\u{b5}m", 1.0, 1e6),
         // The Greek letter, which looks the same as the micro sign.
-        unit("\u{3bc}m", 1.0, 1e6),
         unit("mm", 1.0, 1e3),
         unit("cm", 1.0, 1e2),
         unit("m", 1.0, 1.0),
@@ -149,7 +135,6 @@ pub const POWER: Dimension = Dimension {
     units: &[
         unit("uW", 1.0, 1e6),
         unit("\u{b5}W", 1.0, 1e6),
-        unit("\u{3bc}W", 1.0, 1e6),
         unit("mW", 1.0, 1e3),
         unit("W", 1.0, 1.0),
     ],
@@ -174,7 +159,6 @@ pub const DURATION: Dimension = Dimension {
         unit("ns", 1.0, 1e9),
         unit("us", 1.0, 1e6),
         unit("\u{b5}s", 1.0, 1e6),
-        unit("\u{3bc}s", 1.0, 1e6),
         unit("ms", 1.0, 1e3),
         unit("s", 1.0, 1.0),
     ],
@@ -256,30 +240,21 @@ impl Dimension {
                 words.push(word.to_owned());
                 continue;
             };
-            let written = if number.to_bits() == value.to_bits() {
-                typed.trim().to_owned()
-            } else {
-                self.written_as(number, typed)?
+            let is_it = number.to_bits() == value.to_bits();
+            let written = match is_it {
+                true => typed.trim().to_owned(),
+                false => self.written_as(number, typed)?,
             };
             let in_si = rest.next_if(|next| bare(next) == si.symbol || bare(next) == self.si_unit);
-            let is_it = number.to_bits() == value.to_bits()
-                && words.last().is_some_and(|last| last == "got");
-            match in_si {
-                Some(unit) => words.push(format!("{written}{}", &unit[bare(unit).len()..])),
-                None if is_it => words.push(format!("{written}{}", &word[bare(word).len()..])),
-                None => words.push(word.to_owned()),
-            }
+            let is_got = is_it && words.last().is_some_and(|last| last == "got");
+            words.push(match in_si.or(is_got.then_some(word)) {
+                Some(end) => written + &end[bare(end).len()..],
+                None => word.to_owned(),
+            });
         }
-        let asides = [
-            format!(" (in {})", self.si_unit),
-            format!(", in {}", self.si_unit),
-        ];
         let message = words.join(" ");
-        Some(
-            asides
-                .iter()
-                .fold(message, |text, aside| text.replace(aside, "")),
-        )
+        let message = message.replace(&format!(" (in {})", self.si_unit), "");
+        Some(message.replace(&format!(", in {}", self.si_unit), ""))
     }
 
     /// Returns the quantity that a message tells in a unit that is not the SI unit: "1 µm", or "45°" in one word.
@@ -302,11 +277,10 @@ impl Dimension {
         // Symbols beyond ASCII are second names of units.
         let units = self.units.iter().filter(|unit| unit.symbol.is_ascii());
         let written = units.filter_map(|unit| Some((unit, unit.shortest(value)?)));
-        let shortest = written.min_by_key(|(unit, number)| (number.digits, unit.symbol != usual));
+        let shortest = written.min_by_key(|(unit, (digits, _))| (*digits, unit.symbol != usual));
         match shortest {
-            Some((unit, number)) => format!("\"{} {}\"", number.text, unit.symbol),
-            None if value == 0.0 || (1e-3..1e6).contains(&value.abs()) => value.to_string(),
-            None => format!("{value:e}"),
+            Some((unit, (_, number))) => format!("\"{number} {}\"", unit.symbol),
+            None => Shown(value).to_string(),
         }
     }
 
@@ -321,12 +295,7 @@ impl Dimension {
         if decimals.is_nan() || decimals > MAX_DECIMALS {
             return value;
         }
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "from 0 to 15"
-        )]
-        let decimals = decimals.max(0.0) as usize;
+        let decimals = to_usize(decimals);
         let text = format!("{:.decimals$}", unit.of(value));
         text.parse().map_or(value, |number| unit.si(number))
     }
@@ -337,7 +306,8 @@ impl Dimension {
     }
 
     fn unit(&self, symbol: &str) -> Option<&Unit> {
-        let symbol = symbol.trim();
+        // The Greek letter looks like the sign for micro.
+        let symbol = symbol.trim().replace('\u{3bc}', "\u{b5}");
         self.units.iter().find(|unit| unit.symbol == symbol)
     }
 
@@ -351,9 +321,7 @@ impl Dimension {
 
     /// Returns the units for a message: "nm, um, µm, mm, cm or m".
     pub(crate) fn units(&self) -> String {
-        let mut symbols: Vec<&str> = self.units.iter().map(|unit| unit.symbol).collect();
-        // The Greek letter would be listed a second time.
-        symbols.retain(|symbol| !symbol.starts_with('\u{3bc}'));
+        let symbols: Vec<&str> = self.symbols().collect();
         match symbols.split_last() {
             Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
             _ => symbols.concat(),
@@ -362,166 +330,4 @@ impl Dimension {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn quantities_are_the_numbers_they_spell() {
-        let cases = [
-            (&LENGTH, "650 nm", 650e-9),
-            (&LENGTH, "650nm", 650e-9),
-            (&LENGTH, "  0.25  mm ", 0.25e-3),
-            (&LENGTH, "-5e1 um", -50e-6),
-            (&LENGTH, "3.45 \u{b5}m", 3.45e-6),
-            (&LENGTH, "3.45 \u{3bc}m", 3.45e-6),
-            (&LENGTH, "2. cm", 0.02),
-            (&LENGTH, "1e-3 m", 1e-3),
-            (&ANGLE, "180 deg", core::f64::consts::PI),
-            (&ANGLE, "90°", core::f64::consts::FRAC_PI_2),
-            (&ANGLE, "20 mrad", 0.02),
-            (&POWER, "5 mW", 5e-3),
-            (&RADIANCE, "0.5 W/(m2 sr)", 0.5),
-            (&MEMORY, "1 GiB", 1_073_741_824.0),
-            (&MEMORY, "100 MB", 1e8),
-        ];
-        for (dimension, text, expected) in cases {
-            assert_eq!(dimension.parse(text), Some(expected), "{text:?}");
-        }
-    }
-
-    #[test]
-    fn messages_come_back_in_the_unit_that_was_typed() {
-        for (dimension, typed, message, expected) in [
-            (
-                &LENGTH,
-                "20 mm",
-                "focus_distance must be greater than the focal length (in metres), got 0.02",
-                "focus_distance must be greater than the focal length, got 20 mm",
-            ),
-            (
-                &LENGTH,
-                "0.1 um",
-                "waist radius 5e-8 m is below the limit of 4.138e-7 m",
-                "waist radius 0.05 um is below the limit of 0.4138 um",
-            ),
-            (
-                &LENGTH,
-                "10 um",
-                "wavelength must be from 368e-9 m to 1088e-9 m, where it was measured, got 0.00001",
-                "wavelength must be from 0.368 um to 1.088 um, where it was measured, got 10 um",
-            ),
-            (
-                &POWER,
-                "0 W",
-                "power must be at least 0.5, got 0",
-                "power must be at least 0.5, got 0 W",
-            ),
-            (&ANGLE, "180 deg", "at most 1 rad", "at most 57.3 deg"),
-            (
-                &LENGTH,
-                "0.5 um",
-                "line_thickness must be from 1 µm to 1 m (in metres), got 5e-7",
-                "line_thickness must be from 1 um to 1000000 um, got 0.5 um",
-            ),
-            (
-                &ANGLE,
-                "2 rad",
-                "angle must be from 1° to 89° (in radians), got 2",
-                "angle must be from 0.01745 rad to 1.553 rad, got 2 rad",
-            ),
-            (
-                &LENGTH,
-                "10 mm",
-                "distance must be from 1.001 focal lengths to 1 m (in metres), got 0.01",
-                "distance must be from 1.001 focal lengths to 1000 mm, got 10 mm",
-            ),
-            (
-                &POWER,
-                "2000 W",
-                "power must be positive, at most 1000000 mW (in watts), got 2000",
-                "power must be positive, at most 1000 W, got 2000 W",
-            ),
-        ] {
-            assert_eq!(
-                dimension.retyped(message, typed).unwrap(),
-                expected,
-                "{typed}"
-            );
-        }
-        assert_eq!(
-            LENGTH.retyped("got 5", "5"),
-            None,
-            "a bare number is in SI units"
-        );
-    }
-
-    #[test]
-    fn anything_else_is_no_quantity() {
-        let not_lengths = [
-            "",
-            "mm",
-            "5",
-            "5 deg",
-            "5 mW",
-            "5 MM",
-            "1 2 mm",
-            "nan mm",
-            "inf m",
-            "0x10 mm",
-            "1,5 mm",
-            "5 mm wide",
-            "--5 mm",
-            "5 m m",
-            "e5 m",
-            "5e mm",
-        ];
-        for text in not_lengths {
-            assert_eq!(LENGTH.parse(text), None, "{text:?}");
-        }
-    }
-
-    #[test]
-    fn values_are_written_as_a_person_writes_them() {
-        // The text that is read, and that which is written: as short, in the usual unit if it may be.
-        for (dimension, usual, text, expected) in [
-            (&DURATION, "ms", "0.16 ms", "0.16 ms"),
-            (&DURATION, "ms", "20 us", "0.02 ms"),
-            (&ANGLE, "deg", "40 deg", "40 deg"),
-            (&ANGLE, "deg", "0.25 rad", "250 mrad"),
-            (&LENGTH, "nm", "0.66 um", "660 nm"),
-            (&LENGTH, "um", "3.45 um", "3.45 um"),
-            (&LENGTH, "mm", "0.3 m", "300 mm"),
-            (&POWER, "mW", "1e1 mW", "10 mW"),
-        ] {
-            let value = dimension.parse(text).unwrap();
-            assert_eq!(dimension.text(value, usual), format!("\"{expected}\""));
-            let read = dimension.parse(expected).unwrap();
-            assert_eq!(read.to_bits(), value.to_bits(), "{text} is {expected}");
-        }
-        assert_eq!(NUMBER.text(5.6, ""), "5.6");
-        assert_eq!(NUMBER.text(1e-9, ""), "1e-9");
-        // No unit makes this short.
-        assert_eq!(ANGLE.text(0.1 + 0.2, "deg"), "0.30000000000000004");
-    }
-
-    #[test]
-    fn values_are_rounded_to_what_reads_back() {
-        // A third of the way from 0.02 ms to 0.64 ms on a logarithmic scale, and its neighbours.
-        let value = 0.02e-3 * 32.0_f64.powf(3.0 / 5.0);
-        let rounded = DURATION.rounded(value, 0.8e-6, "ms");
-        assert_eq!(Some(rounded), DURATION.parse("0.16 ms"));
-        assert_eq!(DURATION.text(rounded, "ms"), "\"0.16 ms\"");
-        let rounded = |value, step| Some(NUMBER.rounded(value, step, ""));
-        assert_eq!(rounded(5.039_68, 0.0104), Some(5.04));
-        assert_eq!(rounded(123.4, 30.0), Some(123.0), "no step is so wide");
-        for step in [0.0, f64::NAN, 1e-30] {
-            assert_eq!(rounded(5.039_68, step), Some(5.039_68), "{step}");
-        }
-    }
-
-    #[test]
-    fn the_list_of_units_reads_as_a_sentence() {
-        assert_eq!(LENGTH.units(), "nm, um, µm, mm, cm or m", "lengths");
-        assert_eq!(NUMBER.units(), "", "numbers have no unit");
-    }
-}
+mod tests;

@@ -6,7 +6,7 @@ mod pfm;
 use std::path::Path;
 
 use tem00_config::{MAX_ASSET_BYTES, read_input};
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, cast::to_f32};
 
 pub use error::RadianceMapError;
 
@@ -43,19 +43,12 @@ pub fn read_radiance_map(path: &Path, scale: f64) -> Result<Grid<f32>, RadianceM
     })
 }
 
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "maps are stored in single precision"
-)]
 fn read(path: &Path, scale: f64) -> Result<Grid<f32>, RadianceMapError> {
     if !(scale > 0.0 && scale.is_finite()) {
         return Err(RadianceMapError::Scale(scale));
     }
-    let extension = path
-        .extension()
-        .map(|extension| extension.to_string_lossy().to_lowercase())
-        .unwrap_or_default();
-    let parse = match extension.as_str() {
+    let extension = path.extension().unwrap_or_default().to_string_lossy();
+    let parse = match extension.to_lowercase().as_str() {
         "exr" => open_exr::parse,
         "pfm" => pfm::parse,
         "" => return Err(RadianceMapError::Extension(String::new())),
@@ -63,7 +56,7 @@ fn read(path: &Path, scale: f64) -> Result<Grid<f32>, RadianceMapError> {
     };
     let content = read_input(path, MAX_ASSET_BYTES)
         .map_err(|error| RadianceMapError::Read(error.to_string()))?;
-    Ok(parse(&content)?.map(|value| (f64::from(*value) * scale) as f32))
+    Ok(parse(&content)?.map(|value| to_f32(f64::from(*value) * scale)))
 }
 
 #[cfg(test)]

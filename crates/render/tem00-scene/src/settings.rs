@@ -1,5 +1,6 @@
 use tem00_camera::Camera;
 use tem00_config::{Document, MEMORY, NUMBER, Problem, Section, Value};
+use tem00_numerics::cast::to_i64;
 use tem00_tracer::{Crop, LaserEvents, Method, RenderOptions, Sampling, Scene, SpeckleSettings};
 
 use crate::filter;
@@ -144,12 +145,7 @@ pub(crate) fn speckle(root: &Document<'_>) -> Result<SpeckleSettings, Problem> {
     })
 }
 
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "an amount of memory is at least 1 byte and below 2⁶³ bytes"
-)]
 fn memory(value: &Value<'_>) -> Result<u64, Problem> {
     let bytes = value.within(&MEMORY, 1.0..=1e18, "from 1 B to 10¹⁸ B")?;
-    Ok(bytes as u64)
+    Ok(to_i64(bytes).unsigned_abs())
 }

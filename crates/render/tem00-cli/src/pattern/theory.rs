@@ -2,7 +2,10 @@
 
 use core::fmt::Display;
 
-use tem00_numerics::Grid;
+use tem00_numerics::{
+    Grid,
+    cast::{to_f32, to_usize},
+};
 use tem00_report::{failure::Failure, interrupt};
 use tem00_speckle::{Phasors, Pupil, PupilField, SpecklePattern};
 use tem00_statistics::{
@@ -90,7 +93,7 @@ fn mean_row(field: &PupilField, values: &Grid<f32>) -> Result<Row, StatisticsErr
         Some(Phasors::Unit) | None => rounding,
         Some(Phasors::Gaussian) => SIGMAS / (field.phasor_count() as f64).sqrt(),
     };
-    Ok(Row::new("mean", mean, near(1.0, spread)))
+    Ok(Row::new("mean", mean, Expectation::near(1.0, spread)))
 }
 
 fn contrast_row(field: &PupilField, values: &Grid<f32>) -> Result<Row, StatisticsError> {
@@ -104,7 +107,11 @@ fn contrast_row(field: &PupilField, values: &Grid<f32>) -> Result<Row, Statistic
             1.0
         }
     };
-    Ok(Row::new("contrast", contrast, near(theory, tolerance)))
+    Ok(Row::new(
+        "contrast",
+        contrast,
+        Expectation::near(theory, tolerance),
+    ))
 }
 
 /// Returns the standard deviation of the squared contrast of one pattern.
@@ -156,24 +163,23 @@ fn size_row(field: &PupilField, lags: &Grid<f32>, axis: Axis) -> Result<Row, Sta
     // The size spreads by the share 0.58 / n in a pattern of n × n speckles.
     let tolerance = SIGMAS * 0.58 / field.effective_diameter() * theory;
     let quantity = format!("speckle size {axis} (samples)");
-    Ok(Row::new(quantity, measured, near(theory, tolerance)))
+    Ok(Row::new(
+        quantity,
+        measured,
+        Expectation::near(theory, tolerance),
+    ))
 }
 
 /// Returns the autocovariance of the pupil at the lags along one axis, up to some times the measured
 /// size; the rest is left 0.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "images are stored in single precision, and sizes are positive and small"
-)]
 fn exact_autocovariance(field: &PupilField, axis: Axis, size: f64) -> Grid<f32> {
-    let lags = ((8.0 * size).ceil() as usize + 8).min(field.size()[0]);
+    let lags = (to_usize((8.0 * size).ceil()) + 8).min(field.size()[0]);
     let covariance = |lag: usize| {
         let lag = match axis {
             Axis::X => [lag as f64, 0.0],
             Axis::Y => [0.0, lag as f64],
         };
-        field.amplitude_correlation(lag).norm_sqr() as f32
+        to_f32(field.amplitude_correlation(lag).norm_sqr())
     };
     match axis {
         Axis::X => Grid::from_fn(lags, 1, |lag, _| covariance(lag)),
@@ -190,31 +196,24 @@ fn distribution_rows(field: &PupilField, values: &Grid<f32>) -> Result<[Row; 2],
         Row::new(
             "KS distance to exponential",
             outcome.statistic,
-            Expectation::AtMost { at_most: critical },
+            Expectation::at_most(critical),
         ),
         Row::new(
             "KS p-value",
             outcome.p_value,
-            Expectation::AtLeast {
-                at_least: SIGNIFICANCE,
-            },
+            Expectation::at_least(SIGNIFICANCE),
         ),
     ])
 }
 
 /// Returns the distance of practically independent samples: the first zero of the autocovariance of
 /// the disc as narrow as the pupil.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the stride is positive and far below 2³²"
-)]
 fn stride(field: &PupilField) -> usize {
     let narrowest = match field.pupil() {
         Pupil::Rectangle { height } => *height,
         _ => 1.0,
     };
-    (AIRY_FIRST_ZERO * field.speckle_size() / narrowest).ceil() as usize
+    to_usize((AIRY_FIRST_ZERO * field.speckle_size() / narrowest).ceil())
 }
 
 /// Measures the fraction of the power beyond the pupil's cut-off frequency, one period per speckle.
@@ -237,15 +236,8 @@ fn support_row(field: &PupilField, values: &Grid<f32>) -> Result<Row, Statistics
     }
     // Rounding of f32 makes noise of 10⁻¹³ of the power of each frequency.
     let quantity = "power beyond the cut-off frequency";
-    Ok(Row::new(
-        quantity,
-        outside / all,
-        Expectation::AtMost { at_most: 1e-6 },
-    ))
-}
-
-const fn near(value: f64, tolerance: f64) -> Expectation {
-    Expectation::Near { value, tolerance }
+    let theory = Expectation::at_most(1e-6);
+    Ok(Row::new(quantity, outside / all, theory))
 }
 
 #[cfg(test)]

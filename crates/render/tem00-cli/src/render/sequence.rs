@@ -3,6 +3,7 @@
 use std::{path::Path, time::Instant};
 
 use tem00_engine::render_frame;
+use tem00_numerics::cast::to_usize;
 use tem00_report::{failure::Failure, interrupt, output::note, progress::FrameProgress};
 use tem00_tracer::{
     Filter, Frame, Method, RenderError, Sampling, SurfaceSpeckle, render_reference,
@@ -246,17 +247,10 @@ impl Render<'_> {
     fn samples_of(&self, frame: &Frame) -> u64 {
         match self.scene.render.sampling {
             Sampling::Even => self.samples_per_frame(),
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "numbers of samples are whole and not negative"
-            )]
-            Sampling::Adaptive | Sampling::TargetError(_) => frame
-                .samples
-                .values()
-                .iter()
-                .map(|&count| count as u64)
-                .sum(),
+            Sampling::Adaptive | Sampling::TargetError(_) => {
+                let counts = frame.samples.values().iter();
+                counts.map(|&count| to_usize(count.into()) as u64).sum()
+            }
         }
     }
 

@@ -11,6 +11,7 @@ use tem00_statistics::{
     test::{GoodnessOfFit, GreyLevels},
 };
 
+use super::pixels;
 use crate::comparison::{Expectation, Row};
 
 /// The tolerances, in standard errors.
@@ -52,12 +53,13 @@ pub(super) struct Findings<'a> {
 
 impl Findings<'_> {
     fn row(&mut self, quantity: impl Into<String>, measured: f64, theory: Expectation) {
-        let theory = if self.is_even {
-            theory
-        } else {
-            Expectation::Open
-        };
+        let theory = Some(theory).filter(|_| self.is_even);
+        let theory = theory.unwrap_or(Expectation::Open);
         self.rows.push(Row::new(quantity, measured, theory));
+    }
+
+    fn open(&mut self, quantity: impl Into<String>, measured: f64) {
+        self.row(quantity, measured, Expectation::Open);
     }
 
     fn assume(&mut self, assumption: impl Into<String>) {
@@ -66,12 +68,12 @@ impl Findings<'_> {
 
     /// Describes the light of the image as it was read.
     pub(super) fn brightness(&mut self, mean: f64, image: &LoadedImage) {
-        self.row("mean", mean, Expectation::Open);
+        self.open("mean", mean);
         if let Some(levels) = self.levels {
             let linear = levels.are_multiples().then(|| levels.step());
             // The levels of a mean of channels lie closer than those of a channel.
             if let Some(step) = image.step.or(linear.filter(|_| image.unit.is_some())) {
-                self.row("mean (grey levels)", mean / step, Expectation::Open);
+                self.open("mean (grey levels)", mean / step);
             }
         }
         if self.mean_level().is_some_and(|mean| mean < FINE) {
@@ -81,9 +83,7 @@ impl Findings<'_> {
             );
         }
         if let Some(share) = image.saturated {
-            let theory = Expectation::AtMost {
-                at_most: GreyLevels::CLIPPED_FRACTION,
-            };
+            let theory = Expectation::at_most(GreyLevels::CLIPPED_FRACTION);
             self.row("saturated fraction of pixels", share, theory);
         }
     }
@@ -246,22 +246,17 @@ impl Findings<'_> {
     /// Compares the contrast with that of point-like pixels and of pixels without gaps.
     pub(super) fn contrast(&mut self, size: Option<SpeckleSize>) -> Result<(), StatisticsError> {
         let contrast = self.of_image(size)?;
-        let restored = match (self.flat, size) {
-            (Some(flat), Some(size)) => flat.contrast_before(contrast.value(), size.mean()),
-            (Some(flat), None) => flat.contrast_before(contrast.value(), 1.0),
-            (None, _) => contrast.value(),
-        };
-        let factor = restored / contrast.value();
-        let value = restored;
+        let scale = size.map_or(1.0, |size| size.mean());
+        let value = self.flat.map_or(contrast.value(), |flat| {
+            flat.contrast_before(contrast.value(), scale)
+        });
+        let factor = value / contrast.value();
         let theory = self.exponential();
-        let near = Expectation::Near {
-            value: theory,
-            tolerance: SIGMAS * self.spread(theory, size)? * factor,
-        };
-        self.row("contrast", value, near);
+        let tolerance = SIGMAS * self.spread(theory, size)? * factor;
+        self.row("contrast", value, Expectation::near(theory, tolerance));
         let [low, high] = contrast.confidence_interval(CONFIDENCE)?;
-        self.row("contrast, from (95 %)", factor * low, Expectation::Open);
-        self.row("contrast, to (95 %)", factor * high, Expectation::Open);
+        self.open("contrast, from (95 %)", factor * low);
+        self.open("contrast, to (95 %)", factor * high);
         self.assume(
             "contrast 1 and the exponential law are those of one fully developed, polarised \
              pattern, seen through pixels much smaller than a speckle",
@@ -269,10 +264,8 @@ impl Findings<'_> {
         let size = size.filter(|_| !self.is_coarse());
         let gapless = size.and_then(|size| Some((size, self.gapless_contrast(size)?)));
         if let Some((size, [theory, uncertainty])) = gapless {
-            let near = Expectation::Near {
-                value: theory,
-                tolerance: SIGMAS * self.spread(theory, Some(size))? * factor + uncertainty,
-            };
+            let tolerance = SIGMAS * self.spread(theory, Some(size))? * factor + uncertainty;
+            let near = Expectation::near(theory, tolerance);
             self.row("contrast, if pixels have no gaps", value, near);
         }
         Ok(())
@@ -292,16 +285,16 @@ impl Findings<'_> {
 
     pub(super) fn size_rows(&mut self, size: Option<SpeckleSize>) {
         if let Some(size) = size {
-            let restored = |size| match self.flat {
+            let before = |size| match self.flat {
                 Some(flat) => flat.speckle_size_before(size),
                 None => size,
             };
-            let [x, y, mean] = [size.x(), size.y(), size.mean()].map(restored);
-            self.row("speckle size x (pixels)", x, Expectation::Open);
-            self.row("speckle size y (pixels)", y, Expectation::Open);
+            let [x, y, mean] = [size.x(), size.y(), size.mean()].map(before);
+            self.open("speckle size x (pixels)", x);
+            self.open("speckle size y (pixels)", y);
             if let Some(before) = size_before_pixels(mean) {
                 let quantity = "mean size, if pixels have no gaps";
-                self.row(quantity, before, Expectation::Open);
+                self.open(quantity, before);
             }
             self.assume(
                 "the speckle size is that of a circular pupil, λ d / D, as seen by the pixels: \
@@ -315,7 +308,7 @@ impl Findings<'_> {
         &mut self,
         size: Option<SpeckleSize>,
     ) -> Result<Option<GammaFit>, StatisticsError> {
-        let stride = size.map_or(1, |size| first_zero(size.x().max(size.y())));
+        let stride = size.map_or(1, |size| pixels(AIRY_FIRST_ZERO * size.x().max(size.y())));
         let samples = decorrelated_samples(self.values, stride)?;
         if samples.len() < FEWEST_SAMPLES {
             self.assume(format!(
@@ -324,15 +317,10 @@ impl Findings<'_> {
             ));
             return Ok(None);
         }
-        self.row(
-            "independent samples",
-            samples.len() as f64,
-            Expectation::Open,
-        );
-        let mean = match self.levels {
-            Some(levels) => levels.exponential_mean(self.mean),
-            None => self.mean,
-        };
+        self.open("independent samples", samples.len() as f64);
+        let mean = self
+            .levels
+            .map_or(self.mean, |levels| levels.exponential_mean(self.mean));
         let cumulative = |light: f64| exponential_cumulative(light / mean);
         let exponential = self.goodness(&samples, cumulative)?;
         self.tests("exponential", &exponential, 2)?;
@@ -345,11 +333,8 @@ impl Findings<'_> {
     }
 
     fn gamma(&mut self, samples: &[f64]) -> Result<Option<GammaFit>, StatisticsError> {
-        let fit = match self.levels {
-            Some(levels) => GammaFit::by_likelihood(&levels.spread(samples)),
-            None => GammaFit::by_likelihood(samples),
-        };
-        let fit = match fit {
+        let spread = self.levels.map(|levels| levels.spread(samples));
+        let fit = match GammaFit::by_likelihood(spread.as_deref().unwrap_or(samples)) {
             Err(StatisticsError::NotPositive { .. }) => {
                 self.assume(
                     "some samples are 0 or less, which no Gamma law expects: its shape is 1/C² of the \
@@ -361,16 +346,9 @@ impl Findings<'_> {
         };
         // The fit is too large by a share below 3/n.
         let bias = 3.0 / samples.len() as f64;
-        let theory = Expectation::Near {
-            value: 1.0,
-            tolerance: SIGMAS * fit.standard_error() + bias,
-        };
+        let theory = Expectation::near(1.0, SIGMAS * fit.standard_error() + bias);
         self.row("shape of Gamma", fit.shape(), theory);
-        self.row(
-            "its standard error",
-            fit.standard_error(),
-            Expectation::Open,
-        );
+        self.open("its standard error", fit.standard_error());
         if let Ok(law) = fit.distribution() {
             let cumulative = |light: f64| law.cumulative(light / self.mean);
             let gamma = self.goodness(samples, cumulative)?;
@@ -399,12 +377,9 @@ impl Findings<'_> {
         fit: &GoodnessOfFit,
         constraints: usize,
     ) -> Result<(), StatisticsError> {
-        let probable = Expectation::AtLeast {
-            at_least: SIGNIFICANCE,
-        };
+        let probable = Expectation::at_least(SIGNIFICANCE);
         let distance = fit.kolmogorov_smirnov()?;
-        let name = format!("KS distance to {law}");
-        self.row(name, distance.statistic, Expectation::Open);
+        self.open(format!("KS distance to {law}"), distance.statistic);
         let name = format!("KS p-value of {law}");
         self.row(name, distance.p_value, probable);
         match fit.chi_squared(constraints) {
@@ -418,14 +393,4 @@ impl Findings<'_> {
             Err(error) => Err(error),
         }
     }
-}
-
-/// Returns the first zero of the autocovariance of speckles of a size in pixels, rounded up.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "speckle sizes are positive and below the size of the image"
-)]
-fn first_zero(speckle_size: f64) -> usize {
-    (AIRY_FIRST_ZERO * speckle_size).ceil() as usize
 }

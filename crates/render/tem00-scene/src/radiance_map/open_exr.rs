@@ -5,7 +5,7 @@ use exr::{
     prelude::{FlatSamples, MetaData, ReadChannels, ReadLayers, Vec2},
 };
 use glam::DVec2;
-use tem00_numerics::{Grid, check_memory};
+use tem00_numerics::{Grid, cast::to_f32, check_memory};
 
 use super::{
     content::{REC_709, checked_size, luminance},
@@ -74,10 +74,6 @@ const OF_REC_709: Chromaticities = Chromaticities {
 ///
 /// In the chromaticity diagram white is a mean of the primaries, with weights b. A primary of
 /// chromaticity (x, y) takes part with the luminance `b y / y_white` (CIE 15:2018; SMPTE RP 177).
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "pixels are in single precision"
-)]
 fn parts(colours: Chromaticities) -> Result<[f32; 3], RadianceMapError> {
     if colours == OF_REC_709 {
         return Ok(REC_709);
@@ -95,11 +91,8 @@ fn parts(colours: Chromaticities) -> Result<[f32; 3], RadianceMapError> {
         (b - w).perp_dot(r - w) / area,
         (r - w).perp_dot(g - w) / area,
     ];
-    if !(weights
-        .iter()
-        .all(|weight| *weight > 0.0 && weight.is_finite())
-        && w.y > 0.0)
-    {
+    let is_inside = |weight: &f64| *weight > 0.0 && weight.is_finite();
+    if !(weights.iter().all(is_inside) && w.y > 0.0) {
         let [r, g, b, w] = [red, green, blue, white].map(|Vec2(x, y)| format!("({x}, {y})"));
         return Err(RadianceMapError::Format(format!(
             "its chromaticities must have white inside the triangle of red, green and blue, got \
@@ -107,7 +100,7 @@ fn parts(colours: Chromaticities) -> Result<[f32; 3], RadianceMapError> {
         )));
     }
     let [r, g, b] = [r, g, b].map(|primary| primary.y / w.y);
-    Ok([weights[0] * r, weights[1] * g, weights[2] * b].map(|part| part as f32))
+    Ok([weights[0] * r, weights[1] * g, weights[2] * b].map(to_f32))
 }
 
 /// Returns R, G and B, in this order, or the only channel.

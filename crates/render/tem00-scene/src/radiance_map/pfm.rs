@@ -22,29 +22,19 @@ pub(super) fn parse(content: &[u8]) -> Result<Grid<f32>, RadianceMapError> {
     // other lines tell, and if it has none the length.
     let header = &content[..content.len() - rest.len()];
     let is_windows = header.windows(2).any(|pair| pair == b"\r\n") || rest.len() == needed + 2;
-    let end = if rest.starts_with(b"\r\n") && is_windows {
-        2
-    } else {
-        1
-    };
+    let end = 1 + usize::from(rest.starts_with(b"\r\n") && is_windows);
     let data = rest.get(end..).unwrap_or_default();
     if data.len() != needed {
         let got = data.len();
         let message = format!("its header announces {needed} bytes of pixels, but it has {got}");
         return Err(format_error(message));
     }
-    let values: Vec<f32> = data
-        .as_chunks()
-        .0
-        .iter()
-        .map(|bytes| {
-            if little_endian {
-                f32::from_le_bytes(*bytes)
-            } else {
-                f32::from_be_bytes(*bytes)
-            }
-        })
-        .collect();
+    let value = match little_endian {
+        true => f32::from_le_bytes,
+        false => f32::from_be_bytes,
+    };
+    let (data, _) = data.as_chunks();
+    let values: Vec<f32> = data.iter().map(|bytes| value(*bytes)).collect();
     let pixel = |x: usize, y: usize| {
         let start = ((height - 1 - y) * width + x) * channels;
         luminance(&values[start..start + channels], REC_709)

@@ -1,3 +1,5 @@
+use tem00_testkit::rows;
+
 use super::*;
 
 #[test]
@@ -26,91 +28,40 @@ fn quantities_are_the_numbers_they_spell() {
 
 #[test]
 fn messages_come_back_in_the_unit_that_was_typed() {
-    for (dimension, typed, message, expected) in [
-        (
-            &LENGTH,
-            "20 mm",
-            "focus_distance must be greater than the focal length (in metres), got 0.02",
-            "focus_distance must be greater than the focal length, got 20 mm",
-        ),
-        (
-            &LENGTH,
-            "0.1 um",
-            "waist radius 5e-8 m is below the limit of 4.138e-7 m",
-            "waist radius 0.05 um is below the limit of 0.4138 um",
-        ),
-        (
-            &LENGTH,
-            "10 um",
-            "wavelength must be from 368e-9 m to 1088e-9 m, where it was measured, got 0.00001",
-            "wavelength must be from 0.368 um to 1.088 um, where it was measured, got 10 um",
-        ),
-        (
-            &POWER,
-            "0 W",
-            "power must be at least 0.5, got 0",
-            "power must be at least 0.5, got 0 W",
-        ),
-        (&ANGLE, "180 deg", "at most 1 rad", "at most 57.3 deg"),
-        (
-            &LENGTH,
-            "0.5 um",
-            "line_thickness must be from 1 µm to 1 m (in metres), got 5e-7",
-            "line_thickness must be from 1 um to 1000000 um, got 0.5 um",
-        ),
-        (
-            &ANGLE,
-            "2 rad",
-            "angle must be from 1° to 89° (in radians), got 2",
-            "angle must be from 0.01745 rad to 1.553 rad, got 2 rad",
-        ),
-        (
-            &LENGTH,
-            "10 mm",
-            "distance must be from 1.001 focal lengths to 1 m (in metres), got 0.01",
-            "distance must be from 1.001 focal lengths to 1000 mm, got 10 mm",
-        ),
-        (
-            &POWER,
-            "2000 W",
-            "power must be positive, at most 1000000 mW (in watts), got 2000",
-            "power must be positive, at most 1000 W, got 2000 W",
-        ),
-    ] {
-        assert_eq!(
-            dimension.retyped(message, typed).unwrap(),
-            expected,
-            "{typed}"
-        );
+    let table = "
+        20 mm => focus_distance must be greater than the focal length (in metres), got 0.02
+            => focus_distance must be greater than the focal length, got 20 mm
+        0.1 um => waist radius 5e-8 m is below the limit of 4.138e-7 m
+            => waist radius 0.05 um is below the limit of 0.4138 um
+        10 um => wavelength must be from 368e-9 m to 1088e-9 m, where it was measured, got 0.00001
+            => wavelength must be from 0.368 um to 1.088 um, where it was measured, got 10 um
+        0 W => power must be at least 0.5, got 0
+            => power must be at least 0.5, got 0 W
+        180 deg => at most 1 rad
+            => at most 57.3 deg
+        0.5 um => line_thickness must be from 1 µm to 1 m (in metres), got 5e-7
+            => line_thickness must be from 1 um to 1000000 um, got 0.5 um
+        2 rad => angle must be from 1° to 89° (in radians), got 2
+            => angle must be from 0.01745 rad to 1.553 rad, got 2 rad
+        10 mm => distance must be from 1.001 focal lengths to 1 m (in metres), got 0.01
+            => distance must be from 1.001 focal lengths to 1000 mm, got 10 mm
+        2000 W => power must be positive, at most 1000000 mW (in watts), got 2000
+            => power must be positive, at most 1000 W, got 2000 W
+    ";
+    let table = table.replace("\n            =>", " =>");
+    for [typed, message, expected] in rows(&table) {
+        let dimensions = [&LENGTH, &ANGLE, &POWER].into_iter();
+        let mut retyped = dimensions.filter_map(|of| of.retyped(&message, &typed));
+        assert_eq!(retyped.next(), Some(expected), "{typed}");
     }
-    assert_eq!(
-        LENGTH.retyped("got 5", "5"),
-        None,
-        "a bare number is in SI units"
-    );
+    let bare = LENGTH.retyped("got 5", "5");
+    assert_eq!(bare, None, "a bare number is in SI units");
 }
 
 #[test]
 fn anything_else_is_no_quantity() {
-    let not_lengths = [
-        "",
-        "mm",
-        "5",
-        "5 deg",
-        "5 mW",
-        "5 MM",
-        "1 2 mm",
-        "nan mm",
-        "inf m",
-        "0x10 mm",
-        "1,5 mm",
-        "5 mm wide",
-        "--5 mm",
-        "5 m m",
-        "e5 m",
-        "5e mm",
-    ];
-    for text in not_lengths {
+    let not_lengths = "|mm|5|5 deg|5 mW|5 MM|1 2 mm|nan mm|inf m|0x10 mm|1,5 mm|5 mm wide|--5 mm|5 m m|e5 m|5e mm";
+    for text in not_lengths.split('|') {
         assert_eq!(LENGTH.parse(text), None, "{text:?}");
     }
 }

@@ -34,9 +34,10 @@ fn exr_file(channels: &[(&str, [f32; 6])]) -> Vec<u8> {
 
 /// Writes an OpenEXR file that states its colours: red, green, blue and white.
 fn exr_file_in(channels: &[(&str, [f32; 6])], colours: Option<[[f32; 2]; 4]>) -> Vec<u8> {
-    let list = channels
-        .iter()
-        .map(|(name, values)| AnyChannel::new(*name, FlatSamples::F32(values.to_vec())));
+    let channel = |(name, values): &(&str, [f32; 6])| {
+        AnyChannel::new(*name, FlatSamples::F32(values.to_vec()))
+    };
+    let list = channels.iter().map(channel);
     let layer = Layer::new(
         (3, 2),
         LayerAttributes::named("sky"),
@@ -90,14 +91,14 @@ fn colours_of_open_exr_become_luminance() {
 fn colours_are_those_that_the_file_states() {
     const D65: [f32; 2] = [0.3127, 0.329];
     const ACES: [f32; 2] = [0.32168, 0.33767];
-    let third = 1.0 / 3.0;
+    const XYZ: [[f32; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0], [1.0 / 3.0; 2]];
+    let written = |colours| {
+        let file = exr_file_in(&[("R", RED), ("G", GREEN), ("B", BLUE)], Some(colours));
+        read_file("sky.exr", &file, 1.0)
+    };
     for (colours, parts, tolerance) in [
         // By definition: the second channel is the luminance.
-        (
-            [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0], [third, third]],
-            [0.0, 1.0, 0.0],
-            1e-6,
-        ),
+        (XYZ, [0.0, 1.0, 0.0], 1e-6),
         // ITU-R BT.2020-2, table 4, rounded there.
         (
             [[0.708, 0.292], [0.17, 0.797], [0.131, 0.046], D65],
@@ -123,27 +124,18 @@ fn colours_are_those_that_the_file_states() {
             5e-5,
         ),
     ] {
-        let file = exr_file_in(&[("R", RED), ("G", GREEN), ("B", BLUE)], Some(colours));
-        let map = read_file("sky.exr", &file, 1.0).unwrap();
+        let map = written(colours).unwrap();
         for (got, expected) in map.values().iter().zip(parts) {
-            assert!(
-                (got - expected).abs() <= tolerance,
-                "{got}, not {expected}: {colours:?}"
-            );
+            let is_near = (got - expected).abs() <= tolerance;
+            assert!(is_near, "{got}, not {expected}: {colours:?}");
         }
-        assert!(
-            (map.values()[5] - 4.0).abs() < 1e-5,
-            "white stays: {colours:?}"
-        );
+        let white = map.values()[5];
+        assert!((white - 4.0).abs() < 1e-5, "{white} stays: {colours:?}");
     }
     let rec_709 = [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], D65];
-    let named = exr_file_in(&[("R", RED), ("G", GREEN), ("B", BLUE)], Some(rec_709));
-    assert_close(&read_file("sky.exr", &named, 1.0).unwrap(), &GREY);
+    assert_close(&written(rec_709).unwrap(), &GREY);
     // Of a single channel nothing is converted.
-    let grey = exr_file_in(
-        &[("Y", RED)],
-        Some([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0], [third, third]]),
-    );
+    let grey = exr_file_in(&[("Y", RED)], Some(XYZ));
     assert_close(&read_file("sky.exr", &grey, 1.0).unwrap(), &RED);
     for colours in [
         [[0.0; 2]; 4],
@@ -152,8 +144,7 @@ fn colours_are_those_that_the_file_states() {
         [[f32::NAN, 0.33], [0.3, 0.6], [0.15, 0.06], D65],
         [[1.0, -1.0], [0.0, -1.0], [0.5, -0.5], [0.5, -0.8]],
     ] {
-        let file = exr_file_in(&[("R", RED), ("G", GREEN), ("B", BLUE)], Some(colours));
-        let error = read_file("sky.exr", &file, 1.0).unwrap_err().to_string();
+        let error = written(colours).unwrap_err().to_string();
         let [red, _, _, white] = colours.map(|[x, y]| format!("({x}, {y})"));
         let named = error.contains(&format!("got white {white}, red {red}, green "));
         assert!(
@@ -180,10 +171,8 @@ fn headers_of_portable_float_maps_may_end_as_on_windows_and_the_length_must_fit(
             assert_eq!(map.values(), [grey, 2.0], "{header:?}, {first}");
             for wrong in [&file[..file.len() - 1], &[&file[..], &[0; 2]].concat()] {
                 let error = read_file("sky.pfm", wrong, 1.0).unwrap_err().to_string();
-                assert!(
-                    error.contains("announces 8 bytes of pixels, but it has"),
-                    "{error}"
-                );
+                let told = "announces 8 bytes of pixels, but it has";
+                assert!(error.contains(told), "{error}");
             }
         }
     }
@@ -211,15 +200,8 @@ fn what_is_no_map_is_refused_with_the_reason() {
     let half = &file[..file.len() / 2];
     let cut = read_file("a.exr", half, 1.0);
     assert!(matches!(cut, Err(E::Format(_))), "{cut:?}");
-    for (content, size) in [
-        ("Pf 0 2 1\n", (0, 2)),
-        ("PF 65536 65536 1\n", (65536, 65536)),
-        (
-            "PF 18446744073709551615 2 1\n",
-            (18_446_744_073_709_551_615, 2),
-        ),
-    ] {
-        let (width, height) = size;
+    for (width, height) in [(0, 2), (65_536, 65_536), (u64::MAX, 2)] {
+        let content = format!("Pf {width} {height} 1\n");
         let got = read_file("a.pfm", content.as_bytes(), 1.0);
         assert_eq!(got, Err(E::Size { width, height }), "{content}");
     }
@@ -228,15 +210,11 @@ fn what_is_no_map_is_refused_with_the_reason() {
         assert!(matches!(got, Err(E::Format(_))), "{content:?}: {got:?}");
     }
     let one = b"Pf 1 1 -1\n\0\0\0\0";
-    assert!(
-        matches!(read_file("a", one, 1.0), Err(E::Extension(_))),
-        "no extension"
-    );
+    let unnamed = read_file("a", one, 1.0);
+    assert!(matches!(unnamed, Err(E::Extension(_))), "no extension");
     for scale in [0.0, -1.0, f64::INFINITY, f64::NAN] {
-        assert!(
-            matches!(read_file("a.pfm", one, scale), Err(E::Scale(_))),
-            "{scale}"
-        );
+        let got = read_file("a.pfm", one, scale);
+        assert!(matches!(got, Err(E::Scale(_))), "{scale}");
     }
     let missing = read_radiance_map(Path::new("no/such.pfm"), 1.0).unwrap_err();
     let text = missing.to_string();

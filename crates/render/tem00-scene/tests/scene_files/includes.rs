@@ -43,11 +43,9 @@ fn assert_refused(files: &[(&str, &str)], (file, line): (&str, usize), words: &[
 fn a_scene_may_be_spread_over_files() {
     let laser = LASER.replace("650 nm", "532 nm");
     let lasers = format!("include = [\"more.toml\"]\n{LASER}");
+    let include = "include = [\"parts/lasers.toml\", \"surface.toml\"]";
     let scene = read(&[
-        (
-            "scene.toml",
-            &format!("include = [\"parts/lasers.toml\", \"surface.toml\"]\n{CAMERA}{LASER}"),
-        ),
+        ("scene.toml", &format!("{include}\n{CAMERA}{LASER}")),
         ("parts/lasers.toml", &lasers),
         ("parts/more.toml", &laser),
         ("surface.toml", SURFACE),
@@ -79,20 +77,18 @@ fn files_are_looked_for_beside_the_file_that_names_them() {
 #[test]
 fn mistakes_are_placed_in_the_file_that_has_them() {
     let main = format!("include = [\"part.toml\"]\n{CAMERA}{LASER}");
-    let part = |text: &str| -> String { text.to_owned() };
-    let cases = [
+    for (text, line, word) in [
         (
-            part("\n[[surface]]\nsphere.radis = 1\n"),
+            "\n[[surface]]\nsphere.radis = 1\n",
             3,
             "unknown key `radis`",
         ),
-        (part("[[surface]]\nsphere.radius = -1\n"), 2, "positive"),
-        (part("[[surface]]\nsphere.radius = \n"), 2, "not valid TOML"),
-        (part("\n\nbackground = 1\n"), 3, "unknown key `background`"),
-        (part("[[surface]]\nmesh.file = \"no.ply\"\n"), 2, "no.ply"),
-    ];
-    for (text, line, word) in cases {
-        let files = [("scene.toml", &*main), ("part.toml", &*text)];
+        ("[[surface]]\nsphere.radius = -1\n", 2, "positive"),
+        ("[[surface]]\nsphere.radius = \n", 2, "not valid TOML"),
+        ("\n\nbackground = 1\n", 3, "unknown key `background`"),
+        ("[[surface]]\nmesh.file = \"no.ply\"\n", 2, "no.ply"),
+    ] {
+        let files = [("scene.toml", &*main), ("part.toml", text)];
         assert_refused(&files, ("part.toml", line), &[word]);
     }
 }
@@ -112,28 +108,22 @@ fn a_section_of_which_there_is_one_stands_in_one_file() {
 #[test]
 fn includes_that_lead_nowhere_are_refused_where_they_stand() {
     let main = |include: &str| format!("\ninclude = {include}\n{CAMERA}{LASER}{SURFACE}");
-    let cases = [
-        ("[\"missing.toml\"]", "missing.toml cannot be read"),
-        ("[\".\"]", "cannot be read"),
-        ("[\"scene.toml\"]", "would include itself"),
-        ("[\"other.toml\"]", "must be text in UTF-8"),
-        (
-            "[\"empty.toml\", \"./empty.toml\"]",
-            "part of the document already",
-        ),
-        ("\"empty.toml\"", "must be a list of files"),
-        ("[1]", "element 1 of `include` must be a string"),
-    ];
-    for (include, word) in cases {
-        let folder = write(&[("scene.toml", &main(include)), ("empty.toml", "")]);
+    let table = r#"
+        ["missing.toml"] => missing.toml cannot be read
+        ["."] => cannot be read
+        ["scene.toml"] => would include itself
+        ["other.toml"] => must be text in UTF-8
+        ["empty.toml", "./empty.toml"] => part of the document already
+        "empty.toml" => must be a list of files
+        [1] => element 1 of `include` must be a string
+    "#;
+    for [include, word] in tem00_testkit::rows(table) {
+        let folder = write(&[("scene.toml", &main(&include)), ("empty.toml", "")]);
         fs::write(folder.path().join("other.toml"), [0x66, 0xff]).unwrap();
         let error = read_scene(&folder.path().join("scene.toml")).unwrap_err();
-        assert!(error.message().contains(word), "{word:?}: {error}");
-        assert_eq!(
-            error.line_column().map(|(line, _)| line),
-            Some(2),
-            "{error}"
-        );
+        assert!(error.message().contains(&word), "{word:?}: {error}");
+        let line = error.line_column().map(|(line, _)| line);
+        assert_eq!(line, Some(2), "{error}");
     }
 }
 
@@ -173,10 +163,7 @@ fn a_byte_order_mark_is_no_part_of_a_file() {
         ("surface.toml", &marked(SURFACE)),
     ]);
     assert_eq!(read_scene.unwrap().surfaces.len(), 1);
-    assert!(
-        tem00_scene::parse_scene(&marked(&[CAMERA, LASER, SURFACE].concat()), Path::new("."))
-            .is_ok()
-    );
+    assert!(parse(&marked(&[CAMERA, LASER, SURFACE].concat())).is_ok());
     let error = read(&[("scene.toml", "\u{feff}inclode = 1\n")]).unwrap_err();
     assert_eq!(error.line_column(), Some((1, 1)), "{error}");
 }

@@ -66,7 +66,7 @@ const TABLES: &str = "
 /// Asks the reader for the keys of every table, by the name of its definition.
 pub(super) fn tables() -> BTreeMap<String, BTreeSet<String>> {
     let table = |[name, place]: [String; 2]| (name, keys(&place));
-    rows(TABLES).into_iter().map(table).collect()
+    rows(TABLES).map(table).collect()
 }
 
 /// Returns the keys that the reader says are allowed at a place in a section.

@@ -2,7 +2,7 @@ use base64::{Engine as _, engine::general_purpose::STANDARD};
 
 use glam::DQuat;
 
-use super::*;
+use super::{broken::assert_broken, *};
 
 /// A buffer of the pyramid's vertices (offset 0), the corners of its sides (60, bytes) and of its base
 /// (72, shorts), and one normal for each vertex (84).

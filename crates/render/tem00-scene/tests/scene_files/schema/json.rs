@@ -29,7 +29,7 @@ fn fits(
     };
     let number = value.as_f64();
     let length = value.as_array().map(|items| items.len() as f64);
-    let items = value.as_array().into_iter().flatten();
+    let mut items = value.as_array().into_iter().flatten();
     let mut entries = value.as_object().into_iter().flatten();
     Ok(match word {
         "$ref" => {
@@ -59,16 +59,12 @@ fn fits(
             !value.is_object() || listed().all(|key| value.get(key.as_str().unwrap()).is_some())
         }
         "items" => {
-            items
-                .map(|item| check(root, limit, item))
-                .collect::<Result<(), _>>()?;
+            items.try_for_each(|item| check(root, limit, item))?;
             true
         }
         "properties" => {
-            let known = entries.filter_map(|(key, value)| Some((limit.get(key)?, value)));
-            known
-                .map(|(schema, value)| check(root, schema, value))
-                .collect::<Result<(), _>>()?;
+            let mut known = entries.filter_map(|(key, value)| Some((limit.get(key)?, value)));
+            known.try_for_each(|(schema, value)| check(root, schema, value))?;
             true
         }
         "additionalProperties" => entries.all(|(key, _)| schema["properties"].get(key).is_some()),

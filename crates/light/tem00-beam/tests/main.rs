@@ -4,7 +4,7 @@
 
 mod closed_forms;
 mod emitters;
-mod lines;
+mod lights;
 mod phase_space;
 mod power_on_surfaces;
 mod refusals;

@@ -13,7 +13,7 @@ use tem00_beam::{
     LocatedBeam, Placement, SpotLight, TabulatedLineLight,
 };
 
-use crate::lines::{REACH, profiles, slopes};
+use crate::lights::{REACH, profiles, slopes};
 
 const WAVELENGTH: f64 = 650e-9;
 
@@ -256,20 +256,6 @@ proptest! {
         let beam = round(beam, waist_distance);
         let power = power_of_beam(&flux, &beam, &plane(distance, tilted(tilt, azimuth)));
         prop_assert!((power - 1.0).abs() < 1e-6, "{power}");
-    }
-
-    #[test]
-    fn a_sphere_and_a_cylinder_receive_the_power_of_a_placed_spot(
-        waist in waists(),
-        waist_distance in -0.5..0.5_f64,
-        surface in round_surfaces(),
-        placement in placements(),
-    ) {
-        let beam = GaussianBeam::from_waist(WAVELENGTH, waist).expect("a valid beam");
-        let light = SpotLight::place(&beam, waist_distance, &placement, 1.0).expect("a valid light");
-        let beam = round(beam, waist_distance);
-        let power = power_of_beam(&local_flux(&light, &placement), &beam, &surface);
-        prop_assert!((power - 1.0).abs() < 1e-6, "{surface:?}: {power}");
     }
 
     #[test]

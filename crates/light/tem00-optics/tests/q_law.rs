@@ -3,10 +3,9 @@
 use core::f64::consts::PI;
 
 use proptest::prelude::*;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use tem00_beam::{GaussianBeam, LocatedBeam};
 use tem00_optics::{AbcdMatrix, ComplexBeamParameter};
+use tem00_testkit::{Numbers, assert_absolute, assert_relative};
 
 /// A step of light along the axis.
 #[derive(Clone, Copy, Debug)]
@@ -288,14 +287,6 @@ proptest! {
     }
 }
 
-/// Two independent standard normal variates (Box and Muller 1958).
-fn normals(rng: &mut ChaCha8Rng) -> [f64; 2] {
-    let u: [f64; 2] = rng.random();
-    let radius = (-2.0 * (1.0 - u[0]).ln()).sqrt();
-    let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
-    [radius * cos, radius * sin]
-}
-
 #[test]
 fn rays_drawn_from_phase_space_obey_the_q_law() {
     const COUNT: usize = 100_000;
@@ -327,10 +318,10 @@ fn rays_drawn_from_phase_space_obey_the_q_law() {
             system = system.then(element.matrix(index));
             index = element.index_behind(index);
         }
-        let mut rng = ChaCha8Rng::seed_from_u64(seed as u64);
+        let mut numbers = Numbers::new(seed as u64);
         let [mut xx, mut xs] = [0.0, 0.0];
         for _ in 0..COUNT {
-            let [u, v] = normals(&mut rng);
+            let [u, v] = [numbers.normal(), numbers.normal()];
             // At the waist, height and slope are independent.
             let ray = [0.5 * beam.waist_radius() * u, 0.5 * beam.divergence() * v];
             let [x, s] = system.transform_ray(ray);
@@ -344,18 +335,11 @@ fn rays_drawn_from_phase_space_obey_the_q_law() {
             .unwrap();
         let w = image.radius_at(0.0);
         // The variance of a variance estimate from n normal variates is 2 σ⁴ / n.
-        let ratio = 4.0 * xx / (w * w) - 1.0;
-        assert!(
-            ratio.abs() < SIGMAS * (2.0 / n).sqrt(),
-            "chain {seed}: 4σ² / w² − 1 = {ratio}"
-        );
+        assert_relative(4.0 * xx, w * w, SIGMAS * (2.0 / n).sqrt());
         // About the regression x/R the slopes scatter by w₀ δ / (2 w), so that the fitted 1/R has
         // the standard error w₀ δ / (w² √n).
         let scatter = image.beam().waist_radius() * image.beam().divergence() / (w * w);
-        let error = xs / xx - image.curvature_at(0.0);
-        assert!(
-            error.abs() < SIGMAS * scatter / n.sqrt(),
-            "chain {seed}: 1/R is off by {error}"
-        );
+        let tolerance = SIGMAS * scatter / n.sqrt();
+        assert_absolute(xs / xx, image.curvature_at(0.0), tolerance);
     }
 }

@@ -1,3 +1,5 @@
+use tem00_testkit::{assert_absolute, assert_relative};
+
 use super::*;
 use crate::AngularProfile;
 
@@ -62,13 +64,11 @@ fn power_between_angles_is_the_integral_of_the_power_per_angle() {
                 LineProfile::UniformTan | LineProfile::UniformAngle => 1.1e-4 * (b - a),
                 _ => 1e-8,
             };
-            let error = power - expected;
-            assert!(error.abs() < tolerance, "{line:?}, {a} to {b}: {error:e}");
+            assert_absolute(power, expected, tolerance);
             let reversed = line.power_between_angles(b, a);
             assert_eq!(power.to_bits(), reversed.to_bits(), "either order");
         }
-        let total = line.power_between_angles(-2.0, 2.0);
-        assert!((total - 1.0).abs() < 1e-15, "{line:?}: {total}");
+        assert_absolute(line.power_between_angles(-2.0, 2.0), 1.0, 1e-15);
         let behind = line.power_per_angle(PI);
         assert!(behind < f64::MIN_POSITIVE, "behind the lens");
     }
@@ -84,8 +84,7 @@ fn power_far_out_keeps_its_digits() {
     let line = gaussian();
     let edge = (3.0 * line.half_slope()).atan();
     for (a, b) in [(edge, 1.5), (-1.5, -edge)] {
-        let power = line.power_between_angles(a, b);
-        assert!((power / expected - 1.0).abs() < 1e-13, "{power:e}");
+        assert_relative(line.power_between_angles(a, b), expected, 1e-13);
     }
 }
 
@@ -108,8 +107,7 @@ fn power_on_a_length_is_the_irradiance_on_the_strip() {
             let expected = expected.sum::<f64>() * h;
             let power = line.power_on_length(x_min, x_max, z);
             // Midpoint rule: (0.01 m / 1000)² g'' / 24 of the roll-off, of 2 mm.
-            let error = power - expected;
-            assert!(error.abs() < 2e-6, "{line:?}: {error:e}");
+            assert_absolute(power, expected, 2e-6);
         }
         assert!(
             line.power_on_length(-1.0, 1.0, -1e-9) <= 0.0,
@@ -129,17 +127,11 @@ fn the_line_is_thinnest_where_its_focus_curve_says() {
                 FocusCurve::EqualPlane => 0.2,
             };
             let thickness = line.half_thickness_at_angle(z, theta);
-            assert!(
-                (thickness / w0 - 1.0).abs() < 1e-12,
-                "{line:?}: {thickness}"
-            );
+            assert_relative(thickness, w0, 1e-12);
             // The flow is parallel to the fan plane there, and has the waist's profile across.
             let x = (z + FAN.apex_offset) * theta.tan();
             let [centre, edge] = [0.0, w0].map(|y| line.flux_per_watt(DVec3::new(x, y, z)));
-            assert!(
-                (edge.z / centre.z - (-2.0_f64).exp()).abs() < 1e-12,
-                "{line:?}"
-            );
+            assert_absolute(edge.z / centre.z, (-2.0_f64).exp(), 1e-12);
             assert!((edge.y / edge.z).abs() < 1e-12, "{line:?}: {edge}");
             for off in [-1e-3, 1e-3] {
                 assert!(
@@ -208,27 +200,15 @@ fn the_lens_and_its_back_are_no_singularity() {
 fn dimensions_follow_the_geometry() {
     let line = gaussian();
     let half_slope = 0.25_f64.tan();
-    assert!(
-        (line.half_length_at(0.198) - 0.2 * half_slope).abs() < 1e-15,
-        "{line:?}"
-    );
-    assert!(
-        (line.half_thickness_at(0.2) - 0.1e-3).abs() < 1e-18,
-        "{line:?}"
-    );
+    assert_absolute(line.half_length_at(0.198), 0.2 * half_slope, 1e-15);
+    assert_absolute(line.half_thickness_at(0.2), 0.1e-3, 1e-18);
     let waist = 650e-9 / (PI * half_slope);
-    assert!(
-        (line.source_radius() / waist - 1.0).abs() < 1e-14,
-        "{line:?}"
-    );
+    assert_relative(line.source_radius(), waist, 1e-14);
     let edge = DVec3::new(line.half_length_at(0.1), 0.0, 0.1);
     let centre = DVec3::new(0.0, 0.0, 0.1);
     // Between them the thickness differs, since the waist lies on a circle.
     let thickness = |p: DVec3| focus().radius_at(p.x.hypot(p.z + 2e-3) - 0.202);
     let ratio = line.irradiance_per_watt(edge) * thickness(edge)
         / (line.irradiance_per_watt(centre) * thickness(centre));
-    assert!(
-        (ratio - (-2.0_f64).exp()).abs() < 1e-14,
-        "1/e² at the edge: {ratio}"
-    );
+    assert_absolute(ratio, (-2.0_f64).exp(), 1e-14);
 }

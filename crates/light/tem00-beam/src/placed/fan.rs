@@ -313,6 +313,3 @@ impl LineLight {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,4 +1,5 @@
 use core::f64::consts::PI;
+use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
 
@@ -101,8 +102,7 @@ fn printed_forms_are_special_cases() {
             let error = density.per_angle(u) - expected;
             assert!(error.abs() < 1e-14, "θ = {theta}, {density:?}: {error:e}");
             // g du = f dθ
-            let error = density.per_slope(u) * sec_sq - expected;
-            assert!(error.abs() < 1e-14, "θ = {theta}, {density:?}: {error:e}");
+            assert_absolute(density.per_slope(u) * sec_sq, expected, 1e-14);
         }
     }
 }
@@ -121,15 +121,9 @@ fn the_edges_of_the_fan_are_where_the_profiles_say() {
             fall(sine, edge) * sec.powi(3),
         ];
         for fall in in_variable {
-            assert!(
-                (fall - (-2.0_f64).exp()).abs() < 1e-14,
-                "1/e² at the edge: {fall}"
-            );
+            assert_absolute(fall, (-2.0_f64).exp(), 1e-14);
         }
-        assert!(
-            (fall(powell, edge) - 0.5).abs() < 1e-14,
-            "one half at the edge"
-        );
+        assert_absolute(fall(powell, edge), 0.5, 1e-14);
         for uniform in [flat_tan, flat_angle] {
             let ends = [0.999_999, 1.000_001].map(|part| uniform.per_slope(part * edge) > 0.0);
             assert_eq!(ends, [true, false], "{uniform:?}");
@@ -148,10 +142,7 @@ fn samples_invert_the_cumulative_density() {
             let mass = integrate(density, -end(density), -x.abs());
             let tail = u.min(1.0 - u);
             // Midpoint rule with 20000 points: h² g'' / 24 < 1e−6 of the mass at edge 1e−3.
-            assert!(
-                (mass / tail - 1.0).abs() < 2e-6,
-                "{density:?}, u = {u:e}: {mass:e}"
-            );
+            assert_relative(mass, tail, 2e-6);
             assert!(
                 (x < 0.0) == (u < 0.5) || x.abs() < 1e-15,
                 "{density:?}, u = {u}: {x}"
@@ -171,7 +162,7 @@ fn the_power_between_slopes_is_the_integral_of_the_density() {
             assert!((power - integral).abs() < 1e-8, "{density:?}: {integral}");
         }
         let total = density.between(f64::NEG_INFINITY, f64::INFINITY);
-        assert!((total - 1.0).abs() < 1e-15, "{density:?}: {total}");
+        assert_absolute(total, 1.0, 1e-15);
     }
 }
 

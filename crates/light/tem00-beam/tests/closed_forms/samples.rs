@@ -1,11 +1,10 @@
 //! Lights whose fields are in single precision, and points around them.
 
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use tem00_beam::{
     DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight, LineProfile,
     Placement, SpotLight,
 };
+use tem00_testkit::Numbers;
 
 const PLACEMENT: Placement = Placement {
     origin: DVec3::new(0.11, -0.07, 0.4),
@@ -36,10 +35,10 @@ impl<L: Emitter> Sample<L> {
         rows: &[[f32; 4]],
         local_from: impl Fn(f64, [f64; 2]) -> [f64; 2],
     ) -> Self {
-        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let mut numbers = Numbers::new(1);
         let mut point = || {
-            let z = rng.random_range(-0.06..0.6);
-            let cutoffs = core::array::from_fn(|_| rng.random_range(-1.1..1.1));
+            let z = numbers.between(-0.06, 0.6);
+            let cutoffs = core::array::from_fn(|_| numbers.between(-1.1, 1.1));
             let [x, y] = local_from(z, cutoffs);
             core::array::from_fn(|i| {
                 let [origin, ex, ey, ez] = [0, 1, 2, 3].map(|row| f64::from(rows[row][i]));

@@ -1,10 +1,10 @@
 //! The bound of the power in a box against rays that pass through boxes.
 
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use tem00_beam::{DVec3, Emitter, LaserLine, RaySample};
+use tem00_testkit::{Numbers, assert_relative};
 
-use super::lights::{POWER, elliptic, end_of, fans, place};
+use super::{fans, lights};
+use crate::lights::{POWER, UPRIGHT, end_of, place};
 
 /// Rays that boxes are placed on, and rays that are counted.
 const PLACES: usize = 400;
@@ -31,9 +31,9 @@ fn bound(light: &dyn Emitter, min: DVec3, max: DVec3) -> f64 {
 /// Calls `test` with every light, rays of it to place boxes on and others to count.
 fn for_every_light(mut test: impl FnMut(&dyn Emitter, &[RaySample], &[RaySample])) {
     let lasers: Vec<LaserLine> = fans().collect();
-    let mut rng = ChaCha8Rng::seed_from_u64(17);
-    for light in lasers.iter().map(place).chain([elliptic()]) {
-        let rays = (0..PLACES + RAYS).map(|_| light.sample_ray(rng.random()));
+    let mut numbers = Numbers::new(17);
+    for light in lights(&lasers) {
+        let rays = (0..PLACES + RAYS).map(|_| light.sample_ray(numbers.units()));
         let rays: Vec<_> = rays.collect();
         let (places, rays) = rays.split_at(PLACES);
         test(&*light, places, rays);
@@ -41,20 +41,21 @@ fn for_every_light(mut test: impl FnMut(&dyn Emitter, &[RaySample], &[RaySample]
 }
 
 /// A point of a ray, at a distance from 1e−4 m to 1 m.
-fn place_on(rays: &[RaySample], rng: &mut ChaCha8Rng) -> DVec3 {
-    let ray = rays[rng.random_range(0..rays.len())];
-    let distance = 10_f64.powf(rng.random_range(-4.0..0.0));
+fn place_on(rays: &[RaySample], numbers: &mut Numbers) -> DVec3 {
+    let index = usize::try_from(numbers.bits() >> 40).expect("24 bits");
+    let ray = rays[index % rays.len()];
+    let distance = 10_f64.powf(numbers.between(-4.0, 0.0));
     DVec3::from(ray.origin) + distance * DVec3::from(ray.direction)
 }
 
 #[test]
 fn no_box_of_any_shape_receives_more_than_its_bound() {
-    let mut rng = ChaCha8Rng::seed_from_u64(18);
+    let mut numbers = Numbers::new(18);
     for_every_light(|light, places, rays| {
         for _ in 0..1000 {
-            let mut side = || 10_f64.powf(rng.random_range(-6.0..-0.5));
+            let mut side = || 10_f64.powf(numbers.between(-6.0, -0.5));
             let half = DVec3::new(side(), side(), side());
-            let centre = place_on(places, &mut rng) + half * DVec3::from(rng.random::<[f64; 3]>());
+            let centre = place_on(places, &mut numbers) + half * DVec3::from(numbers.units::<3>());
             let (min, max) = (centre - half, centre + half);
             let (met, bound) = (fraction(rays, min, max), bound(light, min, max));
             // Of 16 000 boxes one exceeds 4.5 deviations by chance; three hits are rarer yet where
@@ -69,13 +70,13 @@ fn no_box_of_any_shape_receives_more_than_its_bound() {
 
 #[test]
 fn the_bound_of_a_cube_within_the_beam_is_a_small_multiple_of_its_power() {
-    let mut rng = ChaCha8Rng::seed_from_u64(19);
+    let mut numbers = Numbers::new(19);
     let mut worst = 0.0_f64;
     let mut cubes = 0;
     for_every_light(|light, places, rays| {
         for _ in 0..300 {
-            let half = DVec3::splat(10_f64.powf(rng.random_range(-5.0..-2.0)));
-            let centre = place_on(places, &mut rng);
+            let half = DVec3::splat(10_f64.powf(numbers.between(-5.0, -2.0)));
+            let centre = place_on(places, &mut numbers);
             let (min, max) = (centre - half, centre + half);
             let met = fraction(rays, min, max);
             if met > 0.05 {
@@ -90,14 +91,14 @@ fn the_bound_of_a_cube_within_the_beam_is_a_small_multiple_of_its_power() {
 
 #[test]
 fn the_bound_of_a_rod_along_the_beam_is_mostly_near_its_power() {
-    let mut rng = ChaCha8Rng::seed_from_u64(21);
+    let mut numbers = Numbers::new(21);
     for_every_light(|light, places, rays| {
         let mut ratios = Vec::new();
         for _ in 0..400 {
-            let across = 10_f64.powf(rng.random_range(-5.0..-2.5));
-            let along = across * 10_f64.powf(rng.random_range(0.0..3.0));
+            let across = 10_f64.powf(numbers.between(-5.0, -2.5));
+            let along = across * 10_f64.powf(numbers.between(0.0, 3.0));
             let half = DVec3::new(across, across, along);
-            let centre = place_on(places, &mut rng);
+            let centre = place_on(places, &mut numbers);
             let (min, max) = (centre - half, centre + half);
             let met = fraction(rays, min, max);
             if met > 0.01 {
@@ -123,8 +124,11 @@ fn nothing_reaches_a_box_behind_the_aperture_or_beside_the_light() {
         ];
         for (min, max) in dark {
             assert_eq!(light.power_bound(min, max).to_bits(), 0, "{min:?}");
-            let lit = light.power_bound([-1.0; 3], max.map(|x| x.max(1.0)));
-            assert!((lit / POWER - 1.0).abs() < 1e-5, "{lit}");
+            assert_relative(
+                light.power_bound([-1.0; 3], max.map(|x| x.max(1.0))),
+                POWER,
+                1e-5,
+            );
         }
         let turned = light.power_bound([1.0; 3], [-1.0; 3]);
         assert_eq!(turned.to_bits(), 0, "an empty box");
@@ -133,10 +137,10 @@ fn nothing_reaches_a_box_behind_the_aperture_or_beside_the_light() {
 
 #[test]
 fn a_box_about_a_lit_point_has_a_bound() {
-    let mut rng = ChaCha8Rng::seed_from_u64(20);
+    let mut numbers = Numbers::new(20);
     for_every_light(|light, places, _| {
         for _ in 0..200 {
-            let p = place_on(places, &mut rng).to_array();
+            let p = place_on(places, &mut numbers).to_array();
             if light.next_event(p).is_some() {
                 assert!(light.power_bound(p, p) > 0.0, "{p:?}");
             }
@@ -147,7 +151,7 @@ fn a_box_about_a_lit_point_has_a_bound() {
 #[test]
 fn a_box_beside_the_end_of_a_line_receives_rays_from_the_whole_source() {
     for line in fans() {
-        let light = place(&line);
+        let light = place(&line, &UPRIGHT);
         let sigma = 0.5 * line.source_radius();
         let x = end_of(&line) * line.fan().apex_offset + 0.5 * sigma;
         let (width, height) = (0.01 * sigma, 5e-3);

@@ -1,12 +1,11 @@
 //! The joint density of a ray in both of its factorings: they agree, their parts integrate to 1, and
 //! rays are where the density of the position says.
 
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use tem00_beam::{DVec3, Emitter, LaserLine, RayPdf};
+use tem00_testkit::{Numbers, assert_absolute, chi_squared};
 
-use super::lights::{elliptic, end_of, fans, place};
-use crate::lines::slopes;
+use super::fans;
+use crate::lights::{UPRIGHT, elliptic_light, end_of, place, slopes};
 
 /// `σ_b/r`: the angle, on the axis, that the rays of a point of the lens differ by.
 const APEX_ANGLE: f64 = 4.1e-4;
@@ -25,34 +24,11 @@ fn integrate(centre: f64, h: f64, count: i32, f: impl Fn(f64) -> f64) -> f64 {
 }
 
 #[test]
-fn both_factorings_are_the_joint_density_of_drawn_rays() {
-    let lasers: Vec<LaserLine> = fans().collect();
-    let mut rng = ChaCha8Rng::seed_from_u64(5);
-    for light in lasers.iter().map(place).chain([elliptic()]) {
-        for _ in 0..2000 {
-            let ray = light.sample_ray(rng.random());
-            let RayPdf {
-                position,
-                direction_given_position,
-                direction,
-                position_given_direction,
-            } = ray.pdf;
-            let [a, b] = [
-                position * direction_given_position,
-                direction * position_given_direction,
-            ];
-            // Up to 20 from exponents of as many units, cancelled down from 1e−4 m.
-            assert!(a > 0.0 && (a / b - 1.0).abs() < 1e-11, "{ray:?}");
-        }
-    }
-}
-
-#[test]
 fn the_direction_at_a_position_of_a_beam_has_a_density() {
-    let light = elliptic();
-    let mut rng = ChaCha8Rng::seed_from_u64(6);
+    let light = elliptic_light(0.0, &UPRIGHT);
+    let mut numbers = Numbers::new(6);
     for _ in 0..8 {
-        let [x, y, _] = light.sample_ray(rng.random()).origin;
+        let [x, y, _] = light.sample_ray(numbers.units()).origin;
         let mean = light
             .flux([x, y, 0.0])
             .map(|f| f / light.irradiance([x, y, 0.0]));
@@ -63,13 +39,13 @@ fn the_direction_at_a_position_of_a_beam_has_a_density() {
                 pdf(&*light, [x, y], [s, t]).direction_given_position * cos.powi(3)
             })
         });
-        assert!((sum - 1.0).abs() < 1e-9, "{x}, {y}: {sum}");
+        assert_absolute(sum, 1.0, 1e-9);
     }
 }
 
 /// ∫ of the density of the direction at (x, y) on the lens of a line, over all directions.
 fn directions_at(line: &LaserLine, [x, y]: [f64; 2]) -> f64 {
-    let light = place(line);
+    let light = place(line, &UPRIGHT);
     let z_a = line.fan().apex_offset;
     let sec = 1_f64.hypot(x / z_a);
     let from_waist = z_a * sec - line.waist_slant_distance_at(x / z_a);
@@ -94,8 +70,7 @@ fn the_direction_at_a_position_of_a_line_has_a_density() {
     for line in fans() {
         assert!(0.5 * line.source_radius() < APEX_ANGLE * 1e-3, "{line:?}");
         for x in [0.0, 0.1e-3, -0.2e-3] {
-            let sum = directions_at(&line, [x, 2e-4]);
-            assert!((sum - 1.0).abs() < 1e-5, "{line:?}, {x}: {sum}");
+            assert_absolute(directions_at(&line, [x, 2e-4]), 1.0, 1e-5);
         }
     }
 }
@@ -106,8 +81,7 @@ fn beside_an_abrupt_end_the_density_is_good_to_first_order() {
         let end = end_of(&line) * line.fan().apex_offset;
         for deviations in [-2.0, -0.5, 0.0, 0.5, 2.0] {
             let x = end + deviations * 0.5 * line.source_radius();
-            let sum = directions_at(&line, [x, 2e-4]);
-            assert!((sum - 1.0).abs() < 4.0 * APEX_ANGLE, "{line:?}, {x}: {sum}");
+            assert_absolute(directions_at(&line, [x, 2e-4]), 1.0, 4.0 * APEX_ANGLE);
         }
     }
 }
@@ -115,7 +89,7 @@ fn beside_an_abrupt_end_the_density_is_good_to_first_order() {
 #[test]
 fn the_density_of_the_position_on_the_lens_integrates_to_one() {
     for line in fans() {
-        let light = place(&line);
+        let light = place(&line, &UPRIGHT);
         let z_a = line.fan().apex_offset;
         let mut sum = 0.0;
         for (u, du) in slopes(&line) {
@@ -125,49 +99,40 @@ fn the_density_of_the_position_on_the_lens_integrates_to_one() {
             sum += integrate(0.0, 0.25 * w, 16, across) * z_a * du;
         }
         // What an abrupt end loses beyond itself, 0.4 σ of the 2 × 0.26 in slope, at both ends.
-        assert!((sum - 1.0).abs() < 2.0 * APEX_ANGLE, "{line:?}: {sum}");
+        assert_absolute(sum, 1.0, 2.0 * APEX_ANGLE);
     }
 }
 
-/// χ² of the positions of drawn rays along x, in bins up to ±`half`, against their density there.
-fn chi_square_of_positions(light: &dyn Emitter, half: f64, y: f64) -> f64 {
+/// Holds the positions of drawn rays along x, in bins up to ±`half`, against their density there.
+#[track_caller]
+fn check_positions(light: &dyn Emitter, half: f64, y: f64) {
+    const BINS: usize = 16;
     const RAYS: u32 = 60_000;
     const FINE: i32 = 10;
-    let mut rng = ChaCha8Rng::seed_from_u64(7);
-    let mut counts = [0_u32; BINS];
+    let mut numbers = Numbers::new(7);
+    let mut counts = [0.0; BINS];
     for _ in 0..RAYS {
-        let x = light.sample_ray(rng.random()).origin[0];
+        let x = light.sample_ray(numbers.units()).origin[0];
         let place = 0.5 * (x / half + 1.0) * BINS as f64;
         if let Some(bin) = (0..BINS).find(|&bin| (bin as f64..(bin + 1) as f64).contains(&place)) {
-            counts[bin] += 1;
+            counts[bin] += 1.0;
         }
     }
     let width = 2.0 * half / BINS as f64;
     let along = |x| integrate(0.0, 0.02 * y, 50, |y| pdf(light, [x, y], [0.0; 2]).position);
-    let expected = |bin: usize| {
+    let expected: [f64; BINS] = core::array::from_fn(|bin| {
         let middle = (bin as f64 + 0.5) * width - half;
         let h = width / f64::from(2 * FINE + 1);
         f64::from(RAYS) * integrate(middle, h, FINE, along)
-    };
-    let terms = counts.iter().enumerate().map(|(bin, &count)| {
-        let expected = expected(bin);
-        assert!(expected > 10.0, "{bin}: {expected}");
-        (f64::from(count) - expected).powi(2) / expected
     });
-    terms.sum()
+    let p = chi_squared(&counts, &expected, 0);
+    assert!(p > 1e-4, "p = {p}");
 }
-
-/// Bins of positions. χ² with as many degrees of freedom exceeds the limit with probability 1e−4
-/// (Wilson and Hilferty 1931).
-const BINS: usize = 16;
-const CHI_SQUARE_LIMIT: f64 = 46.0;
 
 #[test]
 fn rays_leave_the_aperture_with_the_density_of_their_positions() {
-    let chi_square = chi_square_of_positions(&*elliptic(), 150e-6, 1e-3);
-    assert!(chi_square < CHI_SQUARE_LIMIT, "{chi_square}");
+    check_positions(&*elliptic_light(0.0, &UPRIGHT), 150e-6, 1e-3);
     for line in fans() {
-        let chi_square = chi_square_of_positions(&*place(&line), 0.2e-3, 2e-3);
-        assert!(chi_square < CHI_SQUARE_LIMIT, "{line:?}: {chi_square}");
+        check_positions(&*place(&line, &UPRIGHT), 0.2e-3, 2e-3);
     }
 }

@@ -1,10 +1,10 @@
 //! Light that a material's ray meets, beside sampled next events.
 
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
-use tem00_beam::{DVec3, Emitter, GaussianBeam, LaserLine, SpotLight};
+use tem00_beam::{DVec3, Emitter, LaserLine, SpotLight};
+use tem00_testkit::{Numbers, assert_absolute, assert_relative};
 
-use super::lights::{PLACEMENT, POWER, elliptic, fans, place};
+use super::{fans, lights};
+use crate::lights::{POWER, UPRIGHT, beam, place};
 
 /// A lobe about the axis: slopes are normal with this deviation.
 #[derive(Clone, Copy)]
@@ -36,17 +36,17 @@ impl Lobe {
 /// events, from rays of the lobe, and from both with the balance heuristic.
 fn estimates(light: &dyn Emitter, p: [f64; 3], lobe: Lobe) -> [(f64, f64); 3] {
     const COUNT: u32 = 20_000;
-    let mut rng = ChaCha8Rng::seed_from_u64(11);
+    let mut numbers = Numbers::new(11);
     let mut sums = [[0.0; 2]; 3];
     for _ in 0..COUNT {
         let event = light
-            .next_event_sampled(p, rng.random())
+            .next_event_sampled(p, numbers.units())
             .expect("the point is lit");
         let towards = DVec3::from(event.wi);
         let sampled = event.value * towards.z.abs();
         let weight = event.pdf / (event.pdf + lobe.pdf(towards));
 
-        let wi = lobe.draw(rng.random());
+        let wi = lobe.draw(numbers.units());
         let q = lobe.pdf(wi);
         let hit = light.hit(p, wi.to_array());
         let met = hit.map_or(0.0, |hit| hit.radiance * wi.z.abs() / q);
@@ -69,19 +69,15 @@ fn estimates(light: &dyn Emitter, p: [f64; 3], lobe: Lobe) -> [(f64, f64); 3] {
 fn check(light: &dyn Emitter, p: [f64; 3], lobe: Lobe) {
     let expected = light.irradiance(p);
     for (mean, error) in estimates(light, p, lobe) {
-        let tolerance = 4.0 * error + 1e-7 * expected;
-        assert!(
-            (mean - expected).abs() < tolerance,
-            "{mean} ± {error}, expected {expected}"
-        );
+        assert_absolute(mean, expected, 4.0 * error + 1e-7 * expected);
         assert!(error < 0.05 * expected, "the test must be sharp: {error}");
     }
 }
 
 #[test]
 fn sampled_events_and_rays_of_a_material_share_the_light_of_a_beam() {
-    let beam = GaussianBeam::from_waist(650e-9, 3e-6).expect("a valid beam");
-    let light = SpotLight::place(&beam, 20e-6, &PLACEMENT, POWER).expect("a valid light");
+    let beam = beam(3e-6);
+    let light = SpotLight::place(&beam, 20e-6, &UPRIGHT, POWER).expect("a valid light");
     for (z, x) in [(1e-6, 2e-6), (40e-6, 1e-6), (100e-6, -4e-6)] {
         let w = beam.radius_at(z - 20e-6);
         let spread = 0.5 * beam.waist_radius() * beam.divergence() / w;
@@ -109,38 +105,31 @@ fn sampled_events_and_rays_of_a_material_share_the_light_of_a_line() {
             mean: [u + spread_x, spread_y],
             deviation: [2.0 * spread_x, 2.0 * spread_y],
         };
-        check(&*place(&line), [x, 0.0, z], lobe);
+        check(&*place(&line, &UPRIGHT), [x, 0.0, z], lobe);
     }
 }
 
 #[test]
 fn a_hit_is_the_sampled_event_of_its_direction() {
     let lasers: Vec<LaserLine> = fans().collect();
-    let mut rng = ChaCha8Rng::seed_from_u64(12);
-    for light in lasers.iter().map(place).chain([elliptic()]) {
+    let mut numbers = Numbers::new(12);
+    for light in lights(&lasers) {
         let p = [1e-5, 2e-5, 0.03];
         for _ in 0..200 {
             let event = light
-                .next_event_sampled(p, rng.random())
+                .next_event_sampled(p, numbers.units())
                 .expect("the point is lit");
             let hit = light.hit(p, event.wi).expect("a ray of the light");
             let miss = DVec3::from(hit.point).distance(event.point.into());
             assert!(miss < 1e-16, "{miss:e}");
-            assert!((hit.distance - event.distance).abs() < 1e-16, "{hit:?}");
+            assert_absolute(hit.distance, event.distance, 1e-16);
             // 1e−18 m of rounding beside a source of 4e−7 m, five σ out.
-            let ratios = [
-                hit.pdf / event.pdf,
-                hit.radiance / (event.value * event.pdf),
-            ];
-            for ratio in ratios {
-                assert!((ratio - 1.0).abs() < 1e-9, "{ratio}: {hit:?}, {event:?}");
-            }
-            assert_eq!(
-                hit.pdf.to_bits(),
-                light.next_event_pdf(p, event.wi).to_bits()
-            );
+            assert_relative(hit.pdf, event.pdf, 1e-9);
+            assert_relative(hit.radiance, event.value * event.pdf, 1e-9);
             let travel = event.wi.map(|x| -x);
-            assert_eq!(hit.radiance.to_bits(), light.radiance(p, travel).to_bits());
+            let asked = [light.next_event_pdf(p, event.wi), light.radiance(p, travel)];
+            let met = [hit.pdf, hit.radiance];
+            assert_eq!(met.map(f64::to_bits), asked.map(f64::to_bits));
             assert!(light.hit(p, travel).is_none(), "with the light");
         }
         let towards = [0.0, 0.0, -1.0];
@@ -152,10 +141,10 @@ fn a_hit_is_the_sampled_event_of_its_direction() {
 
 #[test]
 fn batches_of_records_have_the_bits_of_single_calls() {
-    let mut rng = ChaCha8Rng::seed_from_u64(13);
+    let mut numbers = Numbers::new(13);
     let lasers: Vec<LaserLine> = fans().collect();
-    for light in lasers.iter().map(place).chain([elliptic()]) {
-        let u: [[f64; 4]; 50] = core::array::from_fn(|_| rng.random());
+    for light in lights(&lasers) {
+        let u: [[f64; 4]; 50] = core::array::from_fn(|_| numbers.units());
         let mut rays = vec![light.sample_ray([0.5; 4]); u.len()];
         light.sample_ray_batch(&u, &mut rays);
         for (ray, &u) in rays.iter().zip(&u) {

@@ -1,4 +1,5 @@
 use proptest::prelude::*;
+use tem00_testkit::assert_absolute;
 
 use super::*;
 
@@ -39,7 +40,7 @@ fn the_density_is_the_table_normalised() {
         let f = table.per_angle(inside.tan());
         assert!((f - power / TOTAL).abs() < 1e-13, "{angle}: {f}");
         let g = table.per_slope(inside.tan());
-        assert!((g - f * inside.cos().powi(2)).abs() < 1e-15, "{angle}: {g}");
+        assert_absolute(g, f * inside.cos().powi(2), 1e-15);
     }
     for outside in [-0.501_f64, 0.901, 1.5] {
         assert!(table.per_angle(outside.tan()) <= 0.0, "outside: {outside}");
@@ -95,10 +96,7 @@ fn the_unit_of_the_powers_is_of_no_account() {
         let scaled = AngularProfile::new(&ANGLES, &POWERS.map(|power| power * unit)).unwrap();
         for (a, b) in scaled.knots().iter().zip(profile().knots()) {
             assert!((a.density - b.density).abs() < 1e-14, "{unit:e}: {a:?}");
-            assert!(
-                (a.cumulative - b.cumulative).abs() < 1e-15,
-                "{unit:e}: {a:?}"
-            );
+            assert_absolute(a.cumulative, b.cumulative, 1e-15);
         }
     }
 }

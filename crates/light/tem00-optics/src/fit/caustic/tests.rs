@@ -1,4 +1,5 @@
 use proptest::prelude::*;
+use tem00_testkit::assert_relative;
 
 use super::*;
 use crate::fit::synthetic::{assert_chi_squared, assert_standard_normal, noise, pull};
@@ -26,11 +27,6 @@ fn caustic() -> (Vec<f64>, Vec<f64>) {
     (z.iter().map(|z| POSITION + z).collect(), radii)
 }
 
-fn assert_relative(got: f64, expected: f64, tolerance: f64, what: &str) {
-    let error = got / expected - 1.0;
-    assert!(error.abs() < tolerance, "{what}: off by {error:e}");
-}
-
 #[test]
 fn radii_without_noise_give_the_beam_back() {
     let (z, w) = caustic();
@@ -51,16 +47,16 @@ fn radii_without_noise_give_the_beam_back() {
             (fit.m_squared(), M_SQUARED),
             (fit.beam_parameter_product(), beam.beam_parameter_product()),
         ];
-        for (i, (estimate, expected)) in pairs.into_iter().enumerate() {
+        for (estimate, expected) in pairs {
             // Rounding of the radii, 1e−16, times the condition of the fit, about 10.
-            assert_relative(estimate.value, expected, 1e-14, &format!("{errors:?}, {i}"));
+            assert_relative(estimate.value, expected, 1e-14);
         }
         let located = fit.beam().unwrap();
-        assert_relative(located.beam().m_squared(), M_SQUARED, 1e-14, "M²");
-        assert_relative(located.waist_distance(), POSITION, 1e-14, "z₀");
+        assert_relative(located.beam().m_squared(), M_SQUARED, 1e-14);
+        assert_relative(located.waist_distance(), POSITION, 1e-14);
         for (&z, &w) in z.iter().zip(&w) {
-            assert_relative(fit.radius_at(z), w, 1e-14, "w(z)");
-            assert_relative(located.radius_at(z), w, 1e-14, "w(z)");
+            assert_relative(fit.radius_at(z), w, 1e-14);
+            assert_relative(located.radius_at(z), w, 1e-14);
         }
     }
 }
@@ -99,7 +95,7 @@ fn assert_pulls((pulls, sum): ([Vec<f64>; 3], f64)) {
     for (pulls, name) in pulls.iter().zip(["w₀", "z₀", "M²"]) {
         assert_standard_normal(pulls, name);
     }
-    let freedom = (pulls[0].len() * (ISO.len() - 3)) as f64;
+    let freedom = pulls[0].len() * (ISO.len() - 3);
     assert_chi_squared(sum, freedom, "residuals");
 }
 
@@ -169,12 +165,7 @@ fn no_neighbour_fits_better() {
     let [a, b, c] = best.map(|estimate| estimate.value);
     let minimum = sum(a, b, c);
     let freedom = (z.len() - 3) as f64;
-    assert_relative(
-        fit.residual_deviation(),
-        (minimum / freedom).sqrt(),
-        1e-12,
-        "residual",
-    );
+    assert_relative(fit.residual_deviation(), (minimum / freedom).sqrt(), 1e-12);
     let [da, db, dc] = best.map(|estimate| 1e-3 * estimate.standard_error);
     for sign in [-1.0, 1.0] {
         let neighbours = [
@@ -206,13 +197,8 @@ fn units_and_origin_of_the_data_do_not_matter() {
         ];
         for (got, expected, unit) in pairs {
             // Rounding of the coordinates, times the condition of the fit.
-            assert_relative(got.value, expected.value * unit, 1e-13, "value");
-            assert_relative(
-                got.standard_error,
-                expected.standard_error * unit,
-                1e-12,
-                "error",
-            );
+            assert_relative(got.value, expected.value * unit, 1e-13);
+            assert_relative(got.standard_error, expected.standard_error * unit, 1e-12);
         }
     }
     let shifted: Vec<_> = z.iter().map(|z| z + 64.0).collect();
@@ -220,21 +206,6 @@ fn units_and_origin_of_the_data_do_not_matter() {
     let moved = fit.waist_position().value - plain.waist_position().value;
     // Positions near 64 m are rounded by 1e−14 m.
     assert!((moved - 64.0).abs() < 1e-13, "{moved}");
-}
-
-#[test]
-fn one_sided_and_noisy_data_say_so_in_their_errors() {
-    let (z, w) = caustic();
-    let both = CausticFit::new(WAVELENGTH, &z, &wavy(&w)).unwrap();
-    let side = CausticFit::new(WAVELENGTH, &z[7..], &wavy(&w[7..])).unwrap();
-    let error = |fit: CausticFit| fit.m_squared().standard_error;
-    assert!(error(side) > 2.0 * error(both), "{side:?}, {both:?}");
-}
-
-/// Deviations of 1 % up and down in turn.
-fn wavy(w: &[f64]) -> Vec<f64> {
-    let signs = [1.01, 0.99].into_iter().cycle();
-    w.iter().zip(signs).map(|(w, sign)| w * sign).collect()
 }
 
 #[test]
@@ -263,15 +234,6 @@ fn two_radii_at_one_place_do_not_spoil_the_guess() {
         .guess()
         .unwrap();
     assert!(guess.iter().all(|p| p.is_finite()), "{guess:?}");
-}
-
-#[test]
-fn an_outlier_shows_in_the_residuals_and_breaks_nothing() {
-    let (z, mut w) = caustic();
-    w[5] *= 10.0;
-    let fit = CausticFit::new(WAVELENGTH, &z, &w).unwrap();
-    assert!(fit.residual_deviation() > 0.3, "{fit:?}");
-    assert!(fit.m_squared().standard_error > 0.3, "{fit:?}");
 }
 
 #[test]

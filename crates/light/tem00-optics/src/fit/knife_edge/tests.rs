@@ -1,4 +1,5 @@
 use proptest::prelude::*;
+use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
 use crate::CrossSection;
@@ -17,11 +18,6 @@ fn falling() -> (Vec<f64>, Vec<f64>) {
     (z, powers)
 }
 
-fn assert_relative(got: f64, expected: f64, tolerance: f64, what: &str) {
-    let error = got / expected - 1.0;
-    assert!(error.abs() < tolerance, "{what}: off by {error:e}");
-}
-
 #[test]
 fn trace_without_noise_gives_the_beam_back_in_both_directions() {
     let (x, falling) = falling();
@@ -33,14 +29,13 @@ fn trace_without_noise_gives_the_beam_back_in_both_directions() {
         assert_eq!(plain.background(), None, "none was fitted");
         let background = offset.background().unwrap().value;
         // Rounding of the powers, 1e−16, times the condition of the fit, about 10.
-        assert_relative(background, -0.7, 1e-14, "background");
+        assert_relative(background, -0.7, 1e-14);
         for (fit, powers) in [(plain, &powers), (offset, &with_offset)] {
-            assert_relative(fit.radius().value, RADIUS, 1e-14, "radius");
-            assert_relative(fit.centre().value, CENTRE, 1e-14, "centre");
-            assert_relative(fit.power().value, POWER, 1e-14, "power");
+            assert_relative(fit.radius().value, RADIUS, 1e-14);
+            assert_relative(fit.centre().value, CENTRE, 1e-14);
+            assert_relative(fit.power().value, POWER, 1e-14);
             for (&x, power) in x.iter().zip(powers) {
-                let error = fit.power_at(x) - power;
-                assert!(error.abs() < 1e-13, "x = {x}: {error:e}");
+                assert_absolute(fit.power_at(x), *power, 1e-13);
             }
         }
     }
@@ -71,7 +66,7 @@ fn standard_errors_are_those_of_repeated_measurements() {
             pulls[2].push(pull(fit.power(), POWER) * scatter);
             pulls[3].extend(fit.background().map(|b| pull(b, 0.0) * scatter));
         }
-        let freedom = (FITS * (x.len() - parameters)) as f64;
+        let freedom = FITS * (x.len() - parameters);
         assert_chi_squared(sum, freedom, "residuals");
         for (pulls, name) in pulls
             .iter()
@@ -101,12 +96,12 @@ fn units_of_the_trace_do_not_matter() {
         ];
         for (got, expected, unit) in pairs {
             // Rounding of the coordinates, times the condition of the fit.
-            assert_relative(got.value, expected.value * unit, 1e-13, "value");
+            assert_relative(got.value, expected.value * unit, 1e-13);
             let error = expected.standard_error * unit;
-            assert_relative(got.standard_error, error, 1e-12, "error");
+            assert_relative(got.standard_error, error, 1e-12);
         }
         let residual = plain.residual_deviation() * power;
-        assert_relative(fit.residual_deviation(), residual, 1e-12, "residual");
+        assert_relative(fit.residual_deviation(), residual, 1e-12);
     }
 }
 
@@ -118,7 +113,7 @@ fn order_of_the_points_does_not_matter() {
     x.swap(0, 14);
     powers.swap(0, 14);
     let fit = KnifeEdgeFit::new(&x, &powers).unwrap();
-    assert_relative(fit.radius().value, RADIUS, 1e-14, "radius");
+    assert_relative(fit.radius().value, RADIUS, 1e-14);
 }
 
 #[test]
@@ -130,12 +125,12 @@ fn narrow_edges_in_a_long_trace_are_found() {
         .map(|x| spot.power_past_knife_edge(x - 1.8771))
         .collect();
     let fit = KnifeEdgeFit::new(&x, &powers).unwrap();
-    assert_relative(fit.radius().value, 3e-3, 1e-12, "radius");
-    assert_relative(fit.centre().value, 1.8771, 1e-12, "centre");
+    assert_relative(fit.radius().value, 3e-3, 1e-12);
+    assert_relative(fit.centre().value, 1.8771, 1e-12);
     let powers: Vec<_> = powers.iter().map(|p| p + 1e4).collect();
     let fit = KnifeEdgeFit::with_background(&x, &powers).unwrap();
     // The powers are rounded by 1e−12.
-    assert_relative(fit.radius().value, 3e-3, 1e-10, "radius");
+    assert_relative(fit.radius().value, 3e-3, 1e-10);
 }
 
 #[test]

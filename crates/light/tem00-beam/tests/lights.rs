@@ -1,9 +1,59 @@
-//! Every profile of a laser line, and a rule to integrate along it.
+//! Lights of every kind, and a rule to integrate along a laser line.
 
-use tem00_beam::{AngularProfile, LaserLine, LineProfile};
+use tem00_beam::{
+    AngularProfile, AstigmaticBeam, DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam,
+    LaserLine, LineLight, LineProfile, LocatedBeam, Placement, SpotLight, TabulatedLineLight,
+};
 
 /// Beam radii that hold all but exp(−2 · 4.2²) = 5e−16 of the power.
 pub(crate) const REACH: f64 = 4.2;
+pub(crate) const POWER: f64 = 5e-3;
+
+/// At the origin and along z, so that world coordinates are those of the light.
+pub(crate) const UPRIGHT: Placement = Placement {
+    origin: DVec3::ZERO,
+    direction: DVec3::Z,
+    fan_axis: DVec3::X,
+};
+
+pub(crate) fn beam(waist: f64) -> GaussianBeam {
+    GaussianBeam::from_waist(650e-9, waist).expect("a valid beam")
+}
+
+/// An elliptic beam with its waists apart and M² in one axis, turned by an angle.
+pub(crate) fn elliptic(rotation: f64) -> AstigmaticBeam {
+    let wide = beam(60e-6).with_m_squared(1.6).expect("a valid beam");
+    let located = |beam, z| LocatedBeam::new(beam, z).expect("a valid beam");
+    AstigmaticBeam::new(located(beam(30e-6), 0.05), located(wide, -0.02))
+        .and_then(|beam| beam.with_rotation(rotation))
+        .expect("a valid beam")
+}
+
+/// The light of [`elliptic`].
+pub(crate) fn elliptic_light(rotation: f64, placement: &Placement) -> Box<dyn Emitter> {
+    let light = SpotLight::place_astigmatic(&elliptic(rotation), placement, POWER);
+    Box::new(light.expect("a valid light"))
+}
+
+/// Lines of every profile, with each of the two curves of focus and a waist of 50 µm.
+pub(crate) fn lines(fan: FanGeometry) -> impl Iterator<Item = LaserLine> {
+    let curves = [FocusCurve::EqualDistance, FocusCurve::EqualPlane];
+    curves.into_iter().flat_map(move |focus_curve| {
+        let fan = FanGeometry { focus_curve, ..fan };
+        profiles(fan.fan_angle)
+            .map(|profile| LaserLine::new(beam(50e-6), fan, profile).expect("a valid line"))
+    })
+}
+
+/// Places a line as the light that its profile needs.
+pub(crate) fn place<'a>(line: &'a LaserLine, placement: &Placement) -> Box<dyn Emitter + 'a> {
+    match line.profile() {
+        LineProfile::Tabulated(_) => {
+            Box::new(TabulatedLineLight::place(line, placement, POWER).expect("a valid light"))
+        }
+        _ => Box::new(LineLight::place(line, placement, POWER).expect("a valid light")),
+    }
+}
 
 /// Every profile for a fan of the full angle `fan_angle`, in radians.
 pub(crate) fn profiles(fan_angle: f64) -> [LineProfile; 7] {
@@ -37,6 +87,7 @@ pub(crate) fn slopes(line: &LaserLine) -> Vec<(f64, f64)> {
     let sin = |v: f64| (v.asin().tan(), (1.0 - v * v).powf(-1.5));
     // Pieces of an eighth of a half-width at 1/e², a quarter of a standard deviation: the
     // three-point rule errs by (1/4)⁷ f⁽⁶⁾ / 2016000 each, and in all by 1e−9 of the whole.
+    // Eight pieces more than that in each tenth of the fan, where a Powell profile rolls off.
     match line.profile() {
         LineProfile::GaussianTan => gauss(&[-REACH * half_slope, REACH * half_slope], 68, tan),
         LineProfile::GaussianAngle => gauss(&[-REACH * half_angle, REACH * half_angle], 68, angle),
@@ -48,7 +99,7 @@ pub(crate) fn slopes(line: &LaserLine) -> Vec<(f64, f64)> {
         LineProfile::UniformAngle => gauss(&[-half_angle, half_angle], 40, angle),
         LineProfile::Powell { edge } => {
             let end = (1.0 + 2.0 * REACH * edge) * half_slope;
-            gauss(&[-end, end], pieces(68.0 + 8.0 / edge), tan)
+            gauss(&[-end, end], 148, tan)
         }
         LineProfile::Tabulated(profile) => {
             let ends: Vec<f64> = profile.knots().iter().map(|knot| knot.angle).collect();
@@ -58,13 +109,12 @@ pub(crate) fn slopes(line: &LaserLine) -> Vec<(f64, f64)> {
     }
 }
 
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a small count"
-)]
-fn pieces(count: f64) -> u32 {
-    count.ceil() as u32
+/// The slope at which the light of the line ends, or has fallen off, on one side.
+pub(crate) fn end_of(line: &LaserLine) -> f64 {
+    match line.profile() {
+        LineProfile::Tabulated(table) => table.knots().last().expect("a knot").angle.tan(),
+        _ => line.half_slope(),
+    }
 }
 
 /// Gauss's three-point rule on `count` pieces between each two of `ends`, mapped to (u, du/dv).

@@ -270,15 +270,6 @@ pub(crate) fn signed(index: usize) -> i64 {
     i64::try_from(index).unwrap_or(i64::MAX)
 }
 
-/// The place of an index in its period, nearest to the origin.
-pub(crate) fn centred(index: usize, size: usize) -> f64 {
-    if 2 * index <= size {
-        index as f64
-    } else {
-        index as f64 - size as f64
-    }
-}
-
 /// The standard deviation, from pattern to pattern, of the mean of (I(x) − 1)(I(x + lag) − 1) over a
 /// tile. At zero lag, for the squared contrast, it is 2 √(mean |μ|⁴).
 ///

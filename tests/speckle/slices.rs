@@ -1,6 +1,6 @@
 //! Slices of stacks: their fields, their correlation, and the look-up between them.
 
-use core::f64::consts::{PI, TAU};
+use core::f64::consts::TAU;
 
 use proptest::prelude::*;
 use tem00::{
@@ -94,15 +94,6 @@ fn is_alone(stack: &SpeckleStack, step: [i64; 2]) -> bool {
     let (size, diameter) = (stack.size(), stack.field().diameter());
     let reach = |axis: usize| step[axis].unsigned_abs() as f64 + diameter[axis];
     [0, 1].iter().all(|&axis| reach(axis) < size[axis] as f64)
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a small positive number"
-)]
-fn slice_below(stack: &SpeckleStack, u: f64) -> usize {
-    u as usize % stack.slice_count()
 }
 
 fn intensity(stack: &SpeckleStack, index: usize) -> Grid<f32> {
@@ -207,35 +198,6 @@ proptest! {
     }
 
     #[test]
-    fn correlations_follow_the_law_of_the_path(
-        case in cases(90..200, 3.0), path in paths(), first in 0_usize..12,
-    ) {
-        // Behind other pupils the circle's law depends on the direction.
-        let round = matches!(case.shape, Shape::Circle | Shape::Annulus(_) | Shape::Gaussian(_));
-        prop_assume!(round);
-        let stack = stack(&case.field(), path);
-        let diameter = stack.field().diameter();
-        let first = first % stack.slice_count();
-        for second in 0..stack.slice_count() {
-            let distance = second as f64 - first as f64;
-            let (law, exact) =
-                (stack.correlation_at(distance), stack.correlation_between(first as f64, second as f64));
-            // Rounded centres move the distance by up to √2 points; the overlap falls by 4/π per
-            // diameter, by 1/(1 − ε) of that behind an annulus. γ is its square.
-            let slope = match case.shape {
-                Shape::Annulus(inner) => 4.0 / PI / (1.0 - inner),
-                _ => 4.0 / PI,
-            };
-            let error = slope * 2.0_f64.sqrt() / diameter[0].min(diameter[1]);
-            let tolerance = error * (2.0 * law.sqrt() + error);
-            prop_assert!(
-                (exact - law).abs() < tolerance,
-                "γ({first}, {second}) = {exact}, law {law}, tolerance {tolerance}"
-            );
-        }
-    }
-
-    #[test]
     fn look_ups_are_exponential_at_any_fraction(
         case in cases(70..110, 3.0), path in paths(),
         fractions in [0.0_f64..1.0, 0.0_f64..1.0], u in 0.0_f64..12.0,
@@ -258,28 +220,5 @@ proptest! {
         // 24 cases: a correct look-up fails one of them with a probability of 2e−5. N phasors are
         // off by 0.12/N of the 1.4/√n that the test sees.
         prop_assert!(test.p_value > 1e-6, "p = {:e} of {}", test.p_value, samples.len());
-    }
-
-    #[test]
-    fn the_mean_of_look_ups_is_one_at_any_fraction(
-        case in cases(40..70, 5.0), path in paths(),
-        fractions in [0.0_f64..1.0, 0.0_f64..1.0], u in 0.0_f64..12.0,
-    ) {
-        let case = Case { phasors: Phasors::Unit, ..case };
-        let stack = stack(&case.field(), path);
-        // Points a period of the pattern apart have the same wave, and add noise to the tile.
-        let here = slice_below(&stack, u);
-        prop_assume!(is_alone(&stack, shift(&stack, here, (here + 1) % stack.slice_count())));
-        let [width, height] = stack.size();
-        let mut sum = 0.0;
-        for y in 0..height {
-            for x in 0..width {
-                sum += stack.intensity_at(x as f64 + fractions[0], y as f64 + fractions[1], u);
-            }
-        }
-        let mean = sum / (width * height) as f64;
-        // By Parseval the mean holds no noise, only the stated rounding and odd parts of the covariance.
-        let stated = if matches!(case.shape, Shape::Aberrated(_)) { 2e-5 } else { 3e-6 };
-        prop_assert!((mean - 1.0).abs() < stated, "mean {mean}");
     }
 }

@@ -1,9 +1,9 @@
-//! Autocovariance and power spectrum of the intensity.
+//! Autocovariance of the intensity.
 
 use proptest::prelude::*;
-use tem00::{numerics::Grid, speckle::PupilField, statistics::estimate::power_spectrum};
+use tem00::numerics::Grid;
 
-use super::lattice::{Lattice, Shape, cases, centred, covariance_spread, signed};
+use super::lattice::{Lattice, cases, covariance_spread, signed};
 
 /// The mean of (I(x) − 1)(I(x + lag) − 1) over a tile.
 fn covariance(pattern: &Grid<f32>, [x, y]: [i64; 2]) -> f64 {
@@ -47,48 +47,5 @@ proptest! {
                 "lag {lag:?}: {difference} of {expected}, spread {spread}"
             );
         }
-    }
-}
-
-/// The frequencies that the light of a pupil can make by interference, in its diameters.
-fn within_reach(shape: Shape, [x, y]: [f64; 2]) -> bool {
-    let edge = 1.0 + 1e-9;
-    match shape {
-        Shape::Rectangle(height) => x.abs() <= edge && y.abs() <= height * edge,
-        Shape::Aberrated(_) => x.abs() <= edge && y.abs() <= edge,
-        _ => x.hypot(y) <= edge,
-    }
-}
-
-fn in_diameters(field: &PupilField, [x, y]: [usize; 2]) -> [f64; 2] {
-    let ([width, height], diameter) = (field.size(), field.diameter());
-    [
-        centred(x, width) / diameter[0],
-        centred(y, height) / diameter[1],
-    ]
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
-
-    #[test]
-    fn there_are_no_fringes_finer_than_the_pupil_allows(case in cases(24..130, 6.0)) {
-        let field = case.field();
-        let pattern = field.pattern_at(case.offset, case.defocus);
-        let spectrum = power_spectrum(pattern.values()).expect("a bright pattern");
-        let (mut beyond, mut inside) = (0.0_f32, 0.0_f64);
-        for (y, row) in spectrum.rows().enumerate() {
-            for (x, &power) in row.iter().enumerate() {
-                if within_reach(case.shape, in_diameters(&field, [x, y])) {
-                    inside += f64::from(power);
-                } else {
-                    beyond = beyond.max(power);
-                }
-            }
-        }
-        // Intensities are rounded by some 1e−7 of 1, at random: 1e−14 of their variance, at the
-        // worst of 1e4 frequencies ten times that, and a few such steps on the way.
-        prop_assert!(beyond < 1e-11, "{beyond:e} beyond the cut-off");
-        prop_assert!((inside / spectrum.values().len() as f64 - 1.0).abs() < 1e-4, "{inside}");
     }
 }

@@ -8,7 +8,6 @@ use tem00::{
     statistics::{
         Boundary, Moments,
         estimate::{VortexDensity, phase_singularities},
-        laws::VORTEX_DENSITY,
         t_test_mean,
     },
 };
@@ -65,33 +64,4 @@ proptest! {
         // 12 cases at 5e−6: α = 6e−5.
         prop_assert!(test.p_value > 5e-6, "{} | {expected}: {test:?}", moments.mean());
     }
-}
-
-#[test]
-fn the_density_behind_a_disc_is_pi_over_eight_squared_speckle_sizes() {
-    let field = PupilField::new(512, 32, 0)
-        .expect("a valid field")
-        .with_phasors(Phasors::Gaussian);
-    let densities: Vec<_> = (0..24)
-        .map(|seed| {
-            let tile = field.clone().with_seed(seed).field();
-            VortexDensity::from_field(tile.values(), Boundary::Periodic)
-                .expect("a field")
-                .value()
-        })
-        .collect();
-    let [expected, excess] = expected_density(&field, [0.0; 2]);
-    let disc = VORTEX_DENSITY / 256.0;
-    // The lattice disc of 797 points is narrower than its rim: its second moment is 0.9 % off.
-    assert!((expected / disc - 1.0).abs() < 0.012, "{expected} | {disc}");
-    let moments = Moments::from_samples(&densities).expect("densities");
-    let error = moments.standard_error() / expected;
-    assert!(error < 0.01, "nothing is seen with an error of {error}");
-    // Cells 1/16 of a speckle wide find 1.5/256 too many; α = 1e−5.
-    let test = t_test_mean(&densities, expected * (1.0 + excess)).expect("densities");
-    assert!(
-        test.p_value > 1e-5,
-        "{} | {expected}: {test:?}",
-        moments.mean()
-    );
 }

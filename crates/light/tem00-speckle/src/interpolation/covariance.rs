@@ -375,4 +375,4 @@ pub(crate) fn mean_square(variance: &Variance) -> Even {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

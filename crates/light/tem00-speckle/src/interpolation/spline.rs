@@ -148,6 +148,3 @@ pub(crate) fn response(k: i64, f: f64, size: usize) -> Complex<f64> {
         .sum();
     sum * prefilter(k, size)
 }
-
-#[cfg(test)]
-mod tests;

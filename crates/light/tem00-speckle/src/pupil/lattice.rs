@@ -263,6 +263,8 @@ fn ln(x: f64) -> f64 {
 mod tests {
     use core::f64::consts::PI;
 
+    use tem00_testkit::assert_absolute;
+
     use super::*;
 
     /// Word `word` of `ChaCha` with 8 rounds, after the definition of Bernstein (2008) with a
@@ -472,10 +474,7 @@ mod tests {
         }
         // −ln 2⁻³³ for the smallest word, and a positive value for the largest.
         let largest = f64::from(rayleigh_magnitude(0)).powi(2);
-        assert!(
-            (largest - 33.0 * core::f64::consts::LN_2).abs() < 1e-5,
-            "{largest}"
-        );
+        assert_absolute(largest, 33.0 * core::f64::consts::LN_2, 1e-5);
         assert!(rayleigh_magnitude(u32::MAX) > 0.0, "a magnitude of zero");
     }
 }

@@ -143,6 +143,8 @@ fn split(x: f64) -> (i64, f64) {
 
 #[cfg(test)]
 mod tests {
+    use tem00_testkit::assert_absolute;
+
     use super::*;
     use crate::Pupil;
 
@@ -164,9 +166,8 @@ mod tests {
             [-0.6, 0.33],
             [0.0, -0.97],
         ] {
-            let error = sampled.overlap(shift) - Pupil::Circle.overlap(shift);
             // The rim of 200 cells per diameter errs by half a cell, at random along the rim.
-            assert!(error.abs() < 1e-3, "{shift:?}: {error:e}");
+            assert_absolute(sampled.overlap(shift), Pupil::Circle.overlap(shift), 1e-3);
         }
         for beyond in [[1.0, 0.0], [0.0, -3.0], [1e300, 1e300], [f64::NAN, 0.0]] {
             assert!(sampled.overlap(beyond) <= 0.0, "{beyond:?}");
@@ -180,19 +181,9 @@ mod tests {
         let pupil = Transmission::from_complex(Grid::from_vec(2, 1, values).unwrap()).unwrap();
         // ½ (1 + ¼) of each with itself and ½ (i/2) of the second with the first.
         let expected = (0.5 * 1.25_f64).hypot(0.5 * 0.5) / 1.25;
-        assert!(
-            (pupil.overlap([0.25, 0.0]) - expected).abs() < 1e-15,
-            "{}",
-            pupil.overlap([0.25, 0.0])
-        );
-        assert!(
-            (pupil.overlap([0.5, 0.0]) - 0.4).abs() < 1e-15,
-            "a whole cell"
-        );
-        assert!(
-            (pupil.overlap([0.0, -0.5]) - 0.5).abs() < 1e-15,
-            "half the height"
-        );
+        assert_absolute(pupil.overlap([0.25, 0.0]), expected, 1e-15);
+        assert_absolute(pupil.overlap([0.5, 0.0]), 0.4, 1e-15);
+        assert_absolute(pupil.overlap([0.0, -0.5]), 0.5, 1e-15);
     }
 
     #[test]
@@ -206,8 +197,7 @@ mod tests {
             ([0.49, -0.2], 3.0),
             ([0.5, 0.5], 7.0),
         ] {
-            let got = 8.0 * pupil.at(point).re;
-            assert!((got - index).abs() < 1e-6, "{point:?}: cell {got}");
+            assert_absolute((8.0 * pupil.at(point).re).into(), index, 1e-6);
         }
     }
 }

@@ -1,16 +1,8 @@
 use proptest::prelude::*;
+use tem00_testkit::assert_absolute;
 
 use super::*;
-
-/// The cubic B-spline by its definition (Unser 1999, eq. 5).
-fn kernel(x: f64) -> f64 {
-    let x = x.abs();
-    if x < 1.0 {
-        2.0 / 3.0 - x * x + 0.5 * x * x * x
-    } else {
-        (2.0 - x.min(2.0)).powi(3) / 6.0
-    }
-}
+use crate::interpolation::covariance::tests::spline;
 
 #[test]
 #[expect(clippy::cast_possible_truncation, reason = "exact fractions")]
@@ -18,8 +10,7 @@ fn weights_are_the_kernel_at_the_four_samples() {
     for f in [0.0, 0.125, 0.25, 0.5, 0.75, 0.999_023_437_5] {
         let weights = cubic_weights(f as f32);
         for (t, weight) in [-1.0, 0.0, 1.0, 2.0].iter().zip(weights) {
-            let error = f64::from(weight) - kernel(t - f);
-            assert!(error.abs() < 1e-7, "tap {t} at {f}: {error:e}");
+            assert_absolute(f64::from(weight), spline(t - f), 1e-7);
         }
     }
 }

@@ -4,6 +4,7 @@ use tem00_statistics::{
     laws::{boiling_contrast, translation_contrast},
     t_test_mean,
 };
+use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
 use crate::Phasors;
@@ -84,10 +85,7 @@ fn exposures_are_the_integral_of_the_moving_intensity() {
             let got = f64::from(pattern.values()[(r[0], r[1])]);
             // The midpoint rule: (2π T/STEPS)²/24 = 1.3e−3 of the parts of highest frequency, which
             // hold a hundredth of the intensity.
-            assert!(
-                (got - expected).abs() < 2e-4,
-                "{got} for {expected} at {r:?} of {exposure:?}"
-            );
+            assert_absolute(got, expected, 2e-4);
         }
     }
 }
@@ -128,10 +126,7 @@ fn the_quadrature_exceeds_the_law_of_boiling_as_stated() {
         let left = 1.0 - disc_overlap(drift).powi(2);
         let stated = (4.0 * drift / (3.0 * PI) + left / 6.0) / (count * count);
         // The next order is of the drift per moment, a 30th.
-        assert!(
-            (excess / stated - 1.0).abs() < 0.08,
-            "{excess:e} for {stated:e} at {drift}"
-        );
+        assert_relative(excess, stated, 0.08);
         assert!(excess < 1e-3, "{excess:e} at {drift}");
     }
 }

@@ -1,9 +1,9 @@
 use proptest::prelude::*;
-use tem00_numerics::Grid;
 use tem00_statistics::{
     GammaIntensity, IncoherentSum, PartiallyPolarised, estimate::decorrelated_samples,
-    kolmogorov_smirnov, laws::contrast_squared_spread, pearson_correlation,
+    kolmogorov_smirnov, pearson_correlation,
 };
+use tem00_testkit::assert_absolute;
 
 use super::*;
 use crate::Exposure;
@@ -28,21 +28,13 @@ fn pattern(fractions: &[f64], field: &PupilField) -> SpecklePattern {
     SpecklePattern::weighted_mean(fractions, patterns).unwrap()
 }
 
-fn mean(values: &Grid<f32>, of: impl Fn(f64) -> f64) -> f64 {
-    let sum: f64 = values.values().iter().map(|&i| of(f64::from(i))).sum();
-    sum / values.values().len() as f64
-}
-
 #[test]
 fn contrasts_are_those_of_the_laws() {
     for degree in [0.0, 1e-9, 0.3, 0.9, 1.0] {
         let sum = IncoherentSum::new(&polarised(degree)).unwrap();
         let law = PartiallyPolarised::new(degree).unwrap();
         // Rounding.
-        assert!(
-            (sum.contrast() - law.contrast()).abs() < 1e-15,
-            "P = {degree}"
-        );
+        assert_absolute(sum.contrast(), law.contrast(), 1e-15);
     }
     for weights in [&[1.0][..], &[2.0, 1.0], &[1e-3, 5.0, 0.0, 1e3]] {
         let fractions = incoherent_fractions(9, 0.4, weights).unwrap();
@@ -59,39 +51,6 @@ fn parts_without_light_are_left_out() {
     assert_eq!(polarised(0.0), [0.5, 0.5], "unpolarised");
     let lasers = incoherent_fractions(1, 1.0, &[3.0, 0.0, 1.0]).unwrap();
     assert_eq!(lasers, [0.75, 0.25], "one laser is dark");
-}
-
-#[test]
-fn means_are_one_and_contrasts_follow_the_shares() {
-    const TILES: u64 = 16;
-    const DIAMETER: usize = 32;
-    let bias = 1.0 / PupilField::new(64, DIAMETER, 0).unwrap().phasor_count() as f64;
-    let uneven = incoherent_fractions(1, 1.0, &[3.0, 2.0, 0.5]).unwrap();
-    for fractions in [equal(1), equal(5), uneven, polarised(0.4), modes()] {
-        let mut squared = 0.0;
-        for seed in 0..TILES {
-            let field = PupilField::new(64, DIAMETER, seed).unwrap();
-            let pattern = pattern(&fractions, &field).into_values();
-            // Parseval, for every pattern of the sum; rounding to f32.
-            let mean_intensity = mean(&pattern, |i| i);
-            assert!((mean_intensity - 1.0).abs() < 2e-6, "mean {mean_intensity}");
-            squared += mean(&pattern, |i| (i - 1.0).powi(2)) / TILES as f64;
-        }
-        // One pattern's C² has the variance s², the mean product of two of them s²/4: together
-        // Σw⁴ s² + 4 Σ_{i<j} wᵢ²wⱼ² s²/4. Four standard deviations, α = 6e−5.
-        let [squares, fourths] = [2, 4].map(|power| {
-            let powers = fractions.iter().map(|fraction| fraction.powi(power));
-            powers.sum::<f64>()
-        });
-        let spread = contrast_squared_spread(DIAMETER as f64);
-        let spread = spread * (0.5 * (squares * squares + fourths)).sqrt();
-        let tolerance = 4.0 * spread / (TILES as f64).sqrt();
-        let expected = squares * (1.0 - bias);
-        assert!(
-            (squared - expected).abs() < tolerance,
-            "{squared} for {expected}"
-        );
-    }
 }
 
 #[test]
@@ -152,8 +111,7 @@ fn means_take_whatever_makes_a_pattern_of_a_field() {
     for at in [(0, 0), (7, 30), (31, 2)] {
         let [a, b] = [0, 1].map(|part: usize| f64::from(parts[part].values()[at]));
         // Rounding to f32 of values below ten.
-        let difference = 0.6 * a + 0.4 * b - f64::from(mean.values()[at]);
-        assert!(difference.abs() < 2e-6, "{difference} at {at:?}");
+        assert_absolute(0.6 * a + 0.4 * b, f64::from(mean.values()[at]), 2e-6);
     }
 }
 

@@ -1,4 +1,5 @@
 use proptest::prelude::*;
+use tem00_testkit::assert_absolute;
 
 use super::*;
 use crate::Transmission;
@@ -76,10 +77,7 @@ fn the_number_of_points_of_a_disc_is_that_of_the_gauss_circle_problem() {
     for (diameter, count) in [(8.0, 49), (10.0, 81), (20.0, 317)] {
         let mask = Mask::new(&Pupil::Circle, [diameter; 2], [0.0; 2]);
         assert_eq!(mask.count(), count, "diameter {diameter}");
-        assert!(
-            (mask.effective_count() - count as f64).abs() < 1e-9,
-            "all equal"
-        );
+        assert_absolute(mask.effective_count(), count as f64, 1e-9);
     }
 }
 

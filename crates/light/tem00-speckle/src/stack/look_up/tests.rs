@@ -3,10 +3,10 @@ use std::f64::consts::PI;
 use num_complex::Complex;
 use proptest::prelude::*;
 use tem00_numerics::{Grid, cast::to_f32};
-use tem00_statistics::rectangular_pixel_contrast;
+use tem00_testkit::assert_absolute;
 
 use super::*;
-use crate::{Phasors, PupilField, SlicePath, pupil::lattice::unit_phasor};
+use crate::{PupilField, SlicePath, pupil::lattice::unit_phasor};
 
 const PATHS: [SlicePath; 3] = [
     SlicePath::Still,
@@ -155,36 +155,6 @@ proptest! {
     }
 }
 
-#[test]
-fn averages_over_pixels_have_the_contrast_of_pixels() {
-    const TILES: u32 = 12;
-    for size in [[0.5, 0.5], [1.0, 1.0], [2.0, 0.5], [3.0, 3.0]] {
-        let (mut sum, mut square, mut count) = (0.0, 0.0, 0.0);
-        for seed in 0..TILES {
-            let field = PupilField::new(64, 32, u64::from(seed) + 100).unwrap();
-            let field = field.with_phasors(Phasors::Gaussian);
-            let stack = stack(&field, SlicePath::Still);
-            for i in 0..32 * 32_u32 {
-                let centre = [f64::from(i % 32) * 2.0, f64::from(i / 32) * 2.0];
-                let pixel = stack.average_over(centre, size.map(|s| 2.0 * s), 0.0);
-                sum += pixel;
-                square += pixel * pixel;
-                count += 1.0;
-            }
-        }
-        let mean = sum / count;
-        let contrast = (square / count - mean * mean).sqrt();
-        let expected = rectangular_pixel_contrast(size);
-        // The spread of a tile's squared contrast is 1.53/C, that of larger pixels smaller, and its
-        // mean spreads by 1/√N = 0.035; the Airy form fits C = 32 within 4e-3. α = 6e-5.
-        let tolerance = 4.0 * 1.53 / 32.0 / f64::from(TILES).sqrt() / 2.0 / expected.sqrt() + 4e-3;
-        assert!(
-            (contrast - expected).abs() < tolerance,
-            "{size:?} speckles: {contrast} | {expected}"
-        );
-    }
-}
-
 /// Among places of the pattern, which keep their bits.
 #[test]
 #[expect(clippy::float_cmp, reason = "exact by definition")]
@@ -290,10 +260,7 @@ fn fringes_between_slices_are_those_of_both_pupils_together() {
         let layer = stack.layer(0, between);
         for (axis, expected) in expected.into_iter().enumerate() {
             let finest: f64 = layer.finest(axis, 64.0, 4.0);
-            assert!(
-                (finest - expected).abs() < 1e-12,
-                "{between}, {axis}: {finest}"
-            );
+            assert_absolute(finest, expected, 1e-12);
         }
     }
 }
@@ -309,10 +276,7 @@ fn fields_of_two_stacks_add_to_speckle_of_the_same_law() {
         let u = f64::from(i % 7) * 0.25;
         let amplitudes = [0, 1].map(|part: usize| stacks[part].amplitude_at(x, y, u));
         let alone = stacks[0].intensity_at(x, y, u);
-        assert!(
-            (amplitudes[0].norm_sqr() - alone).abs() <= 1e-6 * (1.0 + alone),
-            "{u}"
-        );
+        assert_absolute(amplitudes[0].norm_sqr(), alone, 1e-6 * (1.0 + alone));
         let sum = 0.6 * amplitudes[0] + Complex::new(0.0, 0.8) * amplitudes[1];
         mean += sum.norm_sqr() / f64::from(count);
         square += sum.norm_sqr().powi(2) / f64::from(count);

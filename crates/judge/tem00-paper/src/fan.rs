@@ -64,6 +64,8 @@ impl PrintedFan {
 mod tests {
     use tem00_beam::{FanGeometry, FocusCurve, LineProfile};
 
+    use tem00_testkit::assert_relative;
+
     use super::*;
 
     fn focus() -> GaussianBeam {
@@ -104,8 +106,7 @@ mod tests {
                     power += fan.irradiance_per_watt(point) * h * v;
                 }
             }
-            let error = power / fan.power_per_watt(z) - 1.0;
-            assert!(error.abs() < 1e-12, "z = {z}: {error:e}");
+            assert_relative(power, fan.power_per_watt(z), 1e-12);
             assert!(power > 100.0, "z = {z}: {power}");
         }
     }

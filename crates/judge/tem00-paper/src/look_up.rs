@@ -161,6 +161,8 @@ fn bilinear(slice: &Grid<f32>, x: f64, y: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use tem00_testkit::assert_absolute;
+
     use super::*;
 
     fn stack(size: usize, diameter: usize, half_period: usize, seed: u64) -> BilinearStack {
@@ -219,11 +221,7 @@ mod tests {
             // The spread of a tile's squared contrast is 1.53/C; α = 6e−5. The row and the column
             // that the printed wrap leaves out shift the mean by some 1/64 · 2/√(2C).
             let tolerance = 4.0 * 1.53 / 32.0 / f64::from(SEEDS).sqrt();
-            let difference = variance - expected * expected;
-            assert!(
-                difference.abs() < tolerance,
-                "{size}, {fractions:?}: {difference}"
-            );
+            assert_absolute(variance, expected * expected, tolerance);
             assert!((mean - 1.0).abs() < 0.01, "{fractions:?}: mean {mean}");
         }
     }
@@ -249,10 +247,7 @@ mod tests {
             let contrast = (1.0_f64 - 0.5 * (1.0 - gamma)).sqrt();
             // Half the spread of the squared contrast of 16 tiles, and centres rounded by 1.8/C of γ.
             let tolerance = 4.0 * 0.5 * 1.53 / 32.0 / 4.0 + 0.25 * 1.8 / 32.0;
-            assert!(
-                (share - contrast).abs() < tolerance,
-                "M = {half_period}: {share} | {contrast}"
-            );
+            assert_absolute(share, contrast, tolerance);
         }
     }
 
@@ -273,8 +268,7 @@ mod tests {
             let expected = stack(64, 32, 8, 0).contrast_between_slices(2, f);
             // As above.
             let tolerance = 4.0 * 1.53 / 32.0 / f64::from(SEEDS).sqrt();
-            let difference = variance - expected * expected;
-            assert!(difference.abs() < tolerance, "f = {f}: {difference}");
+            assert_absolute(variance, expected * expected, tolerance);
         }
         // √(1 − ½ (1 − γ₁)) with γ₁ = 0.5673 for M = 8, of a pupil large enough to be a disc.
         let got = stack(1_024, 512, 8, 0).contrast_between_slices(0, 0.5);
@@ -300,22 +294,13 @@ mod tests {
         let first = pattern(0);
         let at = |x, y, u| printed.intensity_at(x, y, u);
         // Sample Q − 1 is never shown: the look-up is back at sample 0.
-        assert!(
-            (at(31.0, 5.0, 0.0) - f64::from(first[(0, 5)])).abs() < 1e-12,
-            "x"
-        );
-        assert!(
-            (at(5.0, 31.0, 0.0) - f64::from(first[(5, 0)])).abs() < 1e-12,
-            "y"
-        );
+        assert_absolute(at(31.0, 5.0, 0.0), f64::from(first[(0, 5)]), 1e-12);
+        assert_absolute(at(5.0, 31.0, 0.0), f64::from(first[(5, 0)]), 1e-12);
         // Just before, it was at sample Q − 1: a jump.
         let (last, jump) = (f64::from(first[(31, 5)]), at(31.0 - 1e-9, 5.0, 0.0));
         assert!((jump - last).abs() < 1e-6, "{jump} before the wrap");
         // The same for slice 2M − 1 = 5.
-        assert!(
-            (at(7.0, 5.0, 5.0) - f64::from(first[(7, 5)])).abs() < 1e-12,
-            "u"
-        );
+        assert_absolute(at(7.0, 5.0, 5.0), f64::from(first[(7, 5)]), 1e-12);
         let (last, jump) = (f64::from(pattern(5)[(7, 5)]), at(7.0, 5.0, 5.0 - 1e-9));
         assert!((jump - last).abs() < 1e-6, "{jump} before the wrap in u");
     }

@@ -134,6 +134,8 @@ fn printed_event(point: DVec3, p: [f64; 3], n: [f64; 3], irradiance: f64) -> Opt
 mod tests {
     use tem00_beam::{FanGeometry, FocusCurve, LaserLine, LineProfile, Placement};
 
+    use tem00_testkit::assert_relative;
+
     use super::*;
     use crate::PrintedFan;
 
@@ -206,10 +208,7 @@ mod tests {
         assert!(miss < 1e-17, "{printed:?}: {miss:e}");
         let cos = DVec3::from(printed.wi).dot(n);
         let e = light.irradiance(p);
-        assert!(
-            (printed.radiance * cos / e - 1.0).abs() < 1e-14,
-            "{printed:?}"
-        );
+        assert_relative(printed.radiance * cos, e, 1e-14);
         let back = DVec3::from(p) + DVec3::from(printed.wi) * printed.distance;
         assert!(back.distance(expected) < 1e-16, "{printed:?}");
     }
@@ -230,10 +229,7 @@ mod tests {
             let printed = line_next_event(&light, p.to_array(), [0.0, 0.0, -1.0]).unwrap();
             let e = printed.radiance * -printed.wi[2];
             let expected = 2e-3 * fan.irradiance_per_watt(p);
-            assert!(
-                (e / expected - 1.0).abs() < 1e-13,
-                "{profile:?}: {e}, {expected}"
-            );
+            assert_relative(e, expected, 1e-13);
             let within = DVec3::from(printed.point).length() / beam().radius_at(0.1);
             assert!(within < 1.0, "the point is inside the aperture: {within}");
         }

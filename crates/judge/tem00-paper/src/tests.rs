@@ -6,6 +6,7 @@ use glam::DVec3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tem00_beam::{GaussianBeam, LocatedBeam};
+use tem00_testkit::assert_absolute;
 
 /// The modified divergence `θ′ = θ √(−½ ln l)`, which reaches down to the fraction `l` of the peak.
 fn modified_divergence(beam: &GaussianBeam, l: f64) -> f64 {
@@ -84,10 +85,7 @@ fn the_cone_loses_what_is_beyond_it() {
         let norm = 2.0 * (2.0 / PI).sqrt() / delta;
         let inside = integrate(|s| norm * profile(s), edge);
         let lost = libm::erfc((-l.ln()).sqrt());
-        assert!(
-            (1.0 - inside - lost).abs() < 1e-8,
-            "l = {l}: {inside}, {lost}"
-        );
+        assert_absolute(1.0 - inside, lost, 1e-8);
     }
 }
 
@@ -112,10 +110,7 @@ fn the_literal_weight_adds_up_to_power_times_solid_angle() {
     let solid_angle = PI * (50e-6 / z).powi(2);
     // A fraction l, and (w_A / w)² = 1.5e−4 more at the rim, falls outside the cone.
     let bias = 3e-4 * solid_angle;
-    assert!(
-        (sum - solid_angle).abs() < 3.9 * error + bias,
-        "{sum:e} ± {error:e}"
-    );
+    assert_absolute(sum, solid_angle, 3.9 * error + bias);
     assert!(
         error < 0.02 * solid_angle,
         "the test must be sharp: {error:e}"
@@ -168,14 +163,7 @@ fn the_printed_sampler_misses_light_unless_the_waist_is_on_the_aperture() {
             |r| TAU * r * hits(r) * beam().irradiance_per_watt(r, z - waist),
             disc + cone,
         );
-        assert!(
-            (found - expected).abs() < 3.9 * error,
-            "waist at {waist} m, target at {z} m: {found} ± {error}, not {expected}"
-        );
-        assert!(
-            (1.0 - expected - lost).abs() < 0.01,
-            "lost {}",
-            1.0 - expected
-        );
+        assert_absolute(found, expected, 3.9 * error);
+        assert_absolute(1.0 - expected, lost, 0.01);
     }
 }

@@ -44,6 +44,8 @@ pub(crate) fn largest_magnitude(values: &[Complex<f64>]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use tem00_testkit::assert_absolute;
+
     use super::*;
 
     #[test]
@@ -54,14 +56,8 @@ mod tests {
             }));
             let intensity = field.intensity();
             // |1|² and |1 + i|² over their mean 1.5, rounded to f32.
-            assert!(
-                (intensity[(0, 0)] - 2.0 / 3.0).abs() < 1e-7,
-                "{intensity:?}"
-            );
-            assert!(
-                (intensity[(1, 0)] - 4.0 / 3.0).abs() < 2e-7,
-                "{intensity:?}"
-            );
+            assert_absolute(intensity[(0, 0)].into(), 2.0 / 3.0, 1e-7);
+            assert_absolute(intensity[(1, 0)].into(), 4.0 / 3.0, 2e-7);
         }
         let dark = Field::new(Grid::filled(2, 2, Complex::new(0.0, 0.0)));
         assert_eq!(dark.intensity(), Grid::filled(2, 2, 0.0));

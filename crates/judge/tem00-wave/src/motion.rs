@@ -99,6 +99,8 @@ impl RigidMotion {
 
 #[cfg(test)]
 mod tests {
+    use tem00_testkit::assert_absolute;
+
     use super::*;
 
     #[test]
@@ -113,11 +115,7 @@ mod tests {
         // A dozen roundings of numbers of order one.
         assert!((apart - together).length() < 4e-15, "{apart} {together}");
         let (a, b) = (DVec3::X, DVec3::new(0.0, 0.6, 0.8));
-        let cosine = first.direction(a).dot(first.direction(b));
-        assert!(
-            (cosine - a.dot(b)).abs() < 1e-15,
-            "angles are kept: {cosine}"
-        );
+        assert_absolute(first.direction(a).dot(first.direction(b)), a.dot(b), 1e-15);
     }
 
     #[test]

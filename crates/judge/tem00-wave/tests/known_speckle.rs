@@ -7,6 +7,7 @@
 
 use core::f64::consts::PI;
 
+use tem00_testkit::assert_absolute;
 use tem00_wave::{
     Amplitudes, Arrangement, Camera, Complex, DVec2, DVec3, FieldCorrelation, Illumination,
     ImageSampling, ImageWindow, Lens, PatchDescription, RigidMotion, RoughSurface, Roughness,
@@ -256,9 +257,6 @@ fn few_scatterers_in_a_resolution_cell_bias_the_contrast() {
         let found = squared_contrast(arrangement, amplitudes);
         let expected = 1.0 + bias / effective;
         // 500 surfaces with 28 speckles each: √(8/14 000) = 0.024, four of them.
-        assert!(
-            (found - expected).abs() < 0.096,
-            "{found} for {arrangement:?} {amplitudes:?}, not {expected}"
-        );
+        assert_absolute(found, expected, 0.096);
     }
 }

@@ -99,6 +99,8 @@ fn bends() -> Vec<f64> {
 mod tests {
     use tem00_numerics::jinc;
 
+    use tem00_testkit::assert_absolute;
+
     use super::*;
 
     #[test]
@@ -108,16 +110,10 @@ mod tests {
             for shift in [0.0, 0.01, 0.2, 0.5, 0.77, 0.99, 1.0, 1.3] {
                 for kappa in [0.0, 30.0, 2e3, -9e3, 5e4] {
                     let [found, expected] = [&table, &exact].map(|blur| blur.squared(shift, kappa));
-                    assert!(
-                        (found - expected).abs() < 1e-6,
-                        "{linear} {shift} {kappa}: {found} {expected}"
-                    );
+                    assert_absolute(found, expected, 1e-6);
                     let bound = jinc(FAR).powi(2).max(8.0 / FAR.powi(2));
                     let mean = exact.mean(shift, kappa).norm_sqr();
-                    assert!(
-                        (found - mean).abs() < bound,
-                        "{linear} {shift} {kappa}: {found} {mean}"
-                    );
+                    assert_absolute(found, mean, bound);
                 }
             }
         }

@@ -17,6 +17,7 @@ use tem00_decorrelation::{
     CameraFrame, Configuration, ConfigurationData, DMat3, DVec2, DVec3, Illumination,
     ImagingGeometry, LensData, RigidMotion, RigidMotions, SpeckleMotion, Wavefront,
 };
+use tem00_testkit::assert_absolute;
 
 const RELATIVE_STEP: f64 = 1e-5;
 const TOLERANCE: f64 = 1e-7;
@@ -361,9 +362,6 @@ fn axial_correlation_is_that_of_the_exact_paths() {
         // The theory takes 1/L² for 1/L(L − dz): β grows by dz/L, 2.2 % at most, and γ changes by
         // less than β dγ/dβ < 0.9 times that.
         let tolerance = 0.9 * dz.abs() / distance;
-        assert!(
-            (theory - exact).abs() < tolerance,
-            "dz = {shift} lengths: {theory} instead of {exact}"
-        );
+        assert_absolute(theory, exact, tolerance);
     }
 }

@@ -11,6 +11,7 @@ use tem00_decorrelation::{
     PupilDistances, RigidMotion, RigidMotions, SpeckleMotion, axial_correlation,
     pupil_overlap_correlation,
 };
+use tem00_testkit::assert_absolute;
 
 /// A rotation about the origin of the body and where the origin then lies.
 #[derive(Clone, Copy)]
@@ -312,10 +313,7 @@ fn heights_lose_the_phase_that_the_law_leaves() {
         let law = (-(sigma * change).powi(2)).exp();
         // The sum ends at 6 σ, which leaves out 2e−9. The second order of the path is k σ²/0.2 m or
         // 0.1 rad at 50 µm, and its change a few per cent of that, squared.
-        assert!(
-            (left - law).abs() < 1e-5,
-            "{name}: {left} of {law}, σ = {sigma:e}"
-        );
+        assert_absolute(left, law, 1e-5);
     }
 }
 
@@ -467,10 +465,7 @@ fn speckle_out_of_focus_moves_as_the_wave_field_does() {
         // Where the distance changes by 3 %, the field stretches by as much across the pupil, and
         // its centre is not all of it.
         let tolerance = 0.01 * h + 0.04 * speckle.defocus_displacement.length();
-        assert!(
-            (wave - law).abs() < tolerance,
-            "{name}: {law:e} instead of {wave:e}, {speckle:?}"
-        );
+        assert_absolute(wave, law, tolerance);
         largest_defocus = largest_defocus.max(speckle.defocus_displacement.length() / h);
     }
     assert!(
@@ -630,11 +625,7 @@ fn images_correlate_most_where_the_law_says_and_by_as_much() {
         // The field stretches with the distance, by up to 1 % across the pupil, and its distance is
         // not its depth, 3° off the axis; 81 points across count the area of a lens to 0.5 %.
         assert!(miss < 0.025, "{index}: {miss} speckles off, {law:?}");
-        let error = law.correlation - left;
-        assert!(
-            error.abs() < 8e-3,
-            "{index}: off by {error} from {left}, {law:?}"
-        );
+        assert_absolute(law.correlation, left, 8e-3);
 
         let s = law.pupil_displacement.unwrap().length() / geometry.pupil_diameter();
         let x = law.axial_displacement / geometry.axial_decorrelation_length();

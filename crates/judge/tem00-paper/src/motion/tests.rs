@@ -1,10 +1,10 @@
-use approx::assert_relative_eq;
 use proptest::prelude::*;
 use tem00_decorrelation::{
     Configuration, ConfigurationData, Focus, Illumination, LensData, RigidMotion, RigidMotions,
     SpeckleMotion, ThickLensData, Wavefront, axial_correlation, pupil_overlap_correlation,
 };
 use tem00_numerics::circular_path_overlap;
+use tem00_testkit::assert_relative;
 
 use super::*;
 
@@ -68,7 +68,7 @@ fn printed_rows_of_equation_5_are_not_orthogonal() {
     let angles = EulerAngles { q1: 0.4, q2: 0.6 };
     let columns = [DVec3::X, DVec3::Y, DVec3::Z].map(|a| image_displacement(1.0, angles, a));
     let product: f64 = columns.iter().map(|c| c.x * c.y).sum();
-    assert_relative_eq!(product, 0.8_f64.sin() * 0.6_f64.sin(), max_relative = 1e-14);
+    assert_relative(product, 0.8_f64.sin() * 0.6_f64.sin(), 1e-14);
 }
 
 #[test]
@@ -91,13 +91,9 @@ fn equation_5_sends_motion_along_the_normal_the_wrong_way() {
 #[test]
 fn pattern_is_not_decorrelated_at_the_printed_distance() {
     let shift = axial_decorrelation_length(&geometry()) / geometry().axial_decorrelation_length();
-    assert_relative_eq!(shift, 0.5, max_relative = 1e-14);
+    assert_relative(shift, 0.5, 1e-14);
     // 632.8 nm · [2 · 5 · 6]².
-    assert_relative_eq!(
-        axial_decorrelation_length(&geometry()),
-        2.278_08e-3,
-        max_relative = 1e-14
-    );
+    assert_relative(axial_decorrelation_length(&geometry()), 2.278_08e-3, 1e-14);
 }
 
 #[test]

@@ -179,7 +179,7 @@ fn over_chords(f: impl Fn(f64) -> f64, width: f64, least: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use approx::assert_relative_eq;
+    use tem00_testkit::{assert_absolute, assert_relative};
 
     use super::*;
     use crate::laws::line_centroid_deviation;
@@ -193,7 +193,7 @@ mod tests {
             let expected = (4.0 * radius * single / PI.powf(2.5)).sqrt();
             // Quadratures of smooth functions.
             let deviation = imaged_line_centroid_deviation(radius, 0.0);
-            assert_relative_eq!(deviation, expected, max_relative = 1e-9);
+            assert_relative(deviation, expected, 1e-9);
         }
     }
 
@@ -206,11 +206,11 @@ mod tests {
             };
             // Half of (∫ erfc) / ∫ = 1/(√π (πw)³) at p = 0, 7e-5 at 5 h; high rows see less of it.
             assert!((0.0..8e-5).contains(&(1.0 - ratio(5.0))), "{}", ratio(5.0));
-            assert_relative_eq!(ratio(1e5), 1.0, epsilon = 1e-8);
+            assert_absolute(ratio(1e5), 1.0, 1e-8);
         }
         // The next order of erf is (πw)²/3 · 4/6 … of it.
         let thin = imaged_line_centroid_deviation(1e-4, 0.0);
-        assert_relative_eq!(thin, 2.0_f64.sqrt() * 1e-4 / PI, max_relative = 1e-6);
+        assert_relative(thin, 2.0_f64.sqrt() * 1e-4 / PI, 1e-6);
         assert!(imaged_line_centroid_deviation(0.0, 1.0).abs() < f64::MIN_POSITIVE);
         let endless = imaged_line_centroid_deviation(f64::INFINITY, 1.0);
         assert!(endless.is_infinite(), "{endless}");
@@ -238,13 +238,13 @@ mod tests {
         let expected = imaged_line_centroid_deviation(radius, row_height).hypot(in_pupil.sqrt());
         let deviation = defocused_line_centroid_deviation(radius, row_height, blur);
         // The staircase of the rim is a hundredth of a chord.
-        assert_relative_eq!(deviation, expected, max_relative = 5e-3);
+        assert_relative(deviation, expected, 5e-3);
     }
 
     #[test]
     fn the_centroid_of_a_chord_has_no_step_where_its_series_ends() {
         let [below, above] = [0.1 - 1e-9, 0.1 + 1e-9].map(chord_centroid);
-        assert_relative_eq!(below, above, max_relative = 1e-7);
+        assert_relative(below, above, 1e-7);
     }
 
     #[test]
@@ -253,7 +253,7 @@ mod tests {
             let contrast = imaged_line_power_contrast(200.0, row_height);
             let expected = crate::laws::speckle_length(row_height) / (PI.sqrt() * 200.0);
             // The next order of q is 1/(√π L) of it, 1e-3.
-            assert_relative_eq!(contrast * contrast, expected, max_relative = 2e-3);
+            assert_relative(contrast * contrast, expected, 2e-3);
         }
     }
 
@@ -261,8 +261,8 @@ mod tests {
     fn rows_of_a_thin_line_share_what_chords_have_in_common() {
         // (4/π)² ∫∫ (2c)² du du' over the shorter chord, for a point of a row: ∫∫ 4 (1/4 − max²) = 1/2.
         let contrast = imaged_line_power_contrast(1e-5, 0.0);
-        assert_relative_eq!(contrast * contrast, 8.0 / (PI * PI), max_relative = 1e-6);
+        assert_relative(contrast * contrast, 8.0 / (PI * PI), 1e-6);
         let [below, above] = [0.01 - 1e-9, 0.01 + 1e-9].map(chord_power);
-        assert_relative_eq!(below, above, max_relative = 1e-8);
+        assert_relative(below, above, 1e-8);
     }
 }

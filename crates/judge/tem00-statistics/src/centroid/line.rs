@@ -198,7 +198,7 @@ fn check(
 
 #[cfg(test)]
 mod tests {
-    use approx::assert_relative_eq;
+    use tem00_testkit::assert_relative;
 
     use super::*;
     use crate::centroid::row_spectrum::Row;
@@ -225,10 +225,10 @@ mod tests {
             for row_height in [0.0, 0.25, 4.0, 300.0] {
                 let line = SpeckledLine::new(radius, row_height).expect("a line");
                 // Both are quadratures; what is averaged beyond 128 speckles is some 1e-9.
-                assert_relative_eq!(
+                assert_relative(
                     line.centroid_deviation(),
                     by_spectrum(radius, row_height),
-                    max_relative = 3e-8
+                    3e-8,
                 );
             }
         }
@@ -241,7 +241,7 @@ mod tests {
         for row_height in [0.0, 0.5, 2.0] {
             let exact = SpeckledLine::new(200.0, row_height).expect("a line");
             let wide = line_centroid_deviation(200.0, row_height);
-            assert_relative_eq!(exact.centroid_deviation(), wide, max_relative = 1e-3);
+            assert_relative(exact.centroid_deviation(), wide, 1e-3);
         }
     }
 
@@ -255,10 +255,10 @@ mod tests {
             let part = erf(t) - 2.0 * t / PI.sqrt() * (-t * t).exp();
             let ratio = part.sqrt() / erf(t / 2.0_f64.sqrt());
             // The edges of the window blur over a speckle, t/3000 of it.
-            assert_relative_eq!(
+            assert_relative(
                 line.centroid_deviation(),
                 ratio * line_centroid_deviation(radius, row_height),
-                max_relative = 5e-3
+                5e-3,
             );
         }
     }

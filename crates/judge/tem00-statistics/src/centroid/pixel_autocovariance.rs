@@ -156,7 +156,7 @@ fn add_cosines(values: &mut [f64], amplitude: f64, angle: f64) {
 
 #[cfg(test)]
 mod tests {
-    use approx::assert_relative_eq;
+    use tem00_testkit::assert_absolute;
 
     use super::*;
     use crate::{airy_autocovariance, laws::SpeckledLine, rectangular_pixel_contrast};
@@ -182,7 +182,7 @@ mod tests {
                 ..COLUMN
             });
             let contrast = rectangular_pixel_contrast(size);
-            assert_relative_eq!(speckle.covariance(0).sqrt(), contrast, epsilon = 1e-8);
+            assert_absolute(speckle.covariance(0).sqrt(), contrast, 1e-8);
         }
     }
 
@@ -201,8 +201,8 @@ mod tests {
             let across = lag as f64 * COLUMN.pitch[1];
             let same = airy_autocovariance(across);
             let beside = airy_autocovariance(across.hypot(COLUMN.pitch[0]));
-            assert_relative_eq!(one.covariance(lag), same, epsilon = 1e-9);
-            assert_relative_eq!(two.covariance(lag), 0.5 * (same + beside), epsilon = 1e-9);
+            assert_absolute(one.covariance(lag), same, 1e-9);
+            assert_absolute(two.covariance(lag), 0.5 * (same + beside), 1e-9);
         }
         assert!(one.covariance(COLUMN.pixels).abs() < f64::MIN_POSITIVE);
     }
@@ -224,7 +224,7 @@ mod tests {
                     sum += weight * airy_autocovariance(lag);
                 }
             }
-            assert_relative_eq!(speckle.covariance(lag as usize), sum, epsilon = 1e-4);
+            assert_absolute(speckle.covariance(lag as usize), sum, 1e-4);
         }
     }
 
@@ -241,7 +241,7 @@ mod tests {
             ..COLUMN
         });
         for (many, wide) in many.values().iter().zip(wide.values()) {
-            assert_relative_eq!(many, wide, epsilon = 1e-9);
+            assert_absolute(*many, *wide, 1e-9);
         }
     }
 

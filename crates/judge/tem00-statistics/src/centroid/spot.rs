@@ -93,7 +93,7 @@ pub fn disc_spot_centroid_deviation(radius: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use approx::assert_relative_eq;
+    use tem00_testkit::assert_relative;
 
     use super::*;
     use crate::airy_autocovariance;
@@ -115,10 +115,10 @@ mod tests {
                 (1.0 - t) * (-t).exp() / (8.0 * PI)
             };
             // Rounding of what cancels, and 14 standard deviations.
-            assert_relative_eq!(
+            assert_relative(
                 gaussian_spot_centroid_deviation(radius),
                 in_space(overlap, 14.0 * s),
-                max_relative = 1e-9
+                1e-9,
             );
         }
     }
@@ -142,10 +142,10 @@ mod tests {
             let area = PI * a * a;
             let overlap = |r: f64| 0.5 * lens(a, r) / (area * area);
             // The lens ends with a root.
-            assert_relative_eq!(
+            assert_relative(
                 disc_spot_centroid_deviation(a),
                 in_space(overlap, 2.0 * a),
-                max_relative = 1e-6
+                1e-6,
             );
         }
     }
@@ -154,16 +154,12 @@ mod tests {
     fn wide_spots_have_their_closed_forms() {
         // The next order is h/w: chat falls with the slope 4/π.
         let gaussian = gaussian_spot_centroid_deviation(1e6);
-        assert_relative_eq!(gaussian, (PI * 2.0_f64.sqrt()).recip(), max_relative = 1e-6);
+        assert_relative(gaussian, (PI * 2.0_f64.sqrt()).recip(), 1e-6);
         // The edge costs ln(a)/a.
-        assert_relative_eq!(
-            disc_spot_centroid_deviation(1e7),
-            PI.recip(),
-            max_relative = 1e-6
-        );
+        assert_relative(disc_spot_centroid_deviation(1e7), PI.recip(), 1e-6);
         let ends = [255.9, 256.1].map(disc_spot_centroid_deviation);
         // Across the start of the average: the slope ln(a)/a² and what is left out.
-        assert_relative_eq!(ends[0], ends[1], max_relative = 2e-5);
+        assert_relative(ends[0], ends[1], 2e-5);
         assert!(gaussian_spot_centroid_deviation(0.0).abs() < f64::MIN_POSITIVE);
         assert!(disc_spot_centroid_deviation(0.0).abs() < f64::MIN_POSITIVE);
     }

@@ -97,7 +97,7 @@ fn contrast_of_long_drift(drift: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use approx::assert_relative_eq;
+    use tem00_testkit::{assert_absolute, assert_relative};
 
     use super::*;
 
@@ -111,8 +111,8 @@ mod tests {
             (1.0, 0.656),
             (2.0, 0.494),
         ] {
-            assert_relative_eq!(boiling_contrast(drift), contrast, epsilon = 5e-4);
-            assert_relative_eq!(boiling_contrast(-drift), contrast, epsilon = 5e-4);
+            assert_absolute(boiling_contrast(drift), contrast, 5e-4);
+            assert_absolute(boiling_contrast(-drift), contrast, 5e-4);
         }
         // Once the pattern is lost: 2/s ∫ chat² − 2/s² ∫ chat² ρ dρ, the latter 1/8 − 2/(3π²).
         let line = integrate(|rho| disc_overlap(rho).powi(2), [0.0, 1.0], 0.1);
@@ -121,7 +121,7 @@ mod tests {
             let exact = 2.0 / drift * (line - kappa / drift);
             let squared = boiling_contrast(drift).powi(2);
             // chat² bends as (1 − ρ)³ at its end.
-            assert_relative_eq!(squared, exact, epsilon = 0.0, max_relative = 1e-8);
+            assert_relative(squared, exact, 1e-8);
         }
         assert!(boiling_contrast(f64::INFINITY).abs() < f64::MIN_POSITIVE);
     }
@@ -136,8 +136,8 @@ mod tests {
             (2.0, 0.667),
             (4.0, 0.496),
         ] {
-            assert_relative_eq!(translation_contrast(drift), contrast, epsilon = 6e-4);
-            assert_relative_eq!(translation_contrast(-drift), contrast, epsilon = 6e-4);
+            assert_absolute(translation_contrast(drift), contrast, 6e-4);
+            assert_absolute(translation_contrast(-drift), contrast, 6e-4);
         }
     }
 
@@ -145,11 +145,11 @@ mod tests {
     fn translation_is_continuous_where_the_long_form_takes_over() {
         for drift in [60.0, 63.7, 64.0] {
             let exact = translation_contrast(drift);
-            assert_relative_eq!(exact, contrast_of_long_drift(drift), max_relative = 1e-9);
+            assert_relative(exact, contrast_of_long_drift(drift), 1e-9);
         }
         // √(32/3π²) / √T, and the next order is 1/T.
         let far = translation_contrast(1e30) * 1e15;
-        assert_relative_eq!(far, (32.0 / 3.0_f64).sqrt() / PI, max_relative = 1e-14);
+        assert_relative(far, (32.0 / 3.0_f64).sqrt() / PI, 1e-14);
         assert!(translation_contrast(f64::INFINITY).abs() < f64::MIN_POSITIVE);
     }
 
@@ -158,15 +158,11 @@ mod tests {
         // γ = exp(−at): C² = 2 (a − 1 + e⁻ᵃ) / a².
         let a = 3.0_f64;
         let exact = (2.0 * (a - 1.0 + (-a).exp())).sqrt() / a;
-        assert_relative_eq!(
-            contrast_of_exposure(|t| (-a * t).exp()),
-            exact,
-            epsilon = 1e-14
-        );
+        assert_absolute(contrast_of_exposure(|t| (-a * t).exp()), exact, 1e-14);
         let boiling = contrast_of_exposure(|t| disc_overlap(0.7 * t).powi(2));
-        assert_relative_eq!(boiling, boiling_contrast(0.7), epsilon = 1e-14);
+        assert_absolute(boiling, boiling_contrast(0.7), 1e-14);
         let moving = contrast_of_exposure(|t| airy_autocovariance(5.0 * t));
-        assert_relative_eq!(moving, translation_contrast(5.0), epsilon = 1e-14);
+        assert_absolute(moving, translation_contrast(5.0), 1e-14);
     }
 
     #[test]
@@ -195,7 +191,7 @@ mod tests {
                 translation_contrast(drift)
             };
             // The cusp of γ at t = 0 adds 1/6n² of its slope.
-            assert_relative_eq!(contrast * contrast, squared, epsilon = 2e-5);
+            assert_absolute(contrast * contrast, squared, 2e-5);
         }
     }
 }

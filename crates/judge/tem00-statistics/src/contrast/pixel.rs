@@ -36,7 +36,7 @@ pub fn pixel_contrast(pixel_size: f64) -> f64 {
 mod tests {
     use core::f64::consts::PI;
 
-    use approx::assert_relative_eq;
+    use tem00_testkit::assert_absolute;
 
     use super::*;
 
@@ -56,8 +56,8 @@ mod tests {
             (10.0, 0.011_209),
         ];
         for (q, squared) in table {
-            assert_relative_eq!(pixel_contrast(q).powi(2), squared, epsilon = 6e-7);
-            assert_relative_eq!(pixel_contrast(-q).powi(2), squared, epsilon = 6e-7);
+            assert_absolute(pixel_contrast(q).powi(2), squared, 6e-7);
+            assert_absolute(pixel_contrast(-q).powi(2), squared, 6e-7);
         }
     }
 
@@ -65,7 +65,7 @@ mod tests {
     fn contrast_falls_from_one_to_zero() {
         // The fourth-order term (5π⁴/192)(17/90) q⁴ at q = 1e−2 is 5e−9.
         let small = 1.0 - PI * PI * 1e-4 / 12.0;
-        assert_relative_eq!(pixel_contrast(1e-2).powi(2), small, epsilon = 1e-8);
+        assert_absolute(pixel_contrast(1e-2).powi(2), small, 1e-8);
         let sizes = (0..2_000).map(|i| 0.05 * f64::from(i));
         let contrasts: Vec<_> = sizes.map(pixel_contrast).collect();
         assert!(

@@ -296,9 +296,9 @@ fn distance_from_origin(index: usize, size: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use approx::{assert_abs_diff_eq, assert_relative_eq};
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
+    use tem00_testkit::assert_absolute;
 
     use super::*;
     use crate::{airy_autocovariance, laws::airy_power_spectrum, synthetic::speckle_tile};
@@ -346,11 +346,7 @@ mod tests {
                         let direct = by_definition(&image, [lag_x, lag_y], boundary);
                         // Two f32 transforms of up to 432 values, and up to 108 pixels per pair.
                         let tolerance = 108.0 * 8.0 * f64::from(f32::EPSILON);
-                        assert_abs_diff_eq!(
-                            f64::from(*lags.wrapped(lag_x, lag_y)),
-                            direct,
-                            epsilon = tolerance
-                        );
+                        assert_absolute(f64::from(*lags.wrapped(lag_x, lag_y)), direct, tolerance);
                     }
                 }
             }
@@ -389,7 +385,7 @@ mod tests {
         let tolerance = 4.3 * 0.77 / diameter as f64 / f64::from(TILES).sqrt() + 2e-4;
         for (lag, value) in sums.iter().enumerate().take(48) {
             let theory = airy_autocovariance(lag as f64 / speckle_size) - 1.0 / phasors as f64;
-            assert_abs_diff_eq!(*value, theory, epsilon = tolerance);
+            assert_absolute(*value, theory, tolerance);
         }
     }
 
@@ -400,7 +396,7 @@ mod tests {
         let spectrum = power_spectrum(&tile).unwrap();
         let mean = spectrum.values().iter().map(|&v| f64::from(v)).sum::<f64>() / 65_536.0;
         // Parseval, in f32: 65536 squares of either sign of rounding.
-        assert_relative_eq!(mean, 1.0, epsilon = 1e-5);
+        assert_absolute(mean, 1.0, 1e-5);
         let speckle_size = (size / diameter) as f64;
         let step = 1.0 / size as f64;
         for ring in radial_average(&spectrum, [step, step]).unwrap() {
@@ -414,7 +410,7 @@ mod tests {
             // amount to.
             let spread = theory / (0.5 * ring.count as f64).sqrt();
             let chat = speckle_size.powi(2) * 4.0 / core::f64::consts::PI * 2e-3;
-            assert_abs_diff_eq!(ring.mean, theory, epsilon = 4.6 * spread + chat);
+            assert_absolute(ring.mean, theory, 4.6 * spread + chat);
         }
     }
 

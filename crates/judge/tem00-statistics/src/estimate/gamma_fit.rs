@@ -201,9 +201,9 @@ fn trigamma(mut x: f64) -> f64 {
 mod tests {
     use core::f64::consts::PI;
 
-    use approx::assert_relative_eq;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
+    use tem00_testkit::{assert_absolute, assert_relative};
 
     use super::*;
 
@@ -216,14 +216,14 @@ mod tests {
     #[test]
     fn trigamma_and_digamma_have_their_known_values() {
         // ψ′(1) = π²/6, ψ′(½) = π²/2; ψ(1) = −γ.
-        assert_relative_eq!(trigamma(1.0), PI * PI / 6.0, max_relative = 1e-14);
-        assert_relative_eq!(trigamma(0.5), PI * PI / 2.0, max_relative = 1e-14);
+        assert_relative(trigamma(1.0), PI * PI / 6.0, 1e-14);
+        assert_relative(trigamma(0.5), PI * PI / 2.0, 1e-14);
         let euler = 0.577_215_664_901_532_9;
-        assert_relative_eq!(log_less_digamma(1.0), euler, max_relative = 1e-13);
+        assert_relative(log_less_digamma(1.0), euler, 1e-13);
         // ψ(25) = −γ + Σ 1/k up to 24, on the series.
         let harmonic: f64 = (1..25).map(|k| f64::from(k).recip()).sum();
         let exact = 25.0_f64.ln() + euler - harmonic;
-        assert_relative_eq!(log_less_digamma(25.0), exact, epsilon = 1e-15);
+        assert_absolute(log_less_digamma(25.0), exact, 1e-15);
     }
 
     #[test]
@@ -231,7 +231,7 @@ mod tests {
         for shape in [1e-3, 0.5, 1.0, 7.3, 19.9, 20.1, 1e9] {
             let found = shape_of_excess(log_less_digamma(shape));
             // Before the series takes over, ln M and ψ(M) near 3 cancel to 1/2M = 0.025.
-            assert_relative_eq!(found, shape, max_relative = 1e-12, epsilon = 0.0);
+            assert_relative(found, shape, 1e-12);
         }
     }
 
@@ -254,22 +254,14 @@ mod tests {
             // A spread from 1500 fits is known to 1.8 %, here 3.3 σ; the first order errs by 10/n.
             let tolerance = 3.3 * 0.018 + 10.0 / n;
             let spread = (2.0 * m * (m + 1.0) / n).sqrt();
-            assert_relative_eq!(
-                by_moments.standard_deviation(),
-                spread,
-                max_relative = tolerance
-            );
+            assert_relative(by_moments.standard_deviation(), spread, tolerance);
             let spread = (n * (trigamma(m) - m.recip())).sqrt().recip();
-            assert_relative_eq!(
-                by_likelihood.standard_deviation(),
-                spread,
-                max_relative = tolerance
-            );
+            assert_relative(by_likelihood.standard_deviation(), spread, tolerance);
             // ⟨u² − 2uv + v²⟩ of the relative errors u of the mean and v of the variance, which are
             // 1/nM, 2/nM and (2 + 6/M)/n. The next order of the bias is some 20/n², 5e−4.
             let bias = (2.0 * m + 3.0) / n;
             let tolerance = 3.3 * by_moments.standard_error() + 20.0 * m / (n * n);
-            assert_relative_eq!(by_moments.mean(), m + bias, epsilon = tolerance);
+            assert_absolute(by_moments.mean(), m + bias, tolerance);
             let excess = (by_likelihood.mean() / m - 1.0) * n;
             let tolerance = 3.3 * by_likelihood.standard_error() * n / m;
             assert!(excess - tolerance < 3.0, "{excess} ± {tolerance}");
@@ -284,13 +276,9 @@ mod tests {
             let scaled: Vec<f64> = samples.iter().map(|x| x * unit).collect();
             for fit in [GammaFit::by_moments::<f64>, GammaFit::by_likelihood::<f64>] {
                 let (one, other) = (fit(&samples).unwrap(), fit(&scaled).unwrap());
-                assert_relative_eq!(one.shape(), other.shape(), max_relative = 1e-12);
-                assert_relative_eq!(one.mean(), other.mean() / unit, max_relative = 1e-14);
-                assert_relative_eq!(
-                    one.standard_error(),
-                    other.standard_error(),
-                    max_relative = 1e-12
-                );
+                assert_relative(one.shape(), other.shape(), 1e-12);
+                assert_relative(one.mean(), other.mean() / unit, 1e-14);
+                assert_relative(one.standard_error(), other.standard_error(), 1e-12);
             }
         }
     }
@@ -302,15 +290,11 @@ mod tests {
         let exact = (400.0 * (trigamma(fit.shape()) - fit.shape().recip()))
             .sqrt()
             .recip();
-        assert_relative_eq!(fit.standard_error(), exact, max_relative = 1e-14);
+        assert_relative(fit.standard_error(), exact, 1e-14);
         let fit = GammaFit::by_moments(&samples).unwrap();
         let exact = (fit.shape() * (fit.shape() + 1.0) / 200.0).sqrt();
-        assert_relative_eq!(fit.standard_error(), exact, max_relative = 1e-14);
+        assert_relative(fit.standard_error(), exact, 1e-14);
         let contrast = crate::Contrast::from_samples(&samples).unwrap().value();
-        assert_relative_eq!(
-            fit.distribution().unwrap().contrast(),
-            contrast,
-            max_relative = 1e-12
-        );
+        assert_relative(fit.distribution().unwrap().contrast(), contrast, 1e-12);
     }
 }

@@ -153,8 +153,8 @@ fn airy_argument(value: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use approx::{assert_abs_diff_eq, assert_relative_eq};
     use tem00_numerics::{cast::to_f32, disc_overlap, sinc};
+    use tem00_testkit::{assert_absolute, assert_relative};
 
     use super::*;
     use crate::synthetic::speckle_tile;
@@ -171,9 +171,9 @@ mod tests {
         for h in [1.01, 1.5, 1.943, 1.944, 2.0, 3.7, 11.3] {
             let size = SpeckleSize::from_autocovariance(&airy_lags(64, [h, 1.3 * h])).unwrap();
             // f32 values, whose slope is 0.1 at least: 6e−8 / 0.1 in units of h.
-            assert_relative_eq!(size.x(), h, max_relative = 2e-6);
-            assert_relative_eq!(size.y(), 1.3 * h, max_relative = 2e-6);
-            assert_relative_eq!(size.mean(), 1.3_f64.sqrt() * h, max_relative = 2e-6);
+            assert_relative(size.x(), h, 2e-6);
+            assert_relative(size.y(), 1.3 * h, 2e-6);
+            assert_relative(size.mean(), 1.3_f64.sqrt() * h, 2e-6);
         }
     }
 
@@ -188,7 +188,7 @@ mod tests {
         assert_eq!(SpeckleSize::along(Axis::Y, &lags), Err(coarse));
         let size = SpeckleSize::along(Axis::X, &lags).unwrap();
         // f32 values, whose slope is 0.1 at least: 6e−8 / 0.1 in units of h.
-        assert_relative_eq!(size, 3.0, max_relative = 2e-6);
+        assert_relative(size, 3.0, 2e-6);
     }
 
     #[test]
@@ -207,7 +207,7 @@ mod tests {
             // 0.86 / C² and the square of the spread, and C of the lattice mask is 1e−3 off.
             let spread = 0.62 / diameter as f64;
             let tolerance = 3.3 * spread / (TILES as f64).sqrt() + 1e-3 + 2.0 * spread * spread;
-            assert_relative_eq!(mean, 4.0, max_relative = tolerance);
+            assert_relative(mean, 4.0, tolerance);
         }
     }
 
@@ -228,7 +228,7 @@ mod tests {
         // A spread from 100 samples is known to 1/√200 = 7 %, here 3.3 σ, in the first order of
         // 1/C.
         let tolerance = 3.3 * 0.07 + 2.0 / diameter as f64;
-        assert_relative_eq!(spread, 0.62 / diameter as f64, max_relative = tolerance);
+        assert_relative(spread, 0.62 / diameter as f64, tolerance);
     }
 
     #[test]
@@ -266,7 +266,7 @@ mod tests {
             });
             let measured = SpeckleSize::from_autocovariance(&lags).unwrap();
             // Half of the third digit; the midpoint rule errs by 1e−5.
-            assert_abs_diff_eq!(measured.x() / h, stated, epsilon = 6e-4);
+            assert_absolute(measured.x() / h, stated, 6e-4);
         }
     }
 }

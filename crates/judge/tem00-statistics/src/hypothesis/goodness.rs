@@ -164,7 +164,7 @@ fn quantile(bin: u32) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use approx::assert_relative_eq;
+    use tem00_testkit::assert_relative;
 
     use super::*;
     use crate::{GammaIntensity, exponential_cumulative};
@@ -233,7 +233,7 @@ mod tests {
         assert!((0.2..=0.205).contains(&distance), "{distance}");
         // Bins of 0.2, 0.4 and 0.4: (10 − 20)²/20 + (30 − 40)²/40 + (60 − 40)²/40.
         let statistic = placed.chi_squared(1).expect("valid").statistic;
-        assert_relative_eq!(statistic, 17.5, max_relative = 1e-12);
+        assert_relative(statistic, 17.5, 1e-12);
     }
 
     #[test]

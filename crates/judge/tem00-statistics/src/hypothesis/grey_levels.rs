@@ -211,7 +211,7 @@ fn are_same(low: f64, high: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use approx::assert_relative_eq;
+    use tem00_testkit::assert_relative;
 
     use super::*;
 
@@ -234,7 +234,7 @@ mod tests {
         assert_eq!(cells, [[1.5, 2.5], [2.5, 5.0], [5.0, f64::INFINITY]]);
         assert_eq!([2.0, 6.9, 7.0].map(|value| uneven.index(value)), [0, 1, 2]);
         for (value, edge) in [(1.8, 1.5), (4.0, 5.0), (100.0, 5.0)] {
-            assert_relative_eq!(uneven.nearest_edge(value), edge);
+            assert_relative(uneven.nearest_edge(value), edge, f64::EPSILON);
         }
     }
 
@@ -304,9 +304,9 @@ mod tests {
             }
             let contrast = (second / (first * first) - 1.0).sqrt();
             // Some hundred additions, each rounded.
-            assert_relative_eq!(levels.exponential_mean(first), mean, max_relative = 1e-13);
+            assert_relative(levels.exponential_mean(first), mean, 1e-13);
             let found = levels.exponential_contrast(first);
-            assert_relative_eq!(found, contrast, max_relative = 1e-12);
+            assert_relative(found, contrast, 1e-12);
         }
     }
 
@@ -315,8 +315,8 @@ mod tests {
         let values = [0.0, 0.0, 1.0, 1.0, 2.5, 2.5];
         let levels = GreyLevels::from_values(&values).expect("three levels");
         assert!(!levels.are_multiples(), "2.5 is no multiple of 1");
-        assert_relative_eq!(levels.exponential_mean(0.7), 0.7, max_relative = 1e-15);
-        assert_relative_eq!(levels.exponential_contrast(0.7), 1.0, max_relative = 1e-15);
+        assert_relative(levels.exponential_mean(0.7), 0.7, 1e-15);
+        assert_relative(levels.exponential_contrast(0.7), 1.0, 1e-15);
     }
 
     #[test]

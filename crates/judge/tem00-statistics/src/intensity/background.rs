@@ -121,11 +121,11 @@ impl CoherentBackground {
 
 #[cfg(test)]
 mod tests {
-    use approx::assert_relative_eq;
     use core::f64::consts::TAU;
     use proptest::prelude::*;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
+    use tem00_testkit::{assert_absolute, assert_relative};
 
     use super::*;
     use crate::{exponential_cumulative, exponential_density, kolmogorov_smirnov};
@@ -144,10 +144,10 @@ mod tests {
                     0.2 * law.contrast(),
                 )
             };
-            assert_relative_eq!(moment(0), 1.0, epsilon = 1e-12);
-            assert_relative_eq!(moment(1), 1.0, epsilon = 1e-12);
+            assert_absolute(moment(0), 1.0, 1e-12);
+            assert_absolute(moment(1), 1.0, 1e-12);
             let contrast = (moment(2) - 1.0).sqrt();
-            assert_relative_eq!(contrast, law.contrast(), epsilon = 1e-11);
+            assert_absolute(contrast, law.contrast(), 1e-11);
         }
     }
 
@@ -157,7 +157,7 @@ mod tests {
             let law = CoherentBackground::new(ratio).unwrap();
             for x in [0.01, 0.5, 1.0, 1.7] {
                 let area = integrate(|x| law.density(x), [0.0, x], 0.05);
-                assert_relative_eq!(law.cumulative(x), area, epsilon = 1e-13);
+                assert_absolute(law.cumulative(x), area, 1e-13);
             }
         }
     }
@@ -166,12 +166,8 @@ mod tests {
     fn no_background_is_the_exponential_law() {
         let law = CoherentBackground::from_contrast(1.0).unwrap();
         for x in [-1.0, 0.0, 0.3, 2.0, 30.0] {
-            assert_relative_eq!(law.density(x), exponential_density(x), epsilon = 1e-15);
-            assert_relative_eq!(
-                law.cumulative(x),
-                exponential_cumulative(x),
-                epsilon = 1e-14
-            );
+            assert_absolute(law.density(x), exponential_density(x), 1e-15);
+            assert_absolute(law.cumulative(x), exponential_cumulative(x), 1e-14);
         }
     }
 
@@ -196,7 +192,7 @@ mod tests {
     fn contrast_and_beam_ratio_are_inverse() {
         for contrast in [0.001, 0.1, 0.866, 0.999_999, 1.0] {
             let law = CoherentBackground::from_contrast(contrast).unwrap();
-            assert_relative_eq!(law.contrast(), contrast, max_relative = 1e-12);
+            assert_relative(law.contrast(), contrast, 1e-12);
         }
     }
 

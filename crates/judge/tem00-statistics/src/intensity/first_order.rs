@@ -206,10 +206,10 @@ pub fn contrast_of_phasor_sum(count: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use approx::assert_relative_eq;
     use proptest::prelude::*;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
+    use tem00_testkit::{assert_absolute, assert_relative};
 
     use super::*;
 
@@ -225,7 +225,7 @@ mod tests {
         for intensity in [0.3, 1.0, 4.0] {
             // The midpoint rule errs by h² f″ / 24 · length < 4 (4 / 2e5)² / 24 = 7e−11.
             let area = integral(exponential_density, intensity);
-            assert_relative_eq!(area, exponential_cumulative(intensity), epsilon = 1e-10);
+            assert_absolute(area, exponential_cumulative(intensity), 1e-10);
         }
         assert!(exponential_cumulative(-1.0).abs() < f64::MIN_POSITIVE);
         assert!(exponential_density(-1.0).abs() < f64::MIN_POSITIVE);
@@ -239,10 +239,10 @@ mod tests {
             let end = 1.0 + 10.0 / shape.sqrt() + 40.0 / shape;
             let moment = |k: i32| integral(|x| law.density(x) * x.powi(k), end);
             // M = 1.977 starts with a root, where the midpoint rule errs by h^1.98 = 1e−7.
-            assert_relative_eq!(moment(0), 1.0, epsilon = 1e-7);
-            assert_relative_eq!(moment(1), 1.0, epsilon = 1e-7);
+            assert_absolute(moment(0), 1.0, 1e-7);
+            assert_absolute(moment(1), 1.0, 1e-7);
             let contrast = (moment(2) - 1.0).sqrt();
-            assert_relative_eq!(contrast, law.contrast(), epsilon = 2e-6);
+            assert_absolute(contrast, law.contrast(), 2e-6);
         }
     }
 
@@ -258,7 +258,7 @@ mod tests {
                     Some(*term)
                 });
                 let closed = 1.0 - (-x).exp() * (1.0 + terms.sum::<f64>());
-                assert_relative_eq!(law.cumulative(intensity), closed, epsilon = 1e-13);
+                assert_absolute(law.cumulative(intensity), closed, 1e-13);
             }
         }
     }
@@ -269,24 +269,22 @@ mod tests {
         // The density at the mean grows by (1 / 2M + 1 / 12M²) dM. Before the switch ln Γ cancels
         // two numbers near 100, which leaves 100 · 2⁻⁵³ · some.
         let growth = 6e-8 * (1.0 / 60.0 + 1.0 / 10_800.0);
-        assert_relative_eq!(above / below, 1.0 + growth, epsilon = 1e-12);
+        assert_absolute(above / below, 1.0 + growth, 1e-12);
     }
 
     #[test]
     fn shape_one_is_the_exponential_law() {
         let law = GammaIntensity::from_contrast(1.0).unwrap();
         for intensity in [0.0, 1e-9, 0.5, 1.0, 30.0] {
-            assert_relative_eq!(
+            assert_relative(
                 law.density(intensity),
                 exponential_density(intensity),
-                epsilon = 0.0,
-                max_relative = 1e-13
+                1e-13,
             );
-            assert_relative_eq!(
+            assert_relative(
                 law.cumulative(intensity),
                 exponential_cumulative(intensity),
-                epsilon = 0.0,
-                max_relative = 1e-13
+                1e-13,
             );
         }
     }
@@ -311,10 +309,7 @@ mod tests {
             let law = contrast_of_phasor_sum(usize::try_from(count).unwrap());
             // Var of C² is 8 / n at most, that of the exponential law; 3.3 σ is α = 0.001.
             let tolerance = 3.3 * (8.0 / f64::from(DRAWS)).sqrt();
-            assert!(
-                (squared - law * law).abs() < tolerance,
-                "{count} phasors: C² = {squared}"
-            );
+            assert_absolute(squared, law * law, tolerance);
         }
     }
 

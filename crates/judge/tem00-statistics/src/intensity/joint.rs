@@ -155,8 +155,8 @@ fn factorial(n: u32) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use approx::assert_relative_eq;
     use proptest::prelude::*;
+    use tem00_testkit::{assert_absolute, assert_relative};
 
     use super::*;
     use crate::{airy_autocovariance, synthetic};
@@ -185,7 +185,7 @@ mod tests {
             for (m, n) in [(0_u8, 0_u8), (1, 0), (1, 1), (2, 1), (2, 2), (3, 2)] {
                 let orders = [u32::from(m), u32::from(n)];
                 let moment = moment_by_quadrature(&law, [i32::from(m), i32::from(n)]);
-                assert_relative_eq!(moment, law.moment(orders), max_relative = 1e-11);
+                assert_relative(moment, law.moment(orders), 1e-11);
             }
         }
     }
@@ -194,15 +194,11 @@ mod tests {
     fn low_moments_are_the_known_polynomials() {
         let mu = 0.6_f64;
         let (g, law) = (mu * mu, law(mu));
-        assert_relative_eq!(law.moment([1, 1]), 1.0 + g, max_relative = 1e-15);
-        assert_relative_eq!(
-            law.moment([2, 1]),
-            2.0 * (1.0 + 2.0 * g),
-            max_relative = 1e-15
-        );
+        assert_relative(law.moment([1, 1]), 1.0 + g, 1e-15);
+        assert_relative(law.moment([2, 1]), 2.0 * (1.0 + 2.0 * g), 1e-15);
         let fourth = 4.0 * (1.0 + 4.0 * g + g * g);
-        assert_relative_eq!(law.moment([2, 2]), fourth, max_relative = 1e-15);
-        assert_relative_eq!(law.moment([4, 0]), 24.0, max_relative = 1e-15);
+        assert_relative(law.moment([2, 2]), fourth, 1e-15);
+        assert_relative(law.moment([4, 0]), 24.0, 1e-15);
     }
 
     #[test]
@@ -213,14 +209,14 @@ mod tests {
                 let density = |x| law.density([given, x]) / exponential_density(given);
                 let moment = |k| integrate(|x| density(x) * x.powi(k), [0.0, 60.0], 0.1);
                 let mean = moment(1);
-                assert_relative_eq!(moment(0), 1.0, epsilon = 1e-12);
-                assert_relative_eq!(mean, law.conditional_mean(given), epsilon = 1e-12);
+                assert_absolute(moment(0), 1.0, 1e-12);
+                assert_absolute(mean, law.conditional_mean(given), 1e-12);
                 let variance = moment(2) - mean * mean;
-                assert_relative_eq!(variance, law.conditional_variance(given), epsilon = 1e-11);
+                assert_absolute(variance, law.conditional_variance(given), 1e-11);
                 for intensity in [0.2, 1.0, 3.0] {
                     let area = integrate(density, [0.0, intensity], 0.1);
                     let cumulative = law.conditional_cumulative(intensity, given);
-                    assert_relative_eq!(cumulative, area, epsilon = 1e-12);
+                    assert_absolute(cumulative, area, 1e-12);
                 }
             }
         }
@@ -252,11 +248,7 @@ mod tests {
         for (sum, [m, n]) in sums.into_iter().zip([[1, 1], [2, 1]]) {
             let mean = law.moment([m, n]);
             let tolerance = 3.3 * spread(m, n, mean) / samples.sqrt() + 5.0 / 800.0 * mean;
-            assert!(
-                (sum / count - mean).abs() < tolerance,
-                "{m}, {n}: {}",
-                sum / count
-            );
+            assert_absolute(sum / count, mean, tolerance);
             assert!(
                 tolerance < 0.15 * mean,
                 "nothing would be seen: {tolerance}"

@@ -217,9 +217,9 @@ fn moments_of_two(first: &[f64], second: &[f64]) -> Vec<f64> {
 mod tests {
     use core::f64::consts::TAU;
 
-    use approx::assert_relative_eq;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
+    use tem00_testkit::{assert_absolute, assert_relative};
 
     use super::*;
     use crate::{exponential_cumulative, exponential_density, kolmogorov_smirnov};
@@ -234,7 +234,7 @@ mod tests {
             for order in 0..=3_u8 {
                 let exact = moment_of_phasor_sum(count, u32::from(order));
                 let value = moment(i32::from(order));
-                assert_relative_eq!(value, exact, epsilon = 0.0, max_relative = 6.0 * tolerance);
+                assert_relative(value, exact, 6.0 * tolerance);
             }
         }
     }
@@ -256,7 +256,7 @@ mod tests {
             let law = PhasorSum::new(usize::from(count)).unwrap();
             for intensity in [0.0, 0.3, 1.1, 2.7, 7.5] {
                 let exact = density_by_kluyver(count, intensity, end);
-                assert_relative_eq!(law.density(intensity), exact, epsilon = tolerance);
+                assert_absolute(law.density(intensity), exact, tolerance);
             }
         }
     }
@@ -267,7 +267,7 @@ mod tests {
             let law = PhasorSum::new(count).unwrap();
             for x in [0.1, 1.0, 3.0, 6.9] {
                 let area = integrate(|x| law.density(x), [0.0, x], 0.25);
-                assert_relative_eq!(law.cumulative(x), area, epsilon = tolerance);
+                assert_absolute(law.cumulative(x), area, tolerance);
             }
         }
     }
@@ -300,11 +300,11 @@ mod tests {
         let law = PhasorSum::new(1_000_000).unwrap();
         for x in [0.0, 0.5, 2.0, 10.0] {
             // The first correction is e⁻ˣ (1 − 2x + x²/2) / 2N, below 1 / 2N.
-            assert_relative_eq!(law.density(x), exponential_density(x), epsilon = 1e-6);
-            assert_relative_eq!(law.cumulative(x), exponential_cumulative(x), epsilon = 1e-6);
+            assert_absolute(law.density(x), exponential_density(x), 1e-6);
+            assert_absolute(law.cumulative(x), exponential_cumulative(x), 1e-6);
         }
         assert!(law.cumulative(-1.0).abs() < f64::MIN_POSITIVE);
-        assert_relative_eq!(law.cumulative(1e30), 1.0, epsilon = 1e-15);
+        assert_absolute(law.cumulative(1e30), 1.0, 1e-15);
         assert!(law.density(-1.0).abs() < f64::MIN_POSITIVE);
     }
 
@@ -313,13 +313,13 @@ mod tests {
         for count in [1_u8, 2, 4, 52] {
             let n = f64::from(count);
             let moment = |order| moment_of_phasor_sum(usize::from(count), order);
-            assert_relative_eq!(moment(1), 1.0, max_relative = 1e-15);
-            assert_relative_eq!(moment(2), 2.0 - 1.0 / n, max_relative = 1e-15);
+            assert_relative(moment(1), 1.0, 1e-15);
+            assert_relative(moment(2), 2.0 - 1.0 / n, 1e-15);
             let third = 6.0 - 9.0 / n + 4.0 / (n * n);
-            assert_relative_eq!(moment(3), third, max_relative = 1e-14);
+            assert_relative(moment(3), third, 1e-14);
         }
         // Two phasors: I = 1 + cos φ, whose moments are (2k k) / 2ᵏ.
         let exact = 137_846_528_820.0 / 1_048_576.0;
-        assert_relative_eq!(moment_of_phasor_sum(2, 20), exact, max_relative = 1e-13);
+        assert_relative(moment_of_phasor_sum(2, 20), exact, 1e-13);
     }
 }

@@ -113,8 +113,8 @@ fn saturation(y: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use approx::assert_relative_eq;
     use proptest::prelude::*;
+    use tem00_testkit::assert_absolute;
 
     use super::*;
     use crate::GammaIntensity;
@@ -126,11 +126,11 @@ mod tests {
             let law = PartiallyPolarised::new(degree).unwrap();
             // exp(−2 · 40/1.7) = 4e−21 lies beyond; the steeper exponential falls by e in 0.15.
             let moment = |k| integrate(|x| law.density(x) * x.powi(k), [0.0, 40.0], 0.5);
-            assert_relative_eq!(moment(0), 1.0, epsilon = 1e-13);
-            assert_relative_eq!(moment(1), 1.0, epsilon = 1e-13);
-            assert_relative_eq!((moment(2) - 1.0).sqrt(), law.contrast(), epsilon = 1e-13);
+            assert_absolute(moment(0), 1.0, 1e-13);
+            assert_absolute(moment(1), 1.0, 1e-13);
+            assert_absolute((moment(2) - 1.0).sqrt(), law.contrast(), 1e-13);
             // Five digits worked out by hand.
-            assert_relative_eq!(law.contrast(), contrast, epsilon = 5e-6);
+            assert_absolute(law.contrast(), contrast, 5e-6);
         }
     }
 
@@ -140,7 +140,7 @@ mod tests {
             let law = PartiallyPolarised::new(degree).unwrap();
             for intensity in [1e-3, 0.4, 1.0, 7.0] {
                 let area = integrate(|x| law.density(x), [0.0, intensity], 0.05);
-                assert_relative_eq!(law.cumulative(intensity), area, epsilon = 1e-14);
+                assert_absolute(law.cumulative(intensity), area, 1e-14);
             }
         }
     }
@@ -153,18 +153,14 @@ mod tests {
         );
         let two = GammaIntensity::new(2.0).unwrap();
         for x in [-1.0, 0.0, 0.1, 1.0, 5.0, 800.0] {
-            assert_relative_eq!(none.density(x), two.density(x), epsilon = 1e-14);
-            assert_relative_eq!(none.cumulative(x), two.cumulative(x), epsilon = 1e-14);
-            assert_relative_eq!(all.density(x), exponential_density(x), epsilon = 1e-15);
-            assert_relative_eq!(
-                all.cumulative(x),
-                exponential_cumulative(x),
-                epsilon = 1e-15
-            );
+            assert_absolute(none.density(x), two.density(x), 1e-14);
+            assert_absolute(none.cumulative(x), two.cumulative(x), 1e-14);
+            assert_absolute(all.density(x), exponential_density(x), 1e-15);
+            assert_absolute(all.cumulative(x), exponential_cumulative(x), 1e-15);
         }
         // The closed forms join: 1 − P changes the law by as much.
         let nearly = PartiallyPolarised::new(1.0 - 1e-12).unwrap();
-        assert_relative_eq!(nearly.density(0.7), all.density(0.7), epsilon = 1e-11);
+        assert_absolute(nearly.density(0.7), all.density(0.7), 1e-11);
     }
 
     proptest! {

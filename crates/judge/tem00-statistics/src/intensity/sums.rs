@@ -147,10 +147,10 @@ impl IncoherentSum {
 
 #[cfg(test)]
 mod tests {
-    use approx::assert_relative_eq;
     use proptest::prelude::*;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
+    use tem00_testkit::{assert_absolute, assert_relative};
 
     use super::*;
     use crate::{GammaIntensity, PartiallyPolarised, exponential_density, kolmogorov_smirnov};
@@ -179,15 +179,10 @@ mod tests {
         for x in [0.2, 0.9, 2.0, 9.0] {
             let (density, cumulative) = by_partial_fractions(&shares, x);
             // The fractions cancel four digits.
-            assert_relative_eq!(
-                law.density(x),
-                density,
-                epsilon = 1e-13,
-                max_relative = 1e-12
-            );
-            assert_relative_eq!(law.cumulative(x), cumulative, epsilon = 1e-13);
+            assert_absolute(law.density(x), density, 1e-13 + 1e-12 * density);
+            assert_absolute(law.cumulative(x), cumulative, 1e-13);
         }
-        assert_relative_eq!(law.contrast(), 0.365_f64.sqrt(), max_relative = 1e-15);
+        assert_relative(law.contrast(), 0.365_f64.sqrt(), 1e-15);
     }
 
     #[test]
@@ -197,15 +192,10 @@ mod tests {
             let gamma = GammaIntensity::new(f64::from(count)).unwrap();
             for x in [1e-3, 0.3, 1.0, 2.5] {
                 // Relative, from 1e−180 on: n k roundings of some 1e−16, and the exponent of Γ.
-                assert_relative_eq!(
-                    law.density(x),
-                    gamma.density(x),
-                    epsilon = 0.0,
-                    max_relative = 1e-12
-                );
-                assert_relative_eq!(law.cumulative(x), gamma.cumulative(x), epsilon = 1e-13);
+                assert_relative(law.density(x), gamma.density(x), 1e-12);
+                assert_absolute(law.cumulative(x), gamma.cumulative(x), 1e-13);
             }
-            assert_relative_eq!(law.contrast(), gamma.contrast(), max_relative = 1e-14);
+            assert_relative(law.contrast(), gamma.contrast(), 1e-14);
         }
     }
 
@@ -218,8 +208,8 @@ mod tests {
             let gamma = GammaIntensity::new(f64::from(count)).unwrap();
             for x in [0.93, 1.0, 1.04] {
                 let (density, cumulative) = (gamma.density(x), gamma.cumulative(x));
-                assert_relative_eq!(law.density(x), density, max_relative = tolerance);
-                assert_relative_eq!(law.cumulative(x), cumulative, max_relative = tolerance);
+                assert_relative(law.density(x), density, tolerance);
+                assert_relative(law.cumulative(x), cumulative, tolerance);
             }
         }
     }
@@ -234,8 +224,8 @@ mod tests {
             (1.002, 54.026_860_182_309, 0.977_195_904_101_23),
         ];
         for (x, density, cumulative) in reference {
-            assert_relative_eq!(law.density(x), density, max_relative = 1e-9);
-            assert_relative_eq!(law.cumulative(x), cumulative, max_relative = 1e-9);
+            assert_relative(law.density(x), density, 1e-9);
+            assert_relative(law.cumulative(x), cumulative, 1e-9);
         }
     }
 
@@ -248,8 +238,8 @@ mod tests {
         let law = IncoherentSum::new(&weights).unwrap();
         for x in [0.3, 1.0, 1.7, 8.0, 40.0] {
             let (density, cumulative) = by_partial_fractions(&shares, x);
-            assert_relative_eq!(law.density(x), density, max_relative = 1e-12);
-            assert_relative_eq!(law.cumulative(x), cumulative, epsilon = 1e-13);
+            assert_relative(law.density(x), density, 1e-12);
+            assert_absolute(law.cumulative(x), cumulative, 1e-13);
         }
     }
 
@@ -260,13 +250,8 @@ mod tests {
             let polarised = PartiallyPolarised::new(degree).unwrap();
             for x in [1e-8, 0.1, 1.0, 12.0, 300.0] {
                 // At P → 1 the rounding of 1 − P is 1e−16 / 1e−6.
-                assert_relative_eq!(
-                    law.density(x),
-                    polarised.density(x),
-                    epsilon = 0.0,
-                    max_relative = 1e-10
-                );
-                assert_relative_eq!(law.cumulative(x), polarised.cumulative(x), epsilon = 1e-14);
+                assert_relative(law.density(x), polarised.density(x), 1e-10);
+                assert_absolute(law.cumulative(x), polarised.cumulative(x), 1e-14);
             }
         }
     }
@@ -276,11 +261,11 @@ mod tests {
         let law = IncoherentSum::new(&[3.0, 0.0, 1e-40]).unwrap();
         for x in [0.0, 0.5, 700.0] {
             let exact = exponential_density(x);
-            assert_relative_eq!(law.density(x), exact, epsilon = 0.0, max_relative = 1e-13);
+            assert_relative(law.density(x), exact, 1e-13);
         }
         // 1e−25 of another pattern bends only the first 1e−24.
         let law = IncoherentSum::new(&[1.0, 1e-25]).unwrap();
-        assert_relative_eq!(law.density(0.5), (-0.5_f64).exp(), max_relative = 1e-13);
+        assert_relative(law.density(0.5), (-0.5_f64).exp(), 1e-13);
     }
 
     #[test]

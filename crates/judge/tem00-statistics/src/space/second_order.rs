@@ -116,7 +116,7 @@ pub(crate) fn pixels_per_contrast_sample(speckle_size: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use approx::assert_relative_eq;
+    use tem00_testkit::{assert_absolute, assert_relative};
 
     use super::*;
 
@@ -142,15 +142,15 @@ mod tests {
             (2.0, 0.004_570_227_665_524_384),
         ];
         for (lag, value) in table {
-            assert_relative_eq!(airy_autocovariance(lag), value, epsilon = 1e-15);
-            assert_relative_eq!(airy_autocovariance(-lag), value, epsilon = 1e-15);
+            assert_absolute(airy_autocovariance(lag), value, 1e-15);
+            assert_absolute(airy_autocovariance(-lag), value, 1e-15);
         }
         assert!(airy_autocovariance(f64::INFINITY).abs() < f64::MIN_POSITIVE);
     }
 
     #[test]
     fn half_width_and_first_zero_are_where_they_are_said_to_be() {
-        assert_relative_eq!(airy_autocovariance(AIRY_HALF_WIDTH), 0.5, epsilon = 1e-14);
+        assert_absolute(airy_autocovariance(AIRY_HALF_WIDTH), 0.5, 1e-14);
         assert!(airy_autocovariance(AIRY_FIRST_ZERO) < 1e-30, "no zero");
     }
 
@@ -164,10 +164,10 @@ mod tests {
                 1.0,
                 20_000,
             );
-            assert_relative_eq!(transform, airy_autocovariance(lag), epsilon = 1e-8);
+            assert_absolute(transform, airy_autocovariance(lag), 1e-8);
         }
         assert!(airy_power_spectrum(1.0).abs() < f64::MIN_POSITIVE);
-        assert_relative_eq!(airy_power_spectrum(0.0), COHERENCE_AREA, epsilon = 1e-15);
+        assert_absolute(airy_power_spectrum(0.0), COHERENCE_AREA, 1e-15);
     }
 
     #[test]
@@ -177,30 +177,30 @@ mod tests {
         let end = 300.0;
         let tail = 8.0 / (PI.powi(3) * end);
         let area = integral_over_plane(airy_autocovariance, end, 300_000) + tail;
-        assert_relative_eq!(area, COHERENCE_AREA, epsilon = 1e-6);
+        assert_absolute(area, COHERENCE_AREA, 1e-6);
     }
 
     #[test]
     fn contrast_sample_is_the_squared_autocovariance_summed_over_pixels() {
         // c² falls as r⁻⁶: 6e−8 lies beyond r = 10.
         let area = integral_over_plane(|r| airy_autocovariance(r).powi(2), 10.0, 20_000);
-        assert_relative_eq!(squared_airy_area(), area, epsilon = 1e-6);
+        assert_absolute(squared_airy_area(), area, 1e-6);
         // Both branches at the switch.
-        assert_relative_eq!(
+        assert_relative(
             pixels_per_contrast_sample(2.0 - 1e-12),
             pixels_per_contrast_sample(2.0),
-            max_relative = 2e-5
+            2e-5,
         );
-        assert_relative_eq!(pixels_per_contrast_sample(1e-3), 1.0, epsilon = 1e-6);
+        assert_absolute(pixels_per_contrast_sample(1e-3), 1.0, 1e-6);
     }
 
     #[test]
     fn spread_of_the_squared_contrast_is_1_530_over_the_width() {
         // κ = 0.0574525 by quadrature of chat².
         let kappa = integral_over_plane(|r| disc_overlap(r).powi(2), 1.0, 20_000) / (2.0 * PI);
-        assert_relative_eq!(kappa, 0.057_452_5, epsilon = 1e-7);
+        assert_absolute(kappa, 0.057_452_5, 1e-7);
         let spread = 8.0 / PI * (2.0 * PI * kappa).sqrt() / 64.0;
-        assert_relative_eq!(contrast_squared_spread(64.0), spread, max_relative = 1e-7);
-        assert_relative_eq!(contrast_squared_spread(1.0), 1.530, epsilon = 5e-4);
+        assert_relative(contrast_squared_spread(64.0), spread, 1e-7);
+        assert_absolute(contrast_squared_spread(1.0), 1.530, 5e-4);
     }
 }

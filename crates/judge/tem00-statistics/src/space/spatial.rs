@@ -67,8 +67,8 @@ pub fn area_fraction_above(level: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use approx::assert_relative_eq;
     use tem00_numerics::Grid;
+    use tem00_testkit::{assert_absolute, assert_relative};
 
     use super::*;
     use crate::{airy_autocovariance, laws::COHERENCE_AREA, synthetic::speckle_tile};
@@ -112,7 +112,7 @@ mod tests {
         // c = 1 − ½ ⟨I_x²⟩ r² + O(r⁴), here 5π⁴/192 r⁴.
         let r = 1e-3;
         let curvature = 2.0 * (1.0 - airy_autocovariance(r)) / (r * r);
-        assert_relative_eq!(curvature, MEAN_SQUARE_SLOPE, max_relative = 2e-6);
+        assert_relative(curvature, MEAN_SQUARE_SLOPE, 2e-6);
     }
 
     #[test]
@@ -123,7 +123,7 @@ mod tests {
         // 1 − (5π²/96)(1/16)²·… = 0.2 % less, the corners of the lattice add 0.4 %.
         let samples = 2.0 * TILES as f64 * PI / 4.0 * (DIAMETER * DIAMETER) as f64;
         let tolerance = 3.3 * (5.0 / samples).sqrt() + 6e-3;
-        assert_relative_eq!(slope * H * H, MEAN_SQUARE_SLOPE, max_relative = tolerance);
+        assert_relative(slope * H * H, MEAN_SQUARE_SLOPE, tolerance);
     }
 
     #[test]
@@ -141,7 +141,7 @@ mod tests {
             // within h/16 are missed, of the order of 1 %, and the lattice mask is 0.2 % off.
             let count = exact / H * TILES as f64 * (SIZE * SIZE) as f64 / H;
             let tolerance = 3.3 / count.sqrt() + 0.012;
-            assert_relative_eq!(crossings, exact, max_relative = tolerance);
+            assert_relative(crossings, exact, tolerance);
         }
         assert!(level_crossings(-1.0).abs() < f64::MIN_POSITIVE);
         assert!(level_crossings(f64::INFINITY) < 1e-300);
@@ -163,14 +163,14 @@ mod tests {
             let samples = TILES as f64 * PI / 4.0 * (DIAMETER * DIAMETER) as f64;
             // Binomial, 3.3 σ; and 1/N = 1/800 of the fixed mean.
             let tolerance = 3.3 * (share * (1.0 - share) / samples).sqrt() + 1.0 / 800.0;
-            assert_relative_eq!(area, share, epsilon = tolerance);
+            assert_absolute(area, share, tolerance);
         }
-        assert_relative_eq!(area_fraction_above(-3.0), 1.0, epsilon = 1e-15);
+        assert_absolute(area_fraction_above(-3.0), 1.0, 1e-15);
     }
 
     #[test]
     fn densities_are_one_and_one_half_per_coherence_area() {
-        assert_relative_eq!(SPECKLE_DENSITY * COHERENCE_AREA, 1.0, epsilon = 1e-15);
-        assert_relative_eq!(VORTEX_DENSITY * COHERENCE_AREA, 0.5, epsilon = 1e-15);
+        assert_absolute(SPECKLE_DENSITY * COHERENCE_AREA, 1.0, 1e-15);
+        assert_absolute(VORTEX_DENSITY * COHERENCE_AREA, 0.5, 1e-15);
     }
 }

@@ -1,3 +1,5 @@
+use tem00_testkit::{assert_absolute, assert_relative};
+
 use super::*;
 use crate::random::{Purpose, Random};
 
@@ -33,10 +35,7 @@ fn correlation_and_its_two_errors_are_those_of_many_trials() {
             let by_count = correlation
                 .estimate_from_speckles(independent)
                 .expect("light");
-            assert!(
-                (by_scatter.value - by_count.value).abs() < 1e-15,
-                "one value"
-            );
+            assert_absolute(by_scatter.value, by_count.value, 1e-15);
             values.push(by_scatter.value);
             jackknife += by_scatter.standard_error.powi(2) / TRIALS as f64;
             closed += by_count.standard_error.powi(2) / TRIALS as f64;
@@ -49,11 +48,7 @@ fn correlation_and_its_two_errors_are_those_of_many_trials() {
         let variance = mean.standard_error.powi(2) * TRIALS as f64;
         // The variance over 1000 trials scatters by √(2/1000) = 4.5 %; four of them. The jackknife
         // of 8 repetitions is biased upwards by 1/8 at most, the closed form of first order by 1/K.
-        assert!(
-            (closed / variance - 1.0).abs() < 0.18,
-            "{}",
-            closed / variance
-        );
+        assert_relative(closed, variance, 0.18);
         let ratio = jackknife / variance;
         assert!(ratio > 0.82 && ratio < 1.31, "γ = {gamma}: {ratio}");
     }

@@ -1,5 +1,5 @@
-use approx::assert_relative_eq;
 use proptest::prelude::*;
+use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
 
@@ -60,15 +60,12 @@ fn the_beam_has_its_radius_and_its_curvature() {
         let at_radius = axis + radius * DVec3::new(0.6, 0.8, 0.0);
         let fall = beam.amplitude_at(at_radius).norm() / beam.amplitude_at(axis).norm();
         // A dozen roundings.
-        assert_relative_eq!(fall, (-1.0_f64).exp(), max_relative = 1e-13, epsilon = 0.0);
+        assert_relative(fall, (-1.0_f64).exp(), 1e-13);
         let curvature = z / (z * z + rayleigh_range * rayleigh_range);
         // The phase is quadratic: what is left is its rounding, 1e−10 rad of 2π z/λ over the square
         // of the step.
         let measured = phase_curvature(&beam, axis, DVec3::X * 50e-6) / K;
-        assert!(
-            (measured - curvature).abs() < 4.0 * 1e-9 / (K * 2.5e-9),
-            "1/R = {measured} at {z}, not {curvature}"
-        );
+        assert_absolute(measured, curvature, 4.0 * 1e-9 / (K * 2.5e-9));
     }
 }
 
@@ -106,10 +103,7 @@ fn the_gouy_phase_is_a_quarter_turn_per_rayleigh_range_pair() {
         (at(rayleigh_range).arg() + 0.25 * PI).abs() < 1e-9,
         "behind"
     );
-    assert!(
-        (at(-rayleigh_range).arg() - 0.25 * PI).abs() < 1e-9,
-        "before"
-    );
+    assert_absolute(at(-rayleigh_range).arg(), 0.25 * PI, 1e-9);
 }
 
 #[test]
@@ -120,14 +114,11 @@ fn the_fan_has_two_curvatures() {
         let at = DVec3::new(0.0, 0.0, distance);
         // The cosine series of the slant distance leaves (step/ρ)²/4 = 4e−7; rounding as above.
         let around = phase_curvature(&fan, at, DVec3::X * 200e-6) / K;
-        assert_relative_eq!(around, 1.0 / distance, max_relative = 1e-5, epsilon = 0.0);
+        assert_relative(around, 1.0 / distance, 1e-5);
         let across = phase_curvature(&fan, at, DVec3::Y * 20e-6) / K;
         let zeta = distance - 0.2;
         let expected = zeta / (zeta * zeta + rayleigh_range * rayleigh_range);
-        assert!(
-            (across - expected).abs() < 1e-3,
-            "1/R = {across} at {distance}, not {expected}"
-        );
+        assert_absolute(across, expected, 1e-3);
     }
 }
 
@@ -171,15 +162,10 @@ fn every_slice_of_the_fan_carries_the_same_power() {
     let in_waist = 50e-6 * (0.5 * PI).sqrt();
     for slant in [0.05, 0.2, 0.7] {
         // The trapezoidal rule is exact for a Gaussian; the rest is rounding.
-        assert_relative_eq!(
-            power(slant, 0.0),
-            in_waist,
-            max_relative = 1e-12,
-            epsilon = 0.0
-        );
+        assert_relative(power(slant, 0.0), in_waist, 1e-12);
         // At the edge of the fan irradiance has fallen to 1/e².
         let edge = in_waist * (-2.0_f64).exp();
-        assert_relative_eq!(power(slant, 0.3), edge, max_relative = 1e-12, epsilon = 0.0);
+        assert_relative(power(slant, 0.3), edge, 1e-12);
     }
 }
 

@@ -1,7 +1,7 @@
 use core::f64::consts::PI;
 
 use proptest::prelude::*;
-use tem00_testkit::refuses;
+use tem00_testkit::{assert_absolute, refuses};
 
 use super::*;
 use crate::{DMat3, Illumination, Lens, RigidMotion, RoughSurface, Scatterer};
@@ -125,10 +125,7 @@ fn a_window_off_the_axis_is_the_perfect_image_of_every_point() {
             // Two lattices differ at the rim of the pupil, here of 32 samples: 100 cells of 800, off by
             // 0.1 each, are 1.2e−3 for each point.
             let tolerance = 3e-3;
-            assert!(
-                (found - expected).abs() < tolerance * largest,
-                "{found} at ({x}, {y}) about {centre}, not {expected}"
-            );
+            assert_absolute(found, expected, tolerance * largest);
         }
     }
 }
@@ -158,10 +155,7 @@ fn a_point_out_of_focus_fades_as_the_pupil_integral_says() {
         });
         let expected = simpson.sum::<Complex<f64>>().norm() / (3.0 * f64::from(INTERVALS));
         // The rim of the lattice pupil, as for the Airy pattern, whose cells now hold up to 0.4 rad.
-        assert!(
-            (found - expected).abs() < 1e-3 / depth,
-            "{found} at {depth}, not {expected}"
-        );
+        assert_absolute(found, expected, 1e-3 / depth);
         // The law for a path that is linear in the area; the next term, (p/L)⁴ L/8 = 2e−4 wavelengths
         // at the edge, is smaller still.
         let sinc = if i == 0 {
@@ -169,10 +163,7 @@ fn a_point_out_of_focus_fades_as_the_pupil_integral_says() {
         } else {
             (PI * turns).sin() / (PI * turns)
         };
-        assert!(
-            (found * depth - sinc.abs()).abs() < 2e-3,
-            "{found} at {turns}, not {sinc}"
-        );
+        assert_absolute(found * depth, sinc.abs(), 2e-3);
     }
 }
 

@@ -1,4 +1,5 @@
 use std::sync::Mutex;
+use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
 use crate::{Amplitudes, Arrangement, PatchDescription, Roughness, Scatterer};
@@ -42,10 +43,7 @@ fn two_points_make_fringes_where_their_paths_differ_by_whole_wavelengths() {
         let expected = 1.0 / (r1 * r1) + 1.0 / (r2 * r2) + 2.0 * phase.cos() / (r1 * r2);
         let intensity = lit.field_at(p).norm_sqr();
         // The phase is rounded to 2π · 4.6e5 · 2⁻⁵² = 6e−10 for each path.
-        assert!(
-            (intensity - expected).abs() < 4.0 * 2e-9 / (0.3 * 0.3),
-            "{intensity} at {p}, not {expected}"
-        );
+        assert_absolute(intensity, expected, 4.0 * 2e-9 / (0.3 * 0.3));
     }
 }
 
@@ -57,11 +55,7 @@ fn fringes_of_two_points_are_as_far_apart_as_in_young_s_experiment() {
     // Bright on the axis, dark half a fringe away: the next term of the path is (x/L)²/2 = 1e−6.
     assert!((at(0.0) / (4.0 / 0.25) - 1.0).abs() < 1e-6, "{}", at(0.0));
     assert!(at(0.5 * spacing) / at(0.0) < 1e-8, "{}", at(0.5 * spacing));
-    assert!(
-        (at(spacing) / at(0.0) - 1.0).abs() < 2e-5,
-        "{}",
-        at(spacing)
-    );
+    assert_relative(at(spacing), at(0.0), 2e-5);
 }
 
 #[test]
@@ -116,10 +110,7 @@ fn unit_scatterers_lower_the_squared_contrast_by_one_over_their_number() {
         let measured = contrast_squared(scatterers, amplitudes);
         // Of exponential intensity, the squared contrast of n samples scatters by √(8/n) = 0.020;
         // of fewer phasors by less. Four of them.
-        assert!(
-            (measured - expected).abs() < 0.08,
-            "{measured} for {scatterers} {amplitudes:?}, not {expected}"
-        );
+        assert_absolute(measured, expected, 0.08);
     }
 }
 

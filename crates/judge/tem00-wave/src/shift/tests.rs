@@ -1,3 +1,5 @@
+use tem00_testkit::assert_absolute;
+
 use super::*;
 use crate::random::{Purpose, Random};
 
@@ -99,10 +101,7 @@ fn correlation_is_what_is_left_of_a_displaced_pattern() {
         // √(1 − ρ²) / (ρ k √K) with the rms wave number k = (2π/5)/2; four of them.
         let (rho, root) = (f64::from(rho), (1_200.0 * f64::from(SEEDS)).sqrt());
         let scatter = (1.0 - rho * rho) / root;
-        assert!(
-            (correlation - rho).abs() < 4.0 * scatter,
-            "{correlation}, not {rho}"
-        );
+        assert_absolute(correlation, rho, 4.0 * scatter);
         let scatter = (1.0 - rho * rho).sqrt() / (rho * 0.628 * root);
         assert!(
             error.abs().max_element() < 4.0 * scatter,

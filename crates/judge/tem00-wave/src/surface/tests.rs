@@ -1,4 +1,5 @@
 use proptest::prelude::*;
+use tem00_testkit::assert_absolute;
 
 use super::*;
 use crate::{Arrangement, DVec2};
@@ -152,10 +153,7 @@ fn heights_have_their_variance_and_correlation() {
         } else {
             (-(lag as f64 * 10e-6 / length).powi(2)).exp()
         };
-        assert!(
-            (product - expected).abs() < 0.29,
-            "⟨h h'⟩ = {product}, not {expected}, at {length:e} and {lag}"
-        );
+        assert_absolute(product, expected, 0.29);
     }
 }
 
@@ -189,11 +187,7 @@ fn heights_of_one_large_surface_have_the_right_correlation_at_all_lags() {
         let lag2 = (dx * dx + dy * dy) as f64 * 100e-12;
         let expected = (-lag2 / 400e-12).exp();
         // √(2/6400) = 1.8 % for the variance, less elsewhere; four of them.
-        assert!(
-            (sum / count - expected).abs() < 0.07,
-            "{} at ({dx}, {dy}), not {expected}",
-            sum / count
-        );
+        assert_absolute(sum / count, expected, 0.07);
     }
 }
 

@@ -155,6 +155,8 @@ fn bisected(k: RadialDistortion, mut low: f64, mut high: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use tem00_testkit::assert_relative;
+
     use super::*;
 
     #[test]
@@ -180,8 +182,7 @@ mod tests {
                 );
             }
             assert!(image(1.001 * limit) < image(limit), "{k1}, {k2}, {k3}");
-            let reach = distortion.reach();
-            assert!((reach / image(limit) - 1.0).abs() < 1e-14, "{reach}");
+            assert_relative(distortion.reach(), image(limit), 1e-14);
         }
         for (k1, k2, k3) in [(1.0, 0.0, 0.0), (-1.0, 1.0, 0.0), (0.0, -1.0, 10.0)] {
             let distortion = Distortion::new(RadialDistortion { k1, k2, k3 });

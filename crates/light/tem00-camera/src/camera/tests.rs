@@ -1,5 +1,5 @@
-use approx::assert_relative_eq;
 use proptest::prelude::*;
+use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
 use crate::{CameraDescription, RadialDistortion, SensorTilt};
@@ -40,8 +40,8 @@ fn crooked() -> CameraDescription {
 fn the_axis_meets_the_middle_of_the_image() {
     let camera = Camera::new(description()).unwrap();
     let middle = camera.project(description().look_at).unwrap();
-    assert_relative_eq!(middle.x, 320.0, epsilon = 1e-9);
-    assert_relative_eq!(middle.y, 240.0, epsilon = 1e-9);
+    assert_absolute(middle.x, 320.0, 1e-9);
+    assert_absolute(middle.y, 240.0, 1e-9);
 }
 
 #[test]
@@ -52,7 +52,7 @@ fn up_in_the_scene_is_up_in_the_image() {
         .unwrap();
     assert!(above.y < 240.0, "y grows downwards, got {above}");
     let axes = camera.axes();
-    assert_relative_eq!(axes.determinant(), 1.0, epsilon = 1e-12);
+    assert_absolute(axes.determinant(), 1.0, 1e-12);
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn pixels_see_the_solid_angle_of_the_sensor() {
         }
     }
     // The midpoint rule errs by (pitch/d)²/24 · ∂²/∂x² cos³ ≈ 1e−9.
-    assert_relative_eq!(sum, exact, max_relative = 1e-7);
+    assert_relative(sum, exact, 1e-7);
 }
 
 proptest! {

@@ -1,8 +1,8 @@
 use core::f64::consts::PI;
 
-use approx::assert_relative_eq;
 use proptest::prelude::*;
 use tem00_numerics::{disc_overlap, jinc, quadrature::integrate};
+use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
 
@@ -38,9 +38,9 @@ fn tilt_and_height_factor_are_those_of_the_plane_of_incidence() {
         let cell = cell.unwrap();
         let [i, o] = [incidence, observation].map(f64::to_radians);
         let tilt = (i.sin() + o.sin()).abs() / o.cos();
-        assert_relative_eq!(cell.tilt().length(), tilt, epsilon = 1e-12);
+        assert_absolute(cell.tilt().length(), tilt, 1e-12);
         let factor = (1.0 + (i - o).cos()) / o.cos();
-        assert_relative_eq!(cell.height_factor(), factor, max_relative = 1e-12);
+        assert_relative(cell.height_factor(), factor, 1e-12);
         assert!(cell.tilt().dot(direction(observation)).abs() < 1e-12);
     }
 }
@@ -80,7 +80,7 @@ fn correlated_heights_are_the_sum_of_their_powers() {
             let row = |y: f64| integrate(|x| density(x, y), [-1.0, 1.0], 0.25);
             sum += power * 2.0 * integrate(row, [0.0, 1.0], 0.25);
         }
-        assert_relative_eq!(cell.squared_correlation(kappa), sum, max_relative = 2e-4);
+        assert_relative(cell.squared_correlation(kappa), sum, 2e-4);
     }
 }
 
@@ -94,7 +94,7 @@ fn far_out_of_focus_a_tilt_acts_by_the_blur() {
     for kappa in [2e3, 4e3, 6e3] {
         let x = kappa * cell.tilt().length() * 30e-3 * 0.025;
         let found = cell.field_correlation(kappa).norm();
-        assert_relative_eq!(found, jinc(x).abs(), epsilon = 0.01);
+        assert_absolute(found, jinc(x).abs(), 0.01);
     }
 }
 

@@ -1,4 +1,4 @@
-use approx::assert_relative_eq;
+use tem00_testkit::assert_relative;
 
 use super::*;
 
@@ -10,8 +10,8 @@ fn a_small_matrix_has_its_eigenvalues() {
     let mut found = hermitian_eigenvalues(matrix, 2);
     found.sort_unstable_by(f64::total_cmp);
     let root = 5.25_f64.sqrt();
-    assert_relative_eq!(found[0], 2.0 - root, max_relative = 1e-14);
-    assert_relative_eq!(found[1], 2.0 + root, max_relative = 1e-14);
+    assert_relative(found[0], 2.0 - root, 1e-14);
+    assert_relative(found[1], 2.0 + root, 1e-14);
 }
 
 #[test]
@@ -21,7 +21,7 @@ fn a_kernel_of_phases_has_one_eigenvalue() {
     let matrix = (0..n * n).map(|at| phase(at / n) * phase(at % n).conj());
     let mut found = hermitian_eigenvalues(matrix.collect(), n);
     found.sort_unstable_by(f64::total_cmp);
-    assert_relative_eq!(found[n - 1], 20.0, max_relative = 1e-14);
+    assert_relative(found[n - 1], 20.0, 1e-14);
     assert!(
         found[..n - 1].iter().all(|value| value.abs() < 1e-13),
         "{found:?}"

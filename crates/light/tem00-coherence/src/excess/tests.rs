@@ -1,4 +1,5 @@
 use tem00_numerics::disc_overlap;
+use tem00_testkit::assert_absolute;
 
 use super::*;
 use crate::{
@@ -48,8 +49,7 @@ fn an_endless_relief_spreads_no_paths() {
             for (phase, shift) in [(0.3, 0.0), (2.0, 0.4), (20.0, 0.9), (3.0, 1.2)] {
                 let all = kernel.transform(shift) * (1.0 - (-f64::powi(phase, 2)).exp());
                 // 4/π² of a speckle's light lies farther than a lag, in speckles, from its middle.
-                let error = table.at(phase, shift) - all;
-                assert!(error.abs() < 2e-5, "{length:e} {phase} {shift}: {error:e}");
+                assert_absolute(table.at(phase, shift), all, 2e-5);
             }
         }
     }

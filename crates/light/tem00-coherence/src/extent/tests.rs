@@ -1,4 +1,5 @@
 use tem00_numerics::quadrature::integrate;
+use tem00_testkit::assert_relative;
 
 use super::*;
 use crate::{
@@ -132,10 +133,7 @@ fn a_disc_is_the_sum_of_its_points_with_heights_and_a_linewidth_too() {
             };
             let (points, disc) = (of(&points), of(&SourceExtent::disc(0.015).unwrap()));
             // Each point stands for its neighbourhood, over which the overlap falls a little.
-            assert!(
-                (disc / points - 1.0).abs() < 0.005,
-                "law {i}, {linewidth:e}, {rms_height:e}: {disc}, {points}"
-            );
+            assert_relative(disc, points, 0.005);
             let point = of(&SourceExtent::default());
             assert!(disc < 0.95 * point, "law {i}: {disc}, {point}");
         }

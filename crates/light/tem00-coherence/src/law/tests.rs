@@ -1,8 +1,8 @@
-use approx::assert_relative_eq;
 use core::f64::consts::PI;
 use libm::{erf, erfc};
 use num_complex::Complex;
 use tem00_numerics::jinc;
+use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
 use crate::{CellGeometry, DVec3, LineShape, Relief};
@@ -66,18 +66,18 @@ fn without_a_tilt_contrasts_have_closed_forms() {
     for (shape, squared) in squares {
         let line = &lines(shape);
         let found = contrast(line, &cell);
-        assert_relative_eq!(found * found, squared, max_relative = 1e-8);
+        assert_relative(found * found, squared, 1e-8);
         // Grains are those of one wavelength, and their covariance that of Airy's pattern.
         let speckle = PolychromaticSpeckle { line, cell: &cell };
         for (lag, airy) in [([0.0, 0.0], 1.0), ([0.5, 0.0], jinc(0.5 * PI).powi(2))] {
             let found = speckle.autocovariance(lag);
-            assert_relative_eq!(found, squared * airy, max_relative = 1e-7);
+            assert_relative(found, squared * airy, 1e-7);
         }
     }
     let two = SpectralLine::from_peaks(&[[450e-9, 2.0], [453e-9, 1.0]]).unwrap();
     let kappa = 2.0 * PI * (1.0 / 450e-9 - 1.0 / 453e-9);
     let squared = (4.0 + 1.0 + 4.0 * (-(kappa * r).powi(2)).exp()) / 9.0;
-    assert_relative_eq!(contrast(&two, &cell).powi(2), squared, max_relative = 1e-12);
+    assert_relative(contrast(&two, &cell).powi(2), squared, 1e-12);
 }
 
 #[test]
@@ -123,12 +123,8 @@ fn a_table_of_contrasts_and_line_noise_is_met() {
                 line: &line,
                 cell: &cell,
             };
-            assert_relative_eq!(speckle.contrast(), contrasts[i], epsilon = 1.1e-3);
-            assert_relative_eq!(
-                speckle.line_noise_ratio(Rows::Thin),
-                noises[i],
-                epsilon = 1.1e-3
-            );
+            assert_absolute(speckle.contrast(), contrasts[i], 1.1e-3);
+            assert_absolute(speckle.line_noise_ratio(Rows::Thin), noises[i], 1.1e-3);
         }
     }
 }
@@ -148,7 +144,7 @@ fn shapes_of_one_width_differ() {
         (shaped(LineShape::Rectangular), 0.835),
     ];
     for (line, expected) in lines {
-        assert_relative_eq!(contrast(&line, &cell), expected, epsilon = 6e-4);
+        assert_absolute(contrast(&line, &cell), expected, 6e-4);
     }
 }
 
@@ -175,16 +171,16 @@ fn a_gaussian_line_has_an_approximate_closed_form() {
             let x = linear * sigma / (tilt * q.sqrt());
             ((x * x).exp() * erfc(x) / q.sqrt()).sqrt()
         };
-        assert_relative_eq!(speckle.contrast(), approximate(2.40, 2.80), epsilon = 3e-3);
-        assert_relative_eq!(
+        assert_absolute(speckle.contrast(), approximate(2.40, 2.80), 3e-3);
+        assert_absolute(
             speckle.line_noise_ratio(Rows::Thin),
             approximate(1.30, 2.31),
-            epsilon = 4e-3
+            4e-3,
         );
-        assert_relative_eq!(
+        assert_absolute(
             speckle.line_noise_ratio(Rows::Tall),
             approximate(1.05, 1.97),
-            epsilon = 4e-3
+            4e-3,
         );
     }
 }
@@ -224,16 +220,16 @@ fn frames_and_grains_of_a_tilted_cell() {
     };
     for displacement in [[0.0, 0.0], [0.25, 0.0], [0.0, 0.25], [0.5, 0.0], [0.0, 0.5]] {
         let expected = mean(displacement, [0.0, 0.0]);
-        assert_relative_eq!(speckle.covariance(displacement), expected, epsilon = 4e-3);
+        assert_absolute(speckle.covariance(displacement), expected, 4e-3);
     }
     for lag in [[1.0, 0.0], [0.0, 1.0], [0.4, 0.3]] {
         let expected = mean([0.0, 0.0], lag);
-        assert_relative_eq!(speckle.autocovariance(lag), expected, epsilon = 3e-3);
+        assert_absolute(speckle.autocovariance(lag), expected, 3e-3);
     }
-    assert_relative_eq!(
+    assert_relative(
         speckle.covariance([0.0, 0.0]),
         speckle.contrast().powi(2),
-        max_relative = 1e-12
+        1e-12,
     );
 }
 
@@ -247,10 +243,10 @@ fn long_relief_spreads_no_paths() {
         };
         contrast(&line, &cell.clone().with_relief(relief).unwrap())
     };
-    assert_relative_eq!(long(1e-3), contrast(&line, &cell), epsilon = 1e-3);
+    assert_absolute(long(1e-3), contrast(&line, &cell), 1e-3);
     // Waves over scatterers, whose errors are 0.006, 0.007, 0.005 and 0.004.
     for (length, waves) in [(0.5, 0.757), (1.0, 0.815), (2.0, 0.885), (4.0, 0.937)] {
-        assert_relative_eq!(long(length), waves, epsilon = 3e-3);
+        assert_absolute(long(length), waves, 3e-3);
     }
     assert!(long(300.0) > 0.999);
 }
@@ -260,7 +256,7 @@ fn a_defocused_cell_mixes_the_paths_of_its_blur() {
     let (line, cell) = (gaussian(450e-9, 20e-9), cell(450e-9, 0.0, 30.0, 0.0));
     for defocus in [1.5e-3, -1.5e-3] {
         let cell = cell.clone().with_defocus(defocus).unwrap();
-        assert_relative_eq!(contrast(&line, &cell), 0.401, epsilon = 1e-3);
+        assert_absolute(contrast(&line, &cell), 0.401, 1e-3);
     }
 }
 
@@ -272,12 +268,12 @@ fn a_table_of_displacements_has_the_closed_forms_until_the_pupils_part() {
         // Nodes are 1/96 apart, and f″ is 3 at most; of discs that part it grows, in the last cell, by a root.
         let along = 1.0 - 1.5 * shared + 0.5 * shared.powi(3);
         for side in [-distance, distance] {
-            assert_relative_eq!(thin(DVec2::new(side, 0.0)), along, epsilon = 5e-5);
+            assert_absolute(thin(DVec2::new(side, 0.0)), along, 5e-5);
         }
         let overlap = 2.0 / PI * (shared.acos() - shared * (1.0 - shared * shared).sqrt());
         for turn in [0.0, 0.7, 1.571, 2.4, -1.0] {
             let found = tall(distance * DVec2::from_angle(turn));
-            assert_relative_eq!(found, overlap, epsilon = 2e-4);
+            assert_absolute(found, overlap, 2e-4);
         }
     }
 }
@@ -292,16 +288,16 @@ fn rows_lie_between_thin_and_tall_ones() {
     let deviation = |rows| speckle.line_noise_ratio(rows);
     let [thin, tall] = [Rows::Thin, Rows::Tall].map(deviation);
     for none in [0.0, -1.0, f64::NAN] {
-        assert_relative_eq!(deviation(Rows::Height(none)), thin, epsilon = 1e-5);
+        assert_absolute(deviation(Rows::Height(none)), thin, 1e-5);
     }
-    assert_relative_eq!(deviation(Rows::Height(0.01)), thin, epsilon = 1e-4);
-    assert_relative_eq!(deviation(Rows::Height(39.0)), tall, epsilon = 3e-3);
-    assert_relative_eq!(deviation(Rows::Height(41.0)), tall, epsilon = 1e-5);
+    assert_absolute(deviation(Rows::Height(0.01)), thin, 1e-4);
+    assert_absolute(deviation(Rows::Height(39.0)), tall, 3e-3);
+    assert_absolute(deviation(Rows::Height(41.0)), tall, 1e-5);
     let heights = [0.01, 0.3, 1.0, 3.0, 8.0, 39.0];
     let between = heights.map(|height| deviation(Rows::Height(height)));
     assert!(between.is_sorted(), "{between:?}");
     // Waves: 0.831 ± 0.019.
-    assert_relative_eq!(between[4], 0.831, epsilon = 4e-3);
+    assert_absolute(between[4], 0.831, 4e-3);
 }
 
 #[test]
@@ -330,7 +326,7 @@ fn lines_too_narrow_for_a_reciprocal_are_of_one_wavelength() {
     ] {
         for linewidth in [5e-324, 1e-300, 1e-30] {
             let line = SpectralLine::new(450e-9, linewidth, shape).unwrap();
-            assert_relative_eq!(contrast(&line, &cell), 1.0, epsilon = 1e-9);
+            assert_absolute(contrast(&line, &cell), 1.0, 1e-9);
         }
     }
 }

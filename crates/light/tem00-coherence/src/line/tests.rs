@@ -1,7 +1,7 @@
 use core::cell::Cell;
 
-use approx::assert_relative_eq;
 use proptest::prelude::*;
+use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
 
@@ -21,7 +21,7 @@ fn coherence_lengths_have_closed_forms() {
     let factors = [(2.0 * LN_2 / PI).sqrt(), PI.recip(), 1.0];
     for (shape, factor) in SHAPES.into_iter().zip(factors) {
         let line = shaped(3e-9, shape);
-        assert_relative_eq!(line.coherence_length(), factor * unit, max_relative = 1e-12);
+        assert_relative(line.coherence_length(), factor * unit, 1e-12);
     }
     let single = SpectralLine::monochromatic(650e-9).unwrap();
     assert_eq!(single.coherence_length().to_bits(), f64::INFINITY.to_bits());
@@ -59,7 +59,7 @@ fn the_squared_coherence_is_the_transform_of_the_pairs() {
                     .sum();
                 sum += first.weight * second.weight * part;
             }
-            assert_relative_eq!(sum, line.squared_coherence(path), epsilon = 1e-9);
+            assert_absolute(sum, line.squared_coherence(path), 1e-9);
         }
     }
 }
@@ -69,7 +69,7 @@ fn a_cavity_is_coherent_again_after_a_round_trip() {
     let comb = SpectralLine::comb(450e-9, 1e-9, 21).unwrap();
     let spacing = 1e-9 / 20.0;
     let round_trip = 450e-9_f64.powi(2) / spacing;
-    assert_relative_eq!(comb.squared_coherence(round_trip), 1.0, epsilon = 1e-12);
+    assert_absolute(comb.squared_coherence(round_trip), 1.0, 1e-12);
     assert!(comb.squared_coherence(0.5 * round_trip) < 0.01);
     let modes = comb
         .with_linewidth(0.002e-9, LineShape::Lorentzian)
@@ -79,20 +79,20 @@ fn a_cavity_is_coherent_again_after_a_round_trip() {
         modes.squared_coherence(round_trip),
         alone.squared_coherence(round_trip),
     );
-    assert_relative_eq!(again, once, max_relative = 1e-12);
+    assert_relative(again, once, 1e-12);
 }
 
 #[test]
 fn spreads_are_those_of_the_shapes() {
     let full = TAU * 3e-9 / 650e-9_f64.powi(2);
     let gaussian = shaped(3e-9, LineShape::Gaussian).wave_number_spread();
-    assert_relative_eq!(gaussian, full / (8.0 * LN_2).sqrt(), max_relative = 1e-12);
+    assert_relative(gaussian, full / (8.0 * LN_2).sqrt(), 1e-12);
     let rectangular = shaped(3e-9, LineShape::Rectangular).wave_number_spread();
-    assert_relative_eq!(rectangular, full / 12.0_f64.sqrt(), max_relative = 1e-12);
+    assert_relative(rectangular, full / 12.0_f64.sqrt(), 1e-12);
     let two = SpectralLine::comb(650e-9, 3e-9, 2)
         .unwrap()
         .wave_number_spread();
-    assert_relative_eq!(two, 0.5 * full, max_relative = 1e-12);
+    assert_relative(two, 0.5 * full, 1e-12);
     let lorentzian = |linewidth| shaped(linewidth, LineShape::Lorentzian).wave_number_spread();
     assert!(lorentzian(0.0) == 0.0 && lorentzian(3e-9).is_infinite());
 }
@@ -103,7 +103,7 @@ fn a_comb_stands_about_its_wavelength() {
     for count in [2, 3, 8] {
         let comb = SpectralLine::comb(650e-9, 3e-9, count).unwrap();
         for (uniform, end) in [(0.0, -half), (1.0, half)] {
-            assert_relative_eq!(comb.draw(uniform), end, max_relative = 1e-12);
+            assert_relative(comb.draw(uniform), end, 1e-12);
         }
     }
 }
@@ -124,8 +124,8 @@ fn nodes_have_the_moments_of_the_line() {
         };
         let spread = if is_wide { modes } else { comb }.wave_number_spread();
         // A Gaussian ends after 5.5 standard deviations, with 1e-6 of its variance.
-        assert_relative_eq!(moment(0), 1.0, epsilon = 1e-6);
-        assert_relative_eq!(moment(2).sqrt(), spread, max_relative = 1e-5);
+        assert_absolute(moment(0), 1.0, 1e-6);
+        assert_relative(moment(2).sqrt(), spread, 1e-5);
     }
 }
 
@@ -133,7 +133,7 @@ fn nodes_have_the_moments_of_the_line() {
 fn peaks_stand_about_their_mean() {
     let line = SpectralLine::from_peaks(&[[650e-9, 3e300], [651e-9, 1e300]]).unwrap();
     let mean = 0.75 * TAU / 650e-9 + 0.25 * TAU / 651e-9;
-    assert_relative_eq!(line.wave_number(), mean, max_relative = 1e-14);
+    assert_relative(line.wave_number(), mean, 1e-14);
     let moment: f64 = line
         .peaks
         .iter()
@@ -172,20 +172,16 @@ fn draws_follow_the_line() {
     }
     // Half of a Lorentzian lies within its half width.
     let line = single(LineShape::Lorentzian);
-    assert_relative_eq!(line.draw(0.75), line.width, max_relative = 1e-12);
-    assert_relative_eq!(line.draw(0.25), -line.width, max_relative = 1e-12);
-    assert_relative_eq!(
-        line.draw(1.0),
-        0.1 * line.wave_number(),
-        max_relative = 1e-12
-    );
+    assert_relative(line.draw(0.75), line.width, 1e-12);
+    assert_relative(line.draw(0.25), -line.width, 1e-12);
+    assert_relative(line.draw(1.0), 0.1 * line.wave_number(), 1e-12);
 }
 
 #[test]
 fn the_effective_spread_of_a_gaussian_is_its_spread() {
     let gaussian = shaped(3e-9, LineShape::Gaussian);
     let spread = gaussian.effective_spread();
-    assert_relative_eq!(spread, gaussian.wave_number_spread(), max_relative = 1e-6);
+    assert_relative(spread, gaussian.wave_number_spread(), 1e-6);
 }
 
 proptest! {
@@ -227,7 +223,7 @@ fn many_peaks_are_the_sum_of_their_pairs() {
             asked.set(asked.get() + 1);
             (-(kappa / scale).powi(2)).exp()
         });
-        assert_relative_eq!(found, expected, max_relative = 1e-8);
+        assert_relative(found, expected, 1e-8);
         // Of 65,536 pairs with a width each takes some 1,500 values.
         let most = if linewidth == 0.0 { 1_200 } else { 2_000_000 };
         assert!(asked.get() < most, "{count} {linewidth:e}: {}", asked.get());

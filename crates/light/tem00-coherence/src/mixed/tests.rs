@@ -1,5 +1,5 @@
-use approx::{assert_abs_diff_eq, assert_relative_eq};
 use proptest::prelude::*;
+use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
 
@@ -14,7 +14,7 @@ fn light_of_one_wavelength_is_fully_developed_whatever_its_paths() {
             multiple,
             ..MixedLight::default()
         };
-        assert_relative_eq!(squared(light), 1.0, max_relative = 1e-15);
+        assert_relative(squared(light), 1.0, 1e-15);
     }
 }
 
@@ -30,13 +30,13 @@ fn depolarised_multiple_light_adds_to_one_of_two_components() {
     };
     // f₁² c₁₁ + f₁ f₂ c₁₂ + f₂² c₂₂ / 2.
     let expected = 0.9 * single * single + 0.4 * single * multiple + 0.35 * multiple * multiple;
-    assert_relative_eq!(squared(light), expected, max_relative = 1e-14);
+    assert_relative(squared(light), expected, 1e-14);
     let coherent = MixedLight {
         multiple,
         polarisation: [1.0, 0.0],
         ..MixedLight::default()
     };
-    assert_abs_diff_eq!(squared(coherent).sqrt(), 0.892, epsilon = 5e-4);
+    assert_absolute(squared(coherent).sqrt(), 0.892, 5e-4);
 }
 
 #[test]
@@ -53,11 +53,7 @@ fn one_degree_of_polarisation_for_all_light_is_one_factor() {
         ..polarised
     };
     let factor = 0.5 * (1.0 + 0.36);
-    assert_relative_eq!(
-        squared(partly),
-        factor * squared(polarised),
-        max_relative = 1e-14
-    );
+    assert_relative(squared(partly), factor * squared(polarised), 1e-14);
 }
 
 proptest! {
@@ -98,7 +94,7 @@ fn speckle_of_speckle_has_the_contrasts_of_its_table() {
     ];
     for (r, contrast) in table {
         let variance = cascade_variance(r).expect("a ratio");
-        assert_abs_diff_eq!((1.0 + 2.0 * variance).sqrt(), contrast, epsilon = 6e-4);
+        assert_absolute((1.0 + 2.0 * variance).sqrt(), contrast, 6e-4);
     }
 }
 
@@ -122,6 +118,6 @@ fn speckle_of_speckle_is_a_mean_over_pairs_of_directions() {
         let mean = pairs.sum::<f64>() / f64::from(count).powi(2);
         let variance = cascade_variance(r).expect("a ratio");
         // Each direction is paired with itself, too.
-        assert_abs_diff_eq!(variance, mean, epsilon = 1e-3);
+        assert_absolute(variance, mean, 1e-3);
     }
 }

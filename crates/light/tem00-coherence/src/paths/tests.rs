@@ -1,4 +1,4 @@
-use approx::assert_relative_eq;
+use tem00_testkit::assert_relative;
 
 use super::*;
 use crate::LineShape;
@@ -40,9 +40,9 @@ fn normal_delays_have_closed_forms() {
             line.wave_number_spread() * mean,
         );
         let [c22, c12] = pairs(&line, &normal(mean, spread));
-        assert_relative_eq!(c22, (1.0 + 4.0 * s * s).powf(-0.5), max_relative = 1e-9);
+        assert_relative(c22, (1.0 + 4.0 * s * s).powf(-0.5), 1e-9);
         let with_single = (1.0 + 2.0 * s * s).powf(-0.5) * (-m * m / (1.0 + 2.0 * s * s)).exp();
-        assert_relative_eq!(c12, with_single, max_relative = 1e-9);
+        assert_relative(c12, with_single, 1e-9);
     }
 }
 
@@ -59,8 +59,8 @@ fn pairs_of_normal_delays_are_the_integral_over_differences_of_wave_numbers() {
             })
         };
         // The cusp of |γ|² of a Lorentzian lies between nodes.
-        assert_relative_eq!(c22, by_differences(1.0, 0.0), max_relative = 2e-3);
-        assert_relative_eq!(c12, by_differences(0.5, mean), max_relative = 2e-3);
+        assert_relative(c22, by_differences(1.0, 0.0), 2e-3);
+        assert_relative(c12, by_differences(0.5, mean), 2e-3);
     }
 }
 
@@ -80,10 +80,10 @@ fn two_paths_have_closed_forms() {
         let line = line(0.2e-9, shape);
         let between = line.squared_coherence(0.7e-3);
         let [c22, c12] = pairs(&line, &paths);
-        assert_relative_eq!(c22, 0.58 + 0.42 * between, max_relative = 1e-12);
+        assert_relative(c22, 0.58 + 0.42 * between, 1e-12);
         let single = delays.map(|delay| line.squared_coherence(delay));
         let mean = 0.3 * single[0] + 0.7 * single[1];
-        assert_relative_eq!(c12, mean, max_relative = 1e-12);
+        assert_relative(c12, mean, 1e-12);
     }
 }
 
@@ -122,9 +122,9 @@ fn sums_of_neighbours_count_with_their_factors() {
     let [first, second] = [&near, &far].map(|paths| pairs(&line, paths));
     let mean = |i: usize| 0.25 * first[i] + 0.75 * second[i];
     let c22 = mixed.self_coherence().expect("light");
-    assert_relative_eq!(c22, mean(0), max_relative = 1e-12);
+    assert_relative(c22, mean(0), 1e-12);
     let c12 = mixed.coherence_with_single().expect("light");
-    assert_relative_eq!(c12, mean(1), max_relative = 1e-12);
+    assert_relative(c12, mean(1), 1e-12);
 }
 
 #[test]
@@ -133,6 +133,6 @@ fn patterns_that_fall_by_the_ratio_have_the_contrast() {
         let t = mode_ratio(squared);
         let shares = (0..400).map(|n| (1.0 - t) * t.powi(n));
         let sum: f64 = shares.map(|share| share * share).sum();
-        assert_relative_eq!(sum, squared, max_relative = 1e-12);
+        assert_relative(sum, squared, 1e-12);
     }
 }

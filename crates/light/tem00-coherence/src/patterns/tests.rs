@@ -1,4 +1,4 @@
-use approx::assert_relative_eq;
+use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
 use crate::{
@@ -7,7 +7,7 @@ use crate::{
 };
 
 fn squares(fractions: &[f64]) -> f64 {
-    assert_relative_eq!(fractions.iter().sum::<f64>(), 1.0, max_relative = 1e-12);
+    assert_relative(fractions.iter().sum::<f64>(), 1.0, 1e-12);
     fractions.iter().map(|part| part * part).sum()
 }
 
@@ -33,7 +33,7 @@ fn squares_of_modes_sum_to_the_squared_contrast() {
             cell: &cell,
         };
         let modes = speckle.modes();
-        assert_relative_eq!(squares(&modes).sqrt(), speckle.contrast(), epsilon = 1.2e-3);
+        assert_absolute(squares(&modes).sqrt(), speckle.contrast(), 1.2e-3);
     }
 }
 
@@ -47,7 +47,7 @@ fn modes_of_heights_alone_fall_by_one_ratio() {
     let squared = speckle.contrast().powi(2);
     let ratio = (1.0 - squared) / (1.0 + squared);
     for (n, mode) in (0..5).zip(speckle.modes()) {
-        assert_relative_eq!(mode, (1.0 - ratio) * ratio.powi(n), epsilon = 1e-4);
+        assert_absolute(mode, (1.0 - ratio) * ratio.powi(n), 1e-4);
     }
 }
 
@@ -56,14 +56,10 @@ fn fractions_keep_any_variance_down_to_that_of_the_most_patterns() {
     for variance in [1.0, 0.5, 0.1, 0.01, 0.0045, 0.003, 0.0015] {
         let fractions = geometric_fractions(variance);
         assert!(fractions.len() <= MAX_PATTERNS as usize);
-        assert_relative_eq!(squares(&fractions), variance, max_relative = 3e-4);
+        assert_relative(squares(&fractions), variance, 3e-4);
     }
     let least = geometric_fractions(0.0);
-    assert_relative_eq!(
-        squares(&least),
-        1.0 / f64::from(MAX_PATTERNS),
-        max_relative = 1e-6
-    );
+    assert_relative(squares(&least), 1.0 / f64::from(MAX_PATTERNS), 1e-6);
 }
 
 #[test]
@@ -88,10 +84,10 @@ fn the_extent_of_a_source_adds_patterns_to_those_of_its_line() {
             } else {
                 1.0
             };
-            assert_relative_eq!(
+            assert_relative(
                 squares(&patterns.fractions) * left,
                 variance(&of_disc),
-                max_relative = 1e-3
+                1e-3,
             );
             assert!(variance(&of_disc) < 0.6 * variance(&of_point));
         }
@@ -119,7 +115,7 @@ fn a_dense_relief_can_stand_for_a_correlated_one() {
         PolychromaticSpeckle { line, cell }.contrast()
     };
     let dense = dense_equivalent(cell.clone(), speckle.contrast(), contrast);
-    assert_relative_eq!(contrast(&dense), speckle.contrast(), epsilon = 2e-4);
+    assert_absolute(contrast(&dense), speckle.contrast(), 2e-4);
     assert!(
         dense.relief().rms_height < 0.8 * relief.rms_height,
         "{dense:?}"

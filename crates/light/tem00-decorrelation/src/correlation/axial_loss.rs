@@ -178,6 +178,8 @@ fn write_factors<const N: usize>(
 
 #[cfg(test)]
 mod tests {
+    use tem00_testkit::assert_absolute;
+
     use super::*;
     use crate::CorrelationLaw;
 
@@ -211,8 +213,7 @@ mod tests {
                     "{lateral} across, {axial:e} along: {error:e}"
                 );
             }
-            let beyond = shift(lateral, 1.5) - lateral.max(1.5);
-            assert!(beyond.abs() < 1e-15, "{lateral} across: {beyond:e}");
+            assert_absolute(shift(lateral, 1.5), lateral.max(1.5), 1e-15);
         }
         assert!(
             shift(f64::INFINITY, 0.5).is_infinite(),

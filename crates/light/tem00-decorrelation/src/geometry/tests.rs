@@ -1,5 +1,5 @@
-use approx::assert_relative_eq;
 use proptest::prelude::*;
+use tem00_testkit::assert_relative;
 
 use super::*;
 use crate::Focus;
@@ -55,7 +55,7 @@ fn a_lens_of_two_elements_images_as_its_elements_do_one_after_the_other() {
 
         let close = |got: f64, expected: f64| {
             // Rounding of differences of like distances.
-            assert_relative_eq!(got, expected, max_relative = 1e-13, epsilon = 0.0);
+            assert_relative(got, expected, 1e-13);
         };
         close(geometry.magnification(), magnification);
         close(geometry.pupil_to_image(), second + exit);
@@ -79,7 +79,7 @@ fn a_thick_lens_with_equal_pupils_is_a_thin_lens() {
         (thin.depth_of_focus(), thick.depth_of_focus()),
     ];
     for (one, two) in pairs {
-        assert_relative_eq!(one, two, max_relative = 1e-15, epsilon = 0.0);
+        assert_relative(one, two, 1e-15);
     }
 }
 
@@ -90,12 +90,12 @@ fn depth_of_focus_is_half_a_wave_at_the_edge_of_the_pupil() {
     let path = |depth: f64| 0.5 * radius * radius * geometry.defocus_at(depth);
     // The path goes as the reciprocal depth: dz/L = 0.76 % either way.
     let depth = geometry.depth_of_focus();
-    assert_relative_eq!(path(0.3 - depth), half_wave, max_relative = 8e-3);
-    assert_relative_eq!(path(0.3 + depth), -half_wave, max_relative = 8e-3);
+    assert_relative(path(0.3 - depth), half_wave, 8e-3);
+    assert_relative(path(0.3 + depth), -half_wave, 8e-3);
     // The same path moves the sensor: behind the lens of 75 mm, r²/2 (1/d − 1/d').
     let depth = geometry.sensor_depth_of_focus();
     let sensor = 0.5 * radius * radius * (1.0 / 75e-3 - 1.0 / (75e-3 + depth));
-    assert_relative_eq!(sensor, half_wave, max_relative = 2e-3);
+    assert_relative(sensor, half_wave, 2e-3);
     let left =
         crate::axial_correlation(geometry.depth_of_focus() / geometry.axial_decorrelation_length());
     assert!((left - 0.405_284_734_569_4).abs() < 1e-12, "left {left}");
@@ -105,11 +105,7 @@ fn depth_of_focus_is_half_a_wave_at_the_edge_of_the_pupil() {
 fn another_wavelength_changes_the_speckle_and_not_the_lens() {
     let geometry = ImagingGeometry::from_lens(LENS).unwrap();
     let blue = geometry.with_wavelength(316.4e-9).unwrap();
-    assert_relative_eq!(
-        blue.speckle_size(),
-        0.5 * geometry.speckle_size(),
-        max_relative = 1e-15
-    );
+    assert_relative(blue.speckle_size(), 0.5 * geometry.speckle_size(), 1e-15);
     let restored = blue.with_wavelength(LENS.wavelength).unwrap();
     assert_eq!(restored, geometry, "the lens stays");
 }
@@ -118,24 +114,16 @@ fn another_wavelength_changes_the_speckle_and_not_the_lens() {
 fn a_quarter_magnification_lens_has_the_textbook_distances() {
     let geometry = ImagingGeometry::from_lens(LENS).unwrap();
     // L = (1 + 1/m) f and d_PI = (1 + m) f at m = 1/4; rounding only.
-    assert_relative_eq!(geometry.magnification(), 0.25, max_relative = 1e-14);
-    assert_relative_eq!(geometry.pupil_to_image(), 75e-3, max_relative = 1e-14);
-    assert_relative_eq!(geometry.pupil_diameter(), 10e-3, max_relative = 1e-14);
+    assert_relative(geometry.magnification(), 0.25, 1e-14);
+    assert_relative(geometry.pupil_to_image(), 75e-3, 1e-14);
+    assert_relative(geometry.pupil_diameter(), 10e-3, 1e-14);
     // h = λ (1 + m) F.
     let speckle_size = 632.8e-9 * 7.5;
-    assert_relative_eq!(geometry.speckle_size(), speckle_size, max_relative = 1e-14);
+    assert_relative(geometry.speckle_size(), speckle_size, 1e-14);
     let in_pixels = speckle_size / 3.45e-6;
-    assert_relative_eq!(
-        geometry.speckle_size_in_pixels(),
-        in_pixels,
-        max_relative = 1e-14
-    );
+    assert_relative(geometry.speckle_size_in_pixels(), in_pixels, 1e-14);
     // 8 λ (1 + 1/m)² F² = 8 · 632.8 nm · 900.
-    assert_relative_eq!(
-        geometry.axial_decorrelation_length(),
-        4.556_16e-3,
-        max_relative = 1e-14
-    );
+    assert_relative(geometry.axial_decorrelation_length(), 4.556_16e-3, 1e-14);
 }
 
 #[test]

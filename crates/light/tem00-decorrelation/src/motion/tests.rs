@@ -1,5 +1,6 @@
 use glam::EulerRot;
 use proptest::prelude::*;
+use tem00_testkit::assert_absolute;
 
 use super::*;
 use crate::{
@@ -84,12 +85,10 @@ fn a_thick_lens_moves_the_image_by_its_magnification() {
         let before = Configuration::new(upright(depth)).unwrap();
         let moved = SpeckleMotion::between(&thick, &before, &after_surface(&before, slid));
         // Rounding of directions, 1e−16, over a principal distance of 81 mm.
-        let image = moved.image_displacement.x - magnification * 1e-3;
-        assert!(image.abs() < 1e-16, "{depth}: {moved:?}");
+        assert_absolute(moved.image_displacement.x, magnification * 1e-3, 1e-16);
         // In collimated light the speckle out of focus moves as in focus: it is the moved surface's
         // own field that is seen, at the distance of focus.
-        let speckle = moved.speckle_displacement().x - 0.5e-3;
-        assert!(speckle.abs() < 1e-16, "{depth}: {moved:?}");
+        assert_absolute(moved.speckle_displacement().x, 0.5e-3, 1e-16);
     }
 }
 
@@ -206,10 +205,7 @@ fn defocus_costs_what_the_pupil_integral_says() {
         let w = [depth, depth - dz].map(|z| 1.0 / z - 1.0 / 0.3);
         let left = left_by_defocus(&geometry, w, [650e-9, wavelength]);
         // Midpoints of 2000 rings, up to two turns of phase: 1e−6.
-        assert!(
-            (speckle.correlation - left).abs() < 1e-5,
-            "{depth}: {left}, {speckle:?}"
-        );
+        assert_absolute(speckle.correlation, left, 1e-5);
         assert!(left < 0.96, "the test would see nothing: {left}");
     }
 }

@@ -1,3 +1,5 @@
+use tem00_testkit::assert_absolute;
+
 use super::{LeastSquaresError, Minimum, NormalEquations};
 
 struct Residual<const N: usize> {
@@ -45,13 +47,11 @@ fn straight_line_has_its_textbook_solution() {
         // The search stops when the sum may fall by 1e−14 of itself: 1e−7 of √sum.
         assert!(error.abs() < 1e-7, "p{i}: {error:e}");
         for (j, expected) in covariance[i].into_iter().enumerate() {
-            let error = minimum.covariance[i][j] - expected;
-            assert!(error.abs() < 1e-14, "covariance {i}, {j}: {error:e}");
+            assert_absolute(minimum.covariance[i][j], expected, 1e-14);
         }
     }
     // Residuals −0.1, −0.2, 0.7, −0.4.
-    let error = minimum.sum_of_squares - 0.7;
-    assert!(error.abs() < 1e-13, "sum: {error:e}");
+    assert_absolute(minimum.sum_of_squares, 0.7, 1e-13);
 }
 
 #[test]
@@ -67,8 +67,7 @@ fn units_of_parameters_and_residuals_do_not_matter() {
     .unwrap();
     let ratio = scaled.covariance[0][1] / plain.covariance[0][1] * 1e10;
     assert!((ratio - 1.0).abs() < 1e-13, "{ratio}");
-    let ratio = scaled.state[0] / plain.state[0] / 1e9;
-    assert!((ratio - 1.0).abs() < 1e-7, "{ratio}");
+    assert_absolute(scaled.state[0] / plain.state[0] / 1e9, 1.0, 1e-7);
 }
 
 #[test]

@@ -1,8 +1,8 @@
-use approx::{assert_abs_diff_eq, assert_relative_eq};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tem00_numerics::cast::to_f32;
+use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
 use crate::synthetic::speckle_tile;
@@ -18,14 +18,10 @@ fn moments_of_small_integers_are_exact() {
     let moments = Moments::from_samples(&[2_u8, 4, 4, 4, 5, 5, 7, 9]).unwrap();
     assert_eq!(moments.count(), 8);
     // The sum of squares about 5 is 32.
-    assert_relative_eq!(moments.mean(), 5.0, max_relative = 1e-15);
+    assert_relative(moments.mean(), 5.0, 1e-15);
     let variance = moments.standard_deviation().powi(2);
-    assert_relative_eq!(variance, 32.0 / 7.0, max_relative = 1e-15);
-    assert_relative_eq!(
-        moments.standard_error(),
-        (4.0_f64 / 7.0).sqrt(),
-        max_relative = 1e-15
-    );
+    assert_relative(variance, 32.0 / 7.0, 1e-15);
+    assert_relative(moments.standard_error(), (4.0_f64 / 7.0).sqrt(), 1e-15);
 }
 
 #[test]
@@ -41,7 +37,7 @@ fn contrast_of_few_exponential_samples_is_biased_as_stated() {
     let length = LENGTH as f64;
     // 3.3 σ is α = 0.001; the next order in 1/n is 1/n² times a number of order one.
     let tolerance = 3.3 * moments.standard_error() + 3.0 / (length * length);
-    assert_abs_diff_eq!(moments.mean(), 1.0 - 1.0 / length, epsilon = tolerance);
+    assert_absolute(moments.mean(), 1.0 - 1.0 / length, tolerance);
     assert!(tolerance < 0.3 / length, "the bias would not be seen");
 }
 
@@ -59,8 +55,8 @@ fn standard_error_of_the_contrast_is_that_of_many_trials() {
     let spread = Moments::from_samples(&values).unwrap().standard_deviation();
     // 1/√n for exponential samples; a standard deviation from 2000 trials is known to 1/√4000
     // = 1.6 %, here 3.3 σ, and the first order in 1/n errs by some 10/n = 2 %.
-    assert_relative_eq!(spread, 500.0_f64.sqrt().recip(), max_relative = 0.072);
-    assert_relative_eq!(spread, estimated, max_relative = 0.072);
+    assert_relative(spread, 500.0_f64.sqrt().recip(), 0.072);
+    assert_relative(spread, estimated, 0.072);
 }
 
 #[test]
@@ -80,11 +76,11 @@ fn speckle_size_widens_the_error_of_the_contrast_as_tiles_do() {
         // A spread from 300 tiles is known to 1/√600 = 4.1 %, here 3.3 σ; the first order in
         // 1/C errs by some 2/C.
         let tolerance = 3.3 * 0.041 + 2.0 / diameter as f64;
-        assert_relative_eq!(spread, errors / TILES as f64, max_relative = tolerance);
-        assert_relative_eq!(
+        assert_relative(spread, errors / TILES as f64, tolerance);
+        assert_relative(
             spread,
             0.5 * crate::laws::contrast_squared_spread(diameter as f64),
-            max_relative = tolerance
+            tolerance,
         );
     }
 }
@@ -100,7 +96,7 @@ fn correlation_of_two_waves_is_the_cosine_of_their_phase() {
     for phase in [0.0_f64, 0.4, 1.5, 3.0] {
         let correlation = pearson_correlation(&wave(0.0), &wave(phase)).unwrap();
         // Values near 100 are stored to 4e−6, and 96 of them average it.
-        assert_abs_diff_eq!(correlation, phase.cos(), epsilon = 4e-6);
+        assert_absolute(correlation, phase.cos(), 4e-6);
     }
 }
 
@@ -166,7 +162,7 @@ fn confidence_intervals_hold_the_contrast_as_often_as_stated() {
         });
         let share = held.count() as f64 / f64::from(TRIALS);
         // Binomial, 3.3 σ = 0.026, and half of the last digit.
-        assert_abs_diff_eq!(share, stated, epsilon = 0.026 + 0.005);
+        assert_absolute(share, stated, 0.026 + 0.005);
     }
 }
 
@@ -176,8 +172,8 @@ fn confidence_intervals_are_those_of_the_logarithm() {
     let [low, high] = contrast.confidence_interval(0.682_689_492_137_086).unwrap();
     // One standard error.
     let share = contrast.standard_error() / contrast.value();
-    assert_relative_eq!(high, contrast.value() * share.exp(), max_relative = 1e-12);
-    assert_relative_eq!(low, contrast.value() / share.exp(), max_relative = 1e-12);
+    assert_relative(high, contrast.value() * share.exp(), 1e-12);
+    assert_relative(low, contrast.value() / share.exp(), 1e-12);
     let none = Contrast::from_samples(&[2.0, 2.0])
         .unwrap()
         .confidence_interval(0.9);

@@ -1,7 +1,7 @@
 use core::f64::consts::{PI, TAU};
 
-use approx::assert_relative_eq;
 use proptest::prelude::*;
+use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
 use crate::{Moments, synthetic::field_tile};
@@ -118,7 +118,7 @@ fn coarse_samples_show_too_many_as_stated() {
         // The same fields: of the 1.5/h² · 2600 spurious ones, in pairs, Poisson's error, 3.3 σ.
         let pairs = 0.75 / squared * fine;
         let tolerance = 3.3 * 1.5 / pairs.sqrt() + 0.1;
-        assert_relative_eq!(excess, 1.5, epsilon = tolerance);
+        assert_absolute(excess, 1.5, tolerance);
     }
 }
 
@@ -138,13 +138,13 @@ fn drawn_speckle_has_the_density_and_its_spread_as_stated() {
         .sum::<f64>()
         / TILES as f64;
     // A spread from 150 tiles is known to 1/√300 = 5.8 %, here 3.3 σ.
-    assert_relative_eq!(moments.standard_deviation(), error, max_relative = 0.19);
+    assert_relative(moments.standard_deviation(), error, 0.19);
     // The mean over the tiles, 3.3 σ; the share stated for h = 8 is known to a fifth.
     let exact = density_of_the_lattice(size, 16) * (1.0 + 1.5 / 64.0);
     let tolerance = 3.3 * moments.standard_error() / exact + 0.3 / 64.0;
-    assert_relative_eq!(moments.mean(), exact, max_relative = tolerance);
+    assert_relative(moments.mean(), exact, tolerance);
     let h = densities[0].speckle_size().unwrap();
-    assert_relative_eq!(h, (PI / 8.0 / values[0]).sqrt(), max_relative = 1e-15);
+    assert_relative(h, (PI / 8.0 / values[0]).sqrt(), 1e-15);
 }
 
 proptest! {

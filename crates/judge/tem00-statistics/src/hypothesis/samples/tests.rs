@@ -1,6 +1,6 @@
-use approx::{assert_abs_diff_eq, assert_relative_eq};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
 use crate::{
@@ -51,21 +51,17 @@ fn samples_at_distance(count: u32, distance: f64) -> Vec<f64> {
 fn kolmogorov_distribution_has_the_tabulated_critical_values() {
     // Smirnov 1948, to the digits of the table: a step of 5e−5 in λ changes p by 4λ · 5e−5.
     for (lambda, p) in [(1.3581, 0.05), (1.6276, 0.01), (1.9495, 0.001)] {
-        assert_relative_eq!(
-            kolmogorov_survival(lambda),
-            p,
-            max_relative = 4.0 * lambda * 5e-5
-        );
+        assert_relative(kolmogorov_survival(lambda), p, 4.0 * lambda * 5e-5);
     }
     // The median, where the other series is summed.
-    assert_relative_eq!(kolmogorov_survival(0.827_57), 0.5, epsilon = 1e-5);
+    assert_absolute(kolmogorov_survival(0.827_57), 0.5, 1e-5);
     let (below, above) = (1.0 - 1e-12, 1.0);
-    assert_relative_eq!(
+    assert_absolute(
         kolmogorov_survival(below),
         kolmogorov_survival(above),
-        epsilon = 1e-11
+        1e-11,
     );
-    assert_relative_eq!(kolmogorov_survival(0.0), 1.0, epsilon = 1e-15);
+    assert_absolute(kolmogorov_survival(0.0), 1.0, 1e-15);
 }
 
 #[test]
@@ -84,8 +80,8 @@ fn kolmogorov_smirnov_is_close_to_the_exact_table_for_few_samples() {
     for (count, distance, p, tolerance) in table {
         let samples = samples_at_distance(count, distance);
         let outcome = kolmogorov_smirnov(&samples, |x| x).unwrap();
-        assert_relative_eq!(outcome.statistic, distance, epsilon = 1e-14);
-        assert_relative_eq!(outcome.p_value, p, max_relative = tolerance);
+        assert_absolute(outcome.statistic, distance, 1e-14);
+        assert_relative(outcome.p_value, p, tolerance);
     }
 }
 
@@ -93,9 +89,9 @@ fn kolmogorov_smirnov_is_close_to_the_exact_table_for_few_samples() {
 fn both_sides_of_a_step_count() {
     // One sample at 0.2: the empirical distribution jumps from 0 to 1 there.
     let outcome = kolmogorov_smirnov(&[0.2], |x| x).unwrap();
-    assert_relative_eq!(outcome.statistic, 0.8, epsilon = 1e-15);
+    assert_absolute(outcome.statistic, 0.8, 1e-15);
     let outcome = kolmogorov_smirnov(&[0.9], |x| x).unwrap();
-    assert_relative_eq!(outcome.statistic, 0.9, epsilon = 1e-15);
+    assert_absolute(outcome.statistic, 0.9, 1e-15);
 }
 
 #[test]
@@ -147,7 +143,7 @@ fn chi_squared_has_its_closed_forms() {
             observed[0] += off;
             observed[1] -= off;
             let outcome = chi_squared(&observed, &vec![100.0; bins], constraints).unwrap();
-            assert_relative_eq!(outcome.statistic, statistic, max_relative = 1e-14);
+            assert_relative(outcome.statistic, statistic, 1e-14);
             outcome.p_value
         };
         let half = 0.5 * statistic;
@@ -158,7 +154,7 @@ fn chi_squared_has_its_closed_forms() {
             (p(5, 1), (-half).exp() * (1.0 + half)),
         ];
         for (value, exact) in closed {
-            assert_relative_eq!(value, exact, epsilon = 0.0, max_relative = 1e-12);
+            assert_relative(value, exact, 1e-12);
         }
     }
 }
@@ -182,7 +178,7 @@ fn chi_squared_has_its_tabulated_values() {
         observed[1] -= off;
         let outcome = chi_squared(&observed, &vec![1e12; bins], 1).unwrap();
         // Half of the table's last digit, 5e−4 at most, and p falls as exp(−χ²/2) or slower.
-        assert_relative_eq!(outcome.p_value, p, max_relative = 3e-4);
+        assert_relative(outcome.p_value, p, 3e-4);
     }
 }
 
@@ -216,9 +212,9 @@ fn student_has_its_tabulated_critical_values() {
         let moments = crate::Moments::from_samples(&samples).unwrap();
         let mean = moments.mean() + t * moments.standard_error();
         let outcome = t_test_mean(&samples, mean).unwrap();
-        assert_relative_eq!(outcome.statistic, t, max_relative = 1e-13);
+        assert_relative(outcome.statistic, t, 1e-13);
         // Half of the table's last digit, 5e−4, over t and a power of −31 at most.
-        assert_relative_eq!(outcome.p_value, p, max_relative = 2e-3);
+        assert_relative(outcome.p_value, p, 2e-3);
     }
 }
 
@@ -231,7 +227,7 @@ fn student_becomes_normal_for_many_samples() {
         let p = t_test_mean(&samples, mean).unwrap().p_value;
         // The next order is t(t² + 1) / 4n of a density, below 4e−5.
         let normal = libm::erfc(t / core::f64::consts::SQRT_2);
-        assert_abs_diff_eq!(p, normal, epsilon = 4e-5);
+        assert_absolute(p, normal, 4e-5);
     }
 }
 
@@ -263,7 +259,7 @@ fn wrong_counts_and_wrong_means_are_rejected() {
     let outcome = chi_squared(&[120, 80, 100, 100], &[100.0; 4], 1).unwrap();
     // χ² = 8 at three degrees of freedom: p = erfc(2) + √(2·8/π) e⁻⁴.
     let p = libm::erfc(2.0) + (16.0 / PI).sqrt() * (-4.0_f64).exp();
-    assert_relative_eq!(outcome.p_value, p, max_relative = 1e-12);
+    assert_relative(outcome.p_value, p, 1e-12);
     let mut rng = ChaCha8Rng::seed_from_u64(24);
     let samples: Vec<f64> = (0..100).map(|_| 1.0 + normal(&mut rng)).collect();
     // The mean is off by ten standard errors.
@@ -276,10 +272,10 @@ fn extreme_input_gives_a_probability() {
     let outcome = chi_squared(&[u64::MAX, 0], &[5.0, 1e300], 1).unwrap();
     assert!((0.0..=1e-300).contains(&outcome.p_value), "{outcome:?}");
     let outcome = chi_squared(&[7, 7], &[7.0, 7.0], 1).unwrap();
-    assert_relative_eq!(outcome.p_value, 1.0, epsilon = 1e-15);
+    assert_absolute(outcome.p_value, 1.0, 1e-15);
     let tiny = [5e-324, 0.0, 1e-323];
     let outcome = t_test_mean(&tiny, f64::MAX).unwrap();
     assert!((0.0..=1e-3).contains(&outcome.p_value), "{outcome:?}");
     let outcome = t_test_mean(&tiny, 5e-324).unwrap();
-    assert_relative_eq!(outcome.p_value, 1.0, epsilon = 1e-15);
+    assert_absolute(outcome.p_value, 1.0, 1e-15);
 }

@@ -2,6 +2,5 @@
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod exact_paths;
-mod finite_motion;
+mod paths;
 mod refusals;

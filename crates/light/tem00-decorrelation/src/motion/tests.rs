@@ -109,37 +109,6 @@ fn an_edge_on_surface_is_decorrelated() {
 }
 
 #[test]
-fn a_wave_longer_than_the_pattern_leaves_none() {
-    // The sine of 45° times √2 is one.
-    let before = Configuration::new(upright(0.3)).unwrap();
-    let along = Illumination::collimated(DVec3::Z).unwrap();
-    let shorter = before.with_wavelength(650e-9 / 2.0).unwrap();
-    assert_eq!(shorter.wavelength().to_bits(), 325e-9_f64.to_bits());
-    let longer = before.with_wavelength(650e-9 * 1.5).unwrap();
-    let found = |state: Configuration| before.pupil_point_after(&state, DVec2::ZERO);
-    assert!(found(shorter).is_some(), "a sine of 0.35 − 0.71");
-    assert_eq!(
-        found(longer.with_illumination(along).unwrap()),
-        None,
-        "1.06"
-    );
-}
-
-#[test]
-fn moving_into_other_light_is_moving_and_then_changing_it() {
-    let before = Configuration::new(upright(0.25)).unwrap();
-    let turn = RigidMotion::about(DVec3::X, DVec3::new(0.3, 1.0, -0.2), 0.1).unwrap();
-    let motions = RigidMotions {
-        surface: turn,
-        camera: turn.inverse(),
-        source: turn,
-    };
-    let light = Illumination::point_source(DVec3::new(0.1, 0.2, 0.5)).unwrap();
-    let in_turn = before.moved(&motions).unwrap().with_illumination(light);
-    assert_eq!(before.moved_into(&motions, light), in_turn);
-}
-
-#[test]
 fn a_far_focus_sees_the_directions_of_the_light() {
     // Focused at infinity, a picture shows where light comes from. In collimated light the speckle
     // of a surface that slides stands still, and that of one that tilts by θ turns by 2θ, away.

@@ -199,23 +199,6 @@ impl Lattice {
         shared.sum::<Complex<f64>>() / self.power()
     }
 
-    /// The covariances of the wave numbers, [xx, xy, yy], in rad² per squared sample.
-    pub(crate) fn wave_numbers(&self) -> [f64; 3] {
-        let unit = self.size.map(|size| TAU / size as f64);
-        let mean = |f: &dyn Fn(f64, f64) -> f64| {
-            let term = |(k, t): &([i64; 2], Complex<f64>)| {
-                f(k[0] as f64 * unit[0], k[1] as f64 * unit[1]) * t.norm_sqr()
-            };
-            self.points.iter().map(term).sum::<f64>() / self.power()
-        };
-        let (x, y) = (mean(&|x, _| x), mean(&|_, y| y));
-        [
-            mean(&|kx, _| (kx - x).powi(2)),
-            mean(&|kx, ky| (kx - x) * (ky - y)),
-            mean(&|_, ky| (ky - y).powi(2)),
-        ]
-    }
-
     /// The least stride whose multiples, and those plus or minus `lag`, correlate by less than 5 % in
     /// intensity: pairs `lag` apart taken at this stride are independent.
     pub(crate) fn stride(&self, lag: [i64; 2]) -> usize {

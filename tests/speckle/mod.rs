@@ -10,4 +10,3 @@ mod paper;
 mod second_order;
 mod slices;
 mod spectrum;
-mod vortices;

@@ -129,16 +129,6 @@ mod tests {
     }
 
     #[test]
-    fn light_of_one_wavelength_is_one_pattern() {
-        let mix = Recombination::new([1.0, 0.3], 1.0, 1.0);
-        assert!((mix.patterns[0] - 1.3).abs() < 1e-15, "{mix:?}");
-        assert!(
-            mix.patterns[1..].iter().all(|&rest| rest < 1e-15),
-            "{mix:?}"
-        );
-    }
-
-    #[test]
     fn light_that_does_not_interfere_is_one_pattern_on_an_even_ground() {
         let mix = Recombination::new([1.0, 0.3], 0.0, 0.0);
         assert!((mix.patterns[0] - 1.0).abs() < 1e-15, "{mix:?}");

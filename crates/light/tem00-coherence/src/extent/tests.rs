@@ -4,6 +4,7 @@ use tem00_testkit::assert_relative;
 use super::*;
 use crate::{
     CellGeometry, LineShape, PolychromaticSpeckle, Relief, ResolutionCell, Rows, SpectralLine,
+    law::tests::of,
 };
 
 const WAVELENGTH: f64 = 650e-9;
@@ -29,7 +30,7 @@ fn cell(incidence: f64, observation: f64) -> ResolutionCell {
 fn contrast(cell: &ResolutionCell, extent: Result<SourceExtent, Refusal>) -> f64 {
     let line = &SpectralLine::monochromatic(WAVELENGTH).unwrap();
     let cell = &cell.clone().with_source_extent(extent.unwrap());
-    PolychromaticSpeckle { line, cell }.contrast()
+    of(line, cell).contrast()
 }
 
 #[test]
@@ -129,7 +130,7 @@ fn a_disc_is_the_sum_of_its_points_with_heights_and_a_linewidth_too() {
         for (i, law) in laws.iter().enumerate() {
             let of = |extent: &SourceExtent| {
                 let cell = &cell.clone().with_source_extent(extent.clone());
-                law(&PolychromaticSpeckle { line, cell })
+                law(&of(line, cell))
             };
             let (points, disc) = (of(&points), of(&SourceExtent::disc(0.015).unwrap()));
             // Each point stands for its neighbourhood, over which the overlap falls a little.
@@ -169,7 +170,7 @@ fn two_wavelengths_from_two_directions_correlate_by_their_waves() {
     let cell = cell(35.25, -20.0).with_relief(relief).unwrap();
     let cell = &cell.with_source_extent(extent);
     let line = &SpectralLine::from_peaks(&wavelengths.map(|peak| [peak, 1.0])).unwrap();
-    let found = PolychromaticSpeckle { line, cell }.contrast().powi(2);
+    let found = of(line, cell).contrast().powi(2);
     // Linear in both changes, of 1 % and 3 % of their sums.
     assert!((found / expected - 1.0).abs() < 0.01, "{found}, {expected}");
 }
@@ -186,7 +187,7 @@ fn directions_share_chords_and_lenses_of_the_pupil() {
         cell.clone().with_source_extent(extent)
     };
     let shared = |cell: &ResolutionCell, rows| {
-        let ratio = PolychromaticSpeckle { line, cell }.line_noise_ratio(rows);
+        let ratio = of(line, cell).line_noise_ratio(rows);
         2.0 * ratio.powi(2) - 1.0
     };
     // Chords of two discs that are displaced along the chords: ∫ (2√(1 − x²) − 1)₊² dx · 3/16 over half a chord.
@@ -203,7 +204,7 @@ fn directions_share_chords_and_lenses_of_the_pupil() {
         let shared = rows.map(|rows| shared(cell, rows));
         assert!(shared.is_sorted(), "{shared:?}");
         let squared = disc_overlap(0.5).powi(2);
-        let contrast = 2.0 * PolychromaticSpeckle { line, cell }.contrast().powi(2) - 1.0;
+        let contrast = 2.0 * of(line, cell).contrast().powi(2) - 1.0;
         assert!((contrast - squared).abs() < 0.02, "{contrast}");
     }
 }

@@ -39,8 +39,15 @@ pub(crate) fn gaussian(wavelength: f64, linewidth: f64) -> SpectralLine {
     SpectralLine::new(wavelength, linewidth, LineShape::Gaussian).unwrap()
 }
 
+pub(crate) const fn of<'a>(
+    line: &'a SpectralLine,
+    cell: &'a ResolutionCell,
+) -> PolychromaticSpeckle<'a> {
+    PolychromaticSpeckle { line, cell }
+}
+
 fn contrast(line: &SpectralLine, cell: &ResolutionCell) -> f64 {
-    PolychromaticSpeckle { line, cell }.contrast()
+    of(line, cell).contrast()
 }
 
 #[test]
@@ -68,7 +75,7 @@ fn without_a_tilt_contrasts_have_closed_forms() {
         let found = contrast(line, &cell);
         assert_relative(found * found, squared, 1e-8);
         // Grains are those of one wavelength, and their covariance that of Airy's pattern.
-        let speckle = PolychromaticSpeckle { line, cell: &cell };
+        let speckle = of(line, &cell);
         for (lag, airy) in [([0.0, 0.0], 1.0), ([0.5, 0.0], jinc(0.5 * PI).powi(2))] {
             let found = speckle.autocovariance(lag);
             assert_relative(found, squared * airy, 1e-7);
@@ -119,10 +126,7 @@ fn a_table_of_contrasts_and_line_noise_is_met() {
         let cell = cell(wavelength * 1e-9, 0.0, 30.0, height * 1e-6);
         for (i, linewidth) in [1e-9, 5e-9, 20e-9, 40e-9].into_iter().enumerate() {
             let line = gaussian(wavelength * 1e-9, linewidth);
-            let speckle = PolychromaticSpeckle {
-                line: &line,
-                cell: &cell,
-            };
+            let speckle = of(&line, &cell);
             assert_absolute(speckle.contrast(), contrasts[i], 1.1e-3);
             assert_absolute(speckle.line_noise_ratio(Rows::Thin), noises[i], 1.1e-3);
         }
@@ -161,10 +165,7 @@ fn a_gaussian_line_has_an_approximate_closed_form() {
             gaussian(450e-9, linewidth),
         );
         let (sigma, tilt) = (line.wave_number_spread(), cell.tilt_wave_number());
-        let speckle = PolychromaticSpeckle {
-            line: &line,
-            cell: &cell,
-        };
+        let speckle = of(&line, &cell);
         let approximate = |linear: f64, square: f64| {
             let q =
                 1.0 + 4.0 * sigma.powi(2) * (cell.path_spread().powi(2) + square / tilt.powi(2));
@@ -193,10 +194,7 @@ fn frames_and_grains_of_a_tilted_cell() {
     let linewidth =
         spread * (8.0 * core::f64::consts::LN_2).sqrt() * 450e-9_f64.powi(2) / (2.0 * PI);
     let line = gaussian(450e-9, linewidth);
-    let speckle = PolychromaticSpeckle {
-        line: &line,
-        cell: &cell,
-    };
+    let speckle = of(&line, &cell);
     let lattice = |shift: [f64; 2], lag: [f64; 2]| {
         let (mut sum, mut count) = (Complex::ZERO, 0.0);
         let places = || (-60..=60).map(|i| f64::from(i) / 60.25);
@@ -281,10 +279,7 @@ fn a_table_of_displacements_has_the_closed_forms_until_the_pupils_part() {
 #[test]
 fn rows_lie_between_thin_and_tall_ones() {
     let (line, cell) = (gaussian(450e-9, 20e-9), cell(450e-9, 0.0, 30.0, 0.0));
-    let speckle = PolychromaticSpeckle {
-        line: &line,
-        cell: &cell,
-    };
+    let speckle = of(&line, &cell);
     let deviation = |rows| speckle.line_noise_ratio(rows);
     let [thin, tall] = [Rows::Thin, Rows::Tall].map(deviation);
     for none in [0.0, -1.0, f64::NAN] {
@@ -308,10 +303,7 @@ fn the_wings_of_a_lorentzian_end_on_a_long_relief() {
     };
     let cell = cell(450e-9, 0.0, 30.0, 0.0).with_relief(relief).unwrap();
     let line = SpectralLine::new(450e-9, 1e-9, LineShape::Lorentzian).unwrap();
-    let speckle = PolychromaticSpeckle {
-        line: &line,
-        cell: &cell,
-    };
+    let speckle = of(&line, &cell);
     let noise = speckle.line_noise_ratio(Rows::Thin);
     assert!(speckle.contrast() < noise && noise < 1.0, "{noise}");
 }

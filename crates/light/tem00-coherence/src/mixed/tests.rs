@@ -8,17 +8,6 @@ fn squared(light: MixedLight) -> f64 {
 }
 
 #[test]
-fn light_of_one_wavelength_is_fully_developed_whatever_its_paths() {
-    for multiple in [0.0, 0.2, 0.5, 1.0] {
-        let light = MixedLight {
-            multiple,
-            ..MixedLight::default()
-        };
-        assert_relative(squared(light), 1.0, 1e-15);
-    }
-}
-
-#[test]
 fn depolarised_multiple_light_adds_to_one_of_two_components() {
     let [single, multiple] = [1.0 / 1.3, 0.3 / 1.3];
     let light = MixedLight {
@@ -37,23 +26,6 @@ fn depolarised_multiple_light_adds_to_one_of_two_components() {
         ..MixedLight::default()
     };
     assert_absolute(squared(coherent).sqrt(), 0.892, 5e-4);
-}
-
-#[test]
-fn one_degree_of_polarisation_for_all_light_is_one_factor() {
-    let polarised = MixedLight {
-        multiple: 0.4,
-        within_single: 0.8,
-        with_single: 0.3,
-        within_multiple: 0.6,
-        polarisation: [1.0; 2],
-    };
-    let partly = MixedLight {
-        polarisation: [0.6; 2],
-        ..polarised
-    };
-    let factor = 0.5 * (1.0 + 0.36);
-    assert_relative(squared(partly), factor * squared(polarised), 1e-14);
 }
 
 proptest! {

@@ -3,7 +3,7 @@ use tem00_testkit::{assert_absolute, assert_relative};
 use super::*;
 use crate::{
     LineShape, Rows, SpectralLine,
-    law::tests::{cell, gaussian},
+    law::tests::{cell, gaussian, of},
 };
 
 fn squares(fractions: &[f64]) -> f64 {
@@ -28,10 +28,7 @@ fn squares_of_modes_sum_to_the_squared_contrast() {
         (gaussian(450e-9, 20e-9), cell(450e-9, 0.0, 30.0, 20e-6)),
         (gaussian(450e-9, 20e-9), cell(450e-9, 0.0, 30.0, 90e-6)),
     ] {
-        let speckle = PolychromaticSpeckle {
-            line: &line,
-            cell: &cell,
-        };
+        let speckle = of(&line, &cell);
         let modes = speckle.modes();
         assert_absolute(squares(&modes).sqrt(), speckle.contrast(), 1.2e-3);
     }
@@ -40,10 +37,7 @@ fn squares_of_modes_sum_to_the_squared_contrast() {
 #[test]
 fn modes_of_heights_alone_fall_by_one_ratio() {
     let (line, cell) = (gaussian(450e-9, 10e-9), cell(450e-9, -30.0, 30.0, 1.6e-6));
-    let speckle = PolychromaticSpeckle {
-        line: &line,
-        cell: &cell,
-    };
+    let speckle = of(&line, &cell);
     let squared = speckle.contrast().powi(2);
     let ratio = (1.0 - squared) / (1.0 + squared);
     for (n, mode) in (0..5).zip(speckle.modes()) {
@@ -73,7 +67,7 @@ fn the_extent_of_a_source_adds_patterns_to_those_of_its_line() {
         let line = &gaussian(450e-9, linewidth);
         let point = &cell(450e-9, 0.0, 30.0, rms_height);
         let disc = &point.clone().with_source_extent(extent.clone());
-        let [of_point, of_disc] = [point, disc].map(|cell| PolychromaticSpeckle { line, cell });
+        let [of_point, of_disc] = [point, disc].map(|cell| of(line, cell));
         for variance in [contrast, noise] {
             let patterns = of_disc.patterns(variance);
             assert_eq!(!patterns.heights.is_empty(), few_heights);
@@ -106,13 +100,10 @@ fn a_dense_relief_can_stand_for_a_correlated_one() {
     };
     let cell = cell(450e-9, 0.0, 30.0, 0.0).with_relief(relief).unwrap();
     let line = gaussian(450e-9, 20e-9);
-    let speckle = PolychromaticSpeckle {
-        line: &line,
-        cell: &cell,
-    };
+    let speckle = of(&line, &cell);
     let contrast = |cell: &ResolutionCell| {
         let line = &line;
-        PolychromaticSpeckle { line, cell }.contrast()
+        of(line, cell).contrast()
     };
     let dense = dense_equivalent(cell.clone(), speckle.contrast(), contrast);
     assert_absolute(contrast(&dense), speckle.contrast(), 2e-4);

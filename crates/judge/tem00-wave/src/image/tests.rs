@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use tem00_testkit::{assert_absolute, refuses};
 
 use super::*;
-use crate::{DMat3, Illumination, Lens, RigidMotion, RoughSurface, Scatterer};
+use crate::{DMat3, Illumination, Lens, RoughSurface, Scatterer};
 
 const WAVELENGTH: f64 = 650e-9;
 const LENS: Lens = Lens {
@@ -165,84 +165,6 @@ fn a_point_out_of_focus_fades_as_the_pupil_integral_says() {
         };
         assert_absolute(found * depth, sinc.abs(), 2e-3);
     }
-}
-
-#[test]
-fn a_pattern_moves_with_the_point_it_images() {
-    // To the right and upwards in the scene is to the right and upwards in the picture.
-    let camera = camera();
-    let window = ImageWindow::new(&camera, &sampling(128)).expect("a window");
-    let point = DVec3::new(31e-6, 62e-6, -0.3);
-    let image = window.image(&points(&[point])).intensity();
-    let brightest = image
-        .values()
-        .iter()
-        .enumerate()
-        .max_by(|(_, a), (_, b)| a.total_cmp(b))
-        .map(|(i, _)| DVec2::new((i % 128) as f64, (i / 128) as f64));
-    let expected = camera.project(point).expect("in front") / sampling(128).step + 64.0;
-    assert!(
-        brightest.is_some_and(|at| (at - expected).abs().max_element() <= 0.5),
-        "{brightest:?}, not {expected}"
-    );
-}
-
-#[test]
-fn an_image_does_not_change_when_everything_moves_together() {
-    let camera = camera();
-    let motion = RigidMotion::rotation(DVec3::new(1.0, -2.0, 0.3), 1.1, DVec3::Y)
-        .expect("a rotation")
-        .then(&RigidMotion::translation(DVec3::new(0.1, 0.2, -0.3)).expect("a translation"));
-    let sampling = ImageSampling {
-        centre: DVec2::new(0.01, -0.005),
-        ..sampling(64)
-    };
-    let near = camera.focus_point(sampling.centre);
-    let surface = [
-        DVec3::ZERO,
-        DVec3::new(40e-6, 10e-6, -1e-3),
-        DVec3::new(-30e-6, 60e-6, 0.0),
-    ]
-    .map(|offset| Scatterer {
-        position: near + offset,
-        amplitude: Complex::new(1.0, 0.0),
-    });
-    let surface = RoughSurface::from_scatterers(surface.to_vec()).expect("points");
-    let light = Illumination::point(WAVELENGTH, DVec3::new(0.2, 0.0, 0.1)).expect("a source");
-    let window = |camera: &Camera| ImageWindow::new(camera, &sampling).expect("a window");
-    let still = window(&camera).image(&surface.lit_by(&light));
-    let moved =
-        window(&camera.moved(&motion)).image(&surface.moved(&motion).lit_by(&light.moved(&motion)));
-    let largest = largest_magnitude(still.amplitude().values());
-    for (a, b) in still
-        .amplitude()
-        .values()
-        .iter()
-        .zip(moved.amplitude().values())
-    {
-        // Phases of 1e−9 rad, and the f32 of the transform.
-        assert!((a - b).norm() < 1e-6 * largest, "{a} {b}");
-    }
-}
-
-#[test]
-fn a_dark_surface_has_a_dark_image() {
-    let dark = Scatterer {
-        position: DVec3::new(0.0, 0.0, -0.3),
-        amplitude: Complex::new(0.0, 0.0),
-    };
-    let light = Illumination::plane(WAVELENGTH, DVec3::NEG_Z).expect("a plane wave");
-    let lit = RoughSurface::from_scatterers(vec![dark])
-        .expect("a point")
-        .lit_by(&light);
-    let image = ImageWindow::new(&camera(), &sampling(16))
-        .expect("a window")
-        .image(&lit);
-    let dark = Complex::new(0.0, 0.0);
-    assert!(
-        image.amplitude().values().iter().all(|&u| u == dark),
-        "light"
-    );
 }
 
 #[test]

@@ -1,5 +1,5 @@
 use std::sync::Mutex;
-use tem00_testkit::{assert_absolute, assert_relative};
+use tem00_testkit::assert_absolute;
 
 use super::*;
 use crate::{Amplitudes, Arrangement, PatchDescription, Roughness, Scatterer};
@@ -48,28 +48,6 @@ fn two_points_make_fringes_where_their_paths_differ_by_whole_wavelengths() {
 }
 
 #[test]
-fn fringes_of_two_points_are_as_far_apart_as_in_young_s_experiment() {
-    let lit = points(&[DVec3::X * -0.1e-3, DVec3::X * 0.1e-3]).lit_by(&plane_wave());
-    let at = |x: f64| lit.field_at(DVec3::new(x, 0.0, 0.5)).norm_sqr();
-    let spacing = 0.5 * WAVELENGTH / 0.2e-3; // 1.625 mm
-    // Bright on the axis, dark half a fringe away: the next term of the path is (x/L)²/2 = 1e−6.
-    assert!((at(0.0) / (4.0 / 0.25) - 1.0).abs() < 1e-6, "{}", at(0.0));
-    assert!(at(0.5 * spacing) / at(0.0) < 1e-8, "{}", at(0.5 * spacing));
-    assert_relative(at(spacing), at(0.0), 2e-5);
-}
-
-#[test]
-fn light_from_one_point_falls_off_with_the_square_of_distance() {
-    let lit = points(&[DVec3::ZERO]).lit_by(&plane_wave());
-    let at = |r: f64| lit.field_at(DVec3::new(0.6, 0.0, 0.8) * r).norm_sqr();
-    for r in [1e-3, 0.1, 2.0, 50.0] {
-        // The rounding of the phase at 100 m, 1e−7 rad, does not touch the magnitude; the series of
-        // sine and cosine leave 1e−11.
-        assert!((at(r) / at(2.0 * r) - 4.0).abs() < 1e-9, "at {r}");
-    }
-}
-
-#[test]
 fn source_and_receiver_may_be_exchanged() {
     let surface = patch(500, Amplitudes::ComplexGaussian, 3);
     let (a, b) = (DVec3::new(0.1, -0.05, 0.4), DVec3::new(-0.2, 0.1, 0.25));
@@ -83,35 +61,6 @@ fn source_and_receiver_may_be_exchanged() {
         (there - back).norm() < 1e-8 * there.norm(),
         "{there} {back}"
     );
-}
-
-/// Squared contrast of a single speckle field over many surfaces.
-fn contrast_squared(scatterers: usize, amplitudes: Amplitudes) -> f64 {
-    const SURFACES: u64 = 20_000;
-    let (mut mean, mut square) = (0.0, 0.0);
-    for seed in 0..SURFACES {
-        let lit = patch(scatterers, amplitudes, seed).lit_by(&plane_wave());
-        let intensity = lit.field_at(DVec3::new(0.01, 0.02, 0.3)).norm_sqr();
-        mean += intensity / SURFACES as f64;
-        square += intensity * intensity / SURFACES as f64;
-    }
-    square / (mean * mean) - 1.0
-}
-
-#[test]
-fn unit_scatterers_lower_the_squared_contrast_by_one_over_their_number() {
-    for (scatterers, amplitudes, expected) in [
-        (2, Amplitudes::Unit, 0.5),
-        (5, Amplitudes::Unit, 0.8),
-        (20, Amplitudes::Unit, 0.95),
-        (2, Amplitudes::ComplexGaussian, 1.0),
-        (20, Amplitudes::ComplexGaussian, 1.0),
-    ] {
-        let measured = contrast_squared(scatterers, amplitudes);
-        // Of exponential intensity, the squared contrast of n samples scatters by √(8/n) = 0.020;
-        // of fewer phasors by less. Four of them.
-        assert_absolute(measured, expected, 0.08);
-    }
 }
 
 #[test]
@@ -133,20 +82,6 @@ fn progress_counts_every_term_once() {
     assert!(reports.iter().all(|report| report.total == total), "total");
     let most = reports.iter().map(|report| report.done).max();
     assert_eq!(most, Some(total));
-}
-
-#[test]
-fn progress_includes_the_row_it_reports() {
-    let lit = patch(100, Amplitudes::Unit, 1).lit_by(&plane_wave());
-    let steps = [DVec3::X * 1e-4, DVec3::Y * 1e-4];
-    let plane = SamplePlane::new(DVec3::Z, steps, [30, 4]).expect("a plane");
-    let done = Mutex::new(Vec::new());
-    let _ = lit.field_with_progress(&plane, |progress| {
-        done.lock().expect("no panic").push(progress.done);
-    });
-    let mut done = done.into_inner().expect("no panic");
-    done.sort_unstable();
-    assert_eq!(done, [3_000, 6_000, 9_000, 12_000]);
 }
 
 #[test]

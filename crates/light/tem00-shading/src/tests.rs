@@ -3,6 +3,7 @@
 use proptest::prelude::*;
 use tem00_decorrelation::pupil_overlap_correlation;
 use tem00_statistics::{exponential_cumulative, kolmogorov_smirnov, pixel_contrast};
+use tem00_testkit::{assert_absolute, correlation};
 
 use crate::{
     Camera, CameraDescription, DVec2, DVec3, Illumination, Laser, Motion, Pose, PreparedSpeckle,
@@ -59,14 +60,6 @@ fn factors(frame: &SpeckleFrame, pose: &Pose, points: &[DVec3]) -> Vec<f64> {
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let (count, sum) = values.fold((0.0, 0.0), |(count, sum), value| (count + 1.0, sum + value));
     sum / count
-}
-
-fn correlation(a: &[f64], b: &[f64]) -> f64 {
-    let [m, n] = [a, b].map(|values| mean(values.iter().copied()));
-    let product = |x: &[f64], y: &[f64], m: f64, n: f64| {
-        mean(x.iter().zip(y).map(|(x, y)| (x - m) * (y - n)))
-    };
-    product(a, b, m, n) / (product(a, a, m, m) * product(b, b, n, n)).sqrt()
 }
 
 proptest! {
@@ -257,10 +250,7 @@ fn looks_polarisation_and_pixels_lower_the_contrast_by_their_laws() {
         let speckle = speckle.prepare().unwrap();
         let frame = speckle.frame(&Motion::default()).unwrap();
         let found = contrast(&factors(&frame, &Pose::IDENTITY, &points));
-        assert!(
-            (found - law).abs() < tolerance(law),
-            "{found}, by the law {law}"
-        );
+        assert_absolute(found, law, tolerance(law));
     }
     let speckle = speckle.prepare().unwrap();
     let frame = speckle.frame(&Motion::default()).unwrap();
@@ -269,11 +259,7 @@ fn looks_polarisation_and_pixels_lower_the_contrast_by_their_laws() {
         .map(|&point| frame.average(point, DVec3::Z))
         .collect();
     let law = pixel_contrast(1.0 / speckle.geometry().speckle_size_in_pixels());
-    let found = contrast(&averages);
-    assert!(
-        (found - law).abs() < tolerance(law),
-        "{found}, by the law {law}"
-    );
+    assert_absolute(contrast(&averages), law, tolerance(law));
 }
 
 #[test]

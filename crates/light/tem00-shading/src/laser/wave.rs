@@ -212,6 +212,8 @@ impl Laser {
 mod tests {
     use tem00_beam::{FanGeometry, LineProfile};
 
+    use tem00_testkit::assert_absolute;
+
     use super::*;
     use crate::{BeamShape, LaserDescription, testing::spot};
 
@@ -255,11 +257,7 @@ mod tests {
                     (ahead - behind) / 2e-5
                 };
                 // Paraxially: half the square of the slope of the rays, at most 0.15 to the side.
-                assert!(
-                    (slope(-wave) - 1.0).abs() < 0.012,
-                    "{point}: {}",
-                    slope(-wave)
-                );
+                assert_absolute(slope(-wave), 1.0, 0.012);
                 assert!(slope(across).abs() < 2e-3, "{point}: {}", slope(across));
             }
         }

@@ -1,4 +1,5 @@
 use tem00_coherence::{LineShape, PolychromaticSpeckle, SourceExtent};
+use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
 use crate::{Camera, CameraDescription, DVec3, Laser, Motion, Pose, Speckle, SpeckleFrame};
@@ -102,12 +103,8 @@ fn contrasts_are_those_of_the_law() {
         let values = picture(&speckle.frame(&Motion::default()).unwrap(), DVec3::ZERO);
         let (line, cell) = (laser.spectral_line(), cell(&laser, relief(height)));
         let law = PolychromaticSpeckle { line, cell: &cell }.contrast();
-        let found = covariance(&values, &values).sqrt();
         // Three standard errors of a contrast from 3584 points.
-        assert!(
-            (found / law - 1.0).abs() < 0.045,
-            "{height}, {half_angle}: {found} for {law}"
-        );
+        assert_relative(covariance(&values, &values).sqrt(), law, 0.045);
     }
 }
 
@@ -131,12 +128,8 @@ fn pixels_have_the_contrast_of_the_law_of_a_linewidth() {
         weight * law.autocovariance(lag.map(|lag| lag * pixel))
     });
     let expected = (parts.sum::<f64>() / f64::from(steps * steps)).sqrt();
-    let found = covariance(&values, &values).sqrt();
     assert!(expected < 0.95 * law.contrast(), "{expected} tells nothing");
-    assert!(
-        (found / expected - 1.0).abs() < 0.045,
-        "{found} for {expected}"
-    );
+    assert_relative(covariance(&values, &values).sqrt(), expected, 0.045);
 }
 
 #[test]
@@ -159,11 +152,7 @@ fn frames_along_the_tilt_correlate_by_the_law_and_others_are_refused() {
         let there = picture(&speckle.frame(&(*pose).into()).unwrap(), step);
         let found = covariance(&here, &there);
         let shift = 0.25_f64.copysign(step.x);
-        let expected = law.covariance([shift, 0.0]);
-        assert!(
-            (found - expected).abs() < 0.04,
-            "{step}: {found} for {expected}"
-        );
+        assert_absolute(found, law.covariance([shift, 0.0]), 0.04);
     }
     let across = Pose::along(0.5 * diameter * DVec3::Y).unwrap();
     let refused = prepared(&laser, Relief::default())

@@ -183,7 +183,7 @@ mod tests {
     use tem00_testkit::{assert_absolute, assert_relative};
 
     use super::*;
-    use crate::{intensity::bessel::scaled_bessel_i0, pixel_contrast};
+    use crate::intensity::bessel::scaled_bessel_i0;
 
     /// C² from the frequencies: the transfer function of the box times the power spectrum.
     fn squared_by_spectrum([q_x, q_y]: [f64; 2]) -> f64 {
@@ -238,31 +238,6 @@ mod tests {
             assert_relative(scaled, (4.0 / PI).sqrt(), 1e-6);
         }
         assert!(rectangular_pixel_contrast([f64::INFINITY, 1.0]).abs() < f64::MIN_POSITIVE);
-    }
-
-    #[test]
-    fn the_coherence_area_alone_overestimates_by_up_to_eleven_percent() {
-        let area = 4.0 / PI;
-        let factor = |q: f64| {
-            let m = PI * q * q / area;
-            (area.sqrt() / q) * libm::erf(m.sqrt()) + (-m).exp_m1() / m
-        };
-        let mut largest = 0.0_f64;
-        for i in 1..200 {
-            let q = 0.05 * f64::from(i);
-            let excess = factor(q).powi(2) / pixel_contrast(q).powi(2);
-            largest = largest.max(excess);
-        }
-        assert!((1.09..1.11).contains(&largest), "{largest}");
-        // Four digits of the square pixel.
-        for (q, squared) in [
-            (0.5, 0.825_6),
-            (1.0, 0.529_6),
-            (2.0, 0.214_3),
-            (5.0, 0.043_9),
-        ] {
-            assert_absolute(factor(q).powi(2), squared, 6e-5);
-        }
     }
 
     #[test]

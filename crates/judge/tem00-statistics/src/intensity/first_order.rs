@@ -207,8 +207,7 @@ pub fn contrast_of_phasor_sum(count: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
-    use rand::{RngExt, SeedableRng};
-    use rand_chacha::ChaCha8Rng;
+
     use tem00_testkit::{assert_absolute, assert_relative};
 
     use super::*;
@@ -286,30 +285,6 @@ mod tests {
                 exponential_cumulative(intensity),
                 1e-13,
             );
-        }
-    }
-
-    #[test]
-    fn few_phasors_have_the_stated_contrast() {
-        const DRAWS: u32 = 200_000;
-        for count in [1, 2, 5] {
-            let mut rng = ChaCha8Rng::seed_from_u64(7);
-            let mut sums = [0.0; 2];
-            for _ in 0..DRAWS {
-                let (re, im) = (0..count).fold((0.0, 0.0), |(re, im), _| {
-                    let (sin, cos) = (rng.random::<f64>() * TAU).sin_cos();
-                    (re + cos, im + sin)
-                });
-                let intensity = (re * re + im * im) / f64::from(count);
-                sums[0] += intensity;
-                sums[1] += intensity * intensity;
-            }
-            let mean = sums[0] / f64::from(DRAWS);
-            let squared = sums[1] / f64::from(DRAWS) / (mean * mean) - 1.0;
-            let law = contrast_of_phasor_sum(usize::try_from(count).unwrap());
-            // Var of C² is 8 / n at most, that of the exponential law; 3.3 σ is α = 0.001.
-            let tolerance = 3.3 * (8.0 / f64::from(DRAWS)).sqrt();
-            assert_absolute(squared, law * law, tolerance);
         }
     }
 

@@ -3,9 +3,7 @@ use rand_chacha::ChaCha8Rng;
 use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
-use crate::{
-    GammaIntensity, estimate::decorrelated_samples, exponential_cumulative, synthetic::speckle_tile,
-};
+use crate::exponential_cumulative;
 
 const ROUNDS: u32 = 2_000;
 
@@ -216,55 +214,6 @@ fn student_has_its_tabulated_critical_values() {
         // Half of the table's last digit, 5e−4, over t and a power of −31 at most.
         assert_relative(outcome.p_value, p, 2e-3);
     }
-}
-
-#[test]
-fn student_becomes_normal_for_many_samples() {
-    let samples: Vec<f64> = (0..200_001).map(|i| f64::from(i % 7)).collect();
-    let moments = crate::Moments::from_samples(&samples).unwrap();
-    for t in [0.1, 1.0, 3.0] {
-        let mean = moments.mean() - t * moments.standard_error();
-        let p = t_test_mean(&samples, mean).unwrap().p_value;
-        // The next order is t(t² + 1) / 4n of a density, below 4e−5.
-        let normal = libm::erfc(t / core::f64::consts::SQRT_2);
-        assert_absolute(p, normal, 4e-5);
-    }
-}
-
-#[test]
-fn speckle_passes_and_averaged_speckle_fails() {
-    // The first zero of the autocovariance lies at 1.22 · 4 = 4.88 pixels.
-    let stride = 5;
-    for seed in 0..8 {
-        let samples = |seed| {
-            let (tile, _) = speckle_tile(320, 80, seed);
-            decorrelated_samples(&tile, stride).unwrap()
-        };
-        let first = samples(seed);
-        let outcome = kolmogorov_smirnov(&first, exponential_cumulative).unwrap();
-        assert!(outcome.p_value > 1e-3, "seed {seed}: {outcome:?}");
-
-        let pairs = first.iter().zip(samples(seed + 100));
-        let averaged: Vec<f64> = pairs.map(|(a, b)| 0.5 * (a + b)).collect();
-        let outcome = kolmogorov_smirnov(&averaged, exponential_cumulative).unwrap();
-        assert!(outcome.p_value < 1e-3, "seed {seed}: {outcome:?}");
-        let law = GammaIntensity::new(2.0).unwrap();
-        let outcome = kolmogorov_smirnov(&averaged, |x| law.cumulative(x)).unwrap();
-        assert!(outcome.p_value > 1e-3, "seed {seed}: {outcome:?}");
-    }
-}
-
-#[test]
-fn wrong_counts_and_wrong_means_are_rejected() {
-    let outcome = chi_squared(&[120, 80, 100, 100], &[100.0; 4], 1).unwrap();
-    // χ² = 8 at three degrees of freedom: p = erfc(2) + √(2·8/π) e⁻⁴.
-    let p = libm::erfc(2.0) + (16.0 / PI).sqrt() * (-4.0_f64).exp();
-    assert_relative(outcome.p_value, p, 1e-12);
-    let mut rng = ChaCha8Rng::seed_from_u64(24);
-    let samples: Vec<f64> = (0..100).map(|_| 1.0 + normal(&mut rng)).collect();
-    // The mean is off by ten standard errors.
-    let outcome = t_test_mean(&samples, 0.0).unwrap();
-    assert!(outcome.p_value < 1e-6, "{outcome:?}");
 }
 
 #[test]

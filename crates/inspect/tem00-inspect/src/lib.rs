@@ -20,7 +20,7 @@ mod units;
 use std::{ffi::OsString, io::Write, path::Path};
 
 use clap::CommandFactory;
-use tem00_report::{failure::Failure, program::Program, shell};
+use tem00_report::{failure::Failure, output, program, shell};
 use tem00_speckle::SpeckleError;
 use tem00_triangulation::TriangulationError;
 
@@ -31,27 +31,25 @@ use crate::args::{Cli, Command};
 ///
 /// Takes over Ctrl-C and the termination signals of the process: a second one ends it at once.
 pub fn run(arguments: &[OsString]) -> u8 {
-    tem00_report::program::run::<Cli>(arguments)
+    program::run(arguments, obey)
 }
 
-impl Program for Cli {
-    fn is_quiet(&self) -> bool {
-        self.quiet
+/// Does the command and prints its results to `out`.
+fn obey(cli: &Cli, out: &mut impl Write) -> Result<(), Failure> {
+    if cli.quiet {
+        output::be_quiet();
     }
-
-    fn obey(&self, mut out: &mut dyn Write) -> Result<(), Failure> {
-        match &self.command {
-            Command::Budget(args) => budget::run(args, &mut out),
-            Command::Design(args) => design::run(args, &mut out),
-            Command::Characterise(args) => characterise::run(args, &mut out),
-            Command::Triangulate(args) => triangulate::run(args, &mut out),
-            Command::Lines(args) => lines::run(args, &mut out),
-            Command::Calibrate(args) => calibrate::run(args, &mut out),
-            Command::Sweep(args) => sweep::run(args, &mut out),
-            Command::List(args) => list::run(args, &mut out),
-            Command::Completions(args) => shell::completions(args, Self::command(), &mut out),
-            Command::Man(args) => shell::man(args, Self::command(), &mut out),
-        }
+    match &cli.command {
+        Command::Budget(args) => budget::run(args, out),
+        Command::Design(args) => design::run(args, out),
+        Command::Characterise(args) => characterise::run(args, out),
+        Command::Triangulate(args) => triangulate::run(args, out),
+        Command::Lines(args) => lines::run(args, out),
+        Command::Calibrate(args) => calibrate::run(args, out),
+        Command::Sweep(args) => sweep::run(args, out),
+        Command::List(args) => list::run(args, out),
+        Command::Completions(args) => shell::completions(args, Cli::command(), out),
+        Command::Man(args) => shell::man(args, Cli::command(), out),
     }
 }
 

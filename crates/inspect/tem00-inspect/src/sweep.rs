@@ -1,5 +1,6 @@
 //! `tem00-inspect sweep`: a command over all combinations of some values, a row for each.
 
+mod command;
 mod grid;
 mod row;
 mod task;

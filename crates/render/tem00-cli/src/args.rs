@@ -16,12 +16,11 @@ use tem00_report::{
 use tem00_speckle::Pupil;
 
 use self::pupil::pupil;
-pub use self::scene::SceneArgs;
 pub(crate) use self::{
     list::{ListArgs, Listed},
-    render::RenderArgs,
     speckle::SpeckleArgs,
 };
+pub use self::{render::RenderArgs, scene::SceneArgs};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -40,7 +39,7 @@ Exit codes: 0 success, 1 failure while running, 2 bad input or usage, 3 nothing 
 /// Laser light with speckle, from scene file to image.
 #[derive(Debug, Parser)]
 #[command(name = "tem00", version, max_term_width = 100, after_help = EXAMPLES)]
-pub struct Cli {
+pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
 

@@ -19,14 +19,14 @@ use std::{
 };
 
 use clap::CommandFactory;
-use tem00_report::{failure::Failure, program::Program, shell};
+use tem00_report::{failure::Failure, output, program, shell};
 
-use crate::args::Command;
+use crate::args::{Cli, Command};
 pub use crate::{
-    args::{Cli, SceneArgs},
+    args::{RenderArgs, SceneArgs},
     frame_files::check_room,
     inspection::Inspection,
-    render::{frames, tracer_failure},
+    render::{frames, run as render, tracer_failure},
 };
 
 /// The commands of `tem00-inspect`.
@@ -53,23 +53,21 @@ pub fn run(arguments: &[OsString]) -> u8 {
         );
         return 2;
     }
-    tem00_report::program::run::<Cli>(arguments)
+    program::run(arguments, obey)
 }
 
-impl Program for Cli {
-    fn is_quiet(&self) -> bool {
-        self.quiet
+/// Does the command and prints its results to `out`.
+fn obey(cli: &Cli, out: &mut impl Write) -> Result<(), Failure> {
+    if cli.quiet {
+        output::be_quiet();
     }
-
-    fn obey(&self, mut out: &mut dyn Write) -> Result<(), Failure> {
-        match &self.command {
-            Command::Render(args) => render::run(args, &mut out),
-            Command::Pattern(args) => pattern::run(args, &mut out),
-            Command::Stats(args) => stats::run(args, &mut out),
-            Command::Speckle(args) => speckle::run(args, &mut out),
-            Command::List(args) => list::run(args, &mut out),
-            Command::Completions(args) => shell::completions(args, Self::command(), &mut out),
-            Command::Man(args) => shell::man(args, Self::command(), &mut out),
-        }
+    match &cli.command {
+        Command::Render(args) => render::run(args, out),
+        Command::Pattern(args) => pattern::run(args, out),
+        Command::Stats(args) => stats::run(args, out),
+        Command::Speckle(args) => speckle::run(args, out),
+        Command::List(args) => list::run(args, out),
+        Command::Completions(args) => shell::completions(args, Cli::command(), out),
+        Command::Man(args) => shell::man(args, Cli::command(), out),
     }
 }

@@ -34,7 +34,7 @@ use crate::{
 /// # Errors
 ///
 /// Returns a failure if the input is not valid, a file cannot be written or the user ends it.
-pub(crate) fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure> {
+pub fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure> {
     let files = args.common.files.with(args.crop.as_ref());
     let read = SceneFile::read_with(&args.common.scene, files.reading(), |document, _| {
         Ok(document.text().to_owned())

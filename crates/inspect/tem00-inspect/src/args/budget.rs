@@ -12,7 +12,7 @@ use super::SetupArgs;
 ///
 /// A set-up whose line saturates the sensor or is not found, or whose trials trust the line in fewer than
 /// half of the columns, measures nothing: there is no number, and the exit code is 3.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 #[command(after_help = BUDGET_EXAMPLES)]
 pub(crate) struct BudgetArgs {
     #[command(flatten)]

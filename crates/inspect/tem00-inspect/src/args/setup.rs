@@ -6,7 +6,7 @@ use clap::Args;
 use tem00_report::args::FileArgs;
 
 /// A set-up, and where the report on it goes.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub(crate) struct SetupArgs {
     /// The set-up file, or - for standard input.
     #[arg(value_name = "SETUP.toml")]

@@ -12,7 +12,7 @@ use tem00_cli::SceneArgs;
 ///
 /// If no point of the line is valid, the frames and the report are written, but there is no number, and the
 /// exit code is 3.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 #[command(after_help = TRIANGULATE_EXAMPLES)]
 pub(crate) struct TriangulateArgs {
     #[command(flatten)]

@@ -1,29 +1,26 @@
 //! One task of a sweep.
 
-use std::{
-    ffi::OsString,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use serde_json::Value;
-use tem00_config::{MAX_TEXT_BYTES, read_input};
+use tem00_config::{Change, MAX_TEXT_BYTES, read_input};
 use tem00_report::{
     failure::Failure,
     folder_lock::{FolderLock, Refused},
     output,
-    program::obey_line,
 };
 
 use super::{
+    command::{HELP, SweptCommand},
     grid::{Grid, Swept},
     row::{Outcome, Row, result_at},
 };
-use crate::args::Cli;
 
 /// A sweep with the folder of its results.
 pub(super) struct Sweep<'a> {
     pub(super) grid: &'a Grid,
     pub(super) folder: &'a Path,
+    command: SweptCommand,
     rows: PathBuf,
     tasks: PathBuf,
     /// A number that changes with all inputs that the tasks have in common.
@@ -61,6 +58,7 @@ impl<'a> Sweep<'a> {
         Ok(Self {
             grid,
             folder,
+            command: SweptCommand::of(grid)?,
             rows: output::subfolder(folder, "rows")?,
             tasks: output::subfolder(folder, "tasks")?,
             fingerprint: format!("{:x}", md5::compute(format!("{common:?}"))),
@@ -112,22 +110,19 @@ impl<'a> Sweep<'a> {
         row.write(&self.row_path(task))
     }
 
-    /// Does the command of a task. Files may have the names of options.
+    /// Does the command of a task.
     fn obey(&self, task: usize) -> Result<(), Failure> {
-        let mut output = OsString::from("--output=");
-        output.push(output::subfolder(&self.tasks, &format!("{task:06}"))?);
-        let threads = self.threads.map(|threads| format!("--threads={threads}"));
-        let set = self.changes(task).into_iter();
-        let set = set.map(|change| format!("--set={change}"));
-        let words = ["tem00", self.grid.command.name()].map(str::to_owned);
-        let words = words.into_iter().chain(self.grid.options.clone());
-        let words = words.chain(set).chain(threads).map(OsString::from);
-        let file = self.grid.file.clone().into_os_string();
-        let mut line = words.chain([output, "--".into(), file]);
-        match self.grid.command {
-            Swept::Render => obey_line::<tem00_cli::Cli>(&mut line),
-            Swept::Budget | Swept::Triangulate => obey_line::<Cli>(&mut line),
-        }
+        let folder = output::subfolder(&self.tasks, &format!("{task:06}"))?;
+        let change = |text: &String| {
+            let refused = |why| Failure::input(format!("{text}: {why}"), HELP);
+            text.parse().map_err(refused)
+        };
+        let changes: Vec<Change> = self
+            .changes(task)
+            .iter()
+            .map(change)
+            .collect::<Result<_, _>>()?;
+        self.command.run(&changes, folder, self.threads)
     }
 
     /// What a failure says, without the path of the file, which may differ from machine to machine.

@@ -14,11 +14,12 @@ use super::SceneArgs;
 ///
 /// A scene file needs a laser, a camera and a surface, and no more. The size of the speckle
 /// patterns is chosen from the camera, the image and the motion, and printed with its reason.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 #[command(after_help = RENDER_EXAMPLES)]
-pub(crate) struct RenderArgs {
+pub struct RenderArgs {
+    /// The scene.
     #[command(flatten)]
-    pub(crate) common: SceneArgs,
+    pub common: SceneArgs,
 
     /// Leave out the frames that an earlier run of the same render finished in the folder.
     #[arg(long)]

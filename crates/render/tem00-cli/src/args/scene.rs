@@ -7,7 +7,7 @@ use tem00_report::args::{FileArgs, IndexRange};
 use tem00_tracer::{RenderOptions, Sampling};
 
 /// A scene, and what is rendered of it.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct SceneArgs {
     /// The scene file, or - for standard input.
     #[arg(value_name = "SCENE.toml")]

@@ -18,10 +18,10 @@ pub struct FileArgs {
 }
 
 impl FileArgs {
-    /// Returns the options with one more change, if there is one.
-    pub fn with(&self, change: Option<&Change>) -> Self {
+    /// Returns the options with further changes.
+    pub fn with<'a>(&self, changes: impl IntoIterator<Item = &'a Change>) -> Self {
         let mut more = self.clone();
-        more.changes.extend(change.cloned());
+        more.changes.extend(changes.into_iter().cloned());
         more
     }
 

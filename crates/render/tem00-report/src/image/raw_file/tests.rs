@@ -9,6 +9,25 @@ use tiff::encoder::{TiffEncoder, colortype};
 
 use super::{frame::BIT_DEPTHS, *};
 
+fn raw(file: &[u8], format: RawFormat, channel: Option<&str>) -> Result<RawImage, ImageError> {
+    let samples = decode(Cursor::new(file), format)?;
+    samples.judged(None)?.image(channel)
+}
+
+/// Returns the bytes of pairs of hexadecimal digits.
+fn hex(text: &str) -> Vec<u8> {
+    let digits: Vec<u32> = text.chars().filter_map(|c| c.to_digit(16)).collect();
+    let bytes = digits.chunks_exact(2);
+    bytes.map(|pair| (16 * pair[0] + pair[1]) as u8).collect()
+}
+
+/// Returns the numbers of a text.
+fn numbers(text: &str) -> Vec<f32> {
+    text.split_whitespace()
+        .filter_map(|word| word.parse().ok())
+        .collect()
+}
+
 fn values(bit_depth: u32) -> Grid<u16> {
     let full = u16::MAX >> (16 - bit_depth);
     Grid::from_fn(7, 5, |x, y| match (x, y) {
@@ -17,172 +36,126 @@ fn values(bit_depth: u32) -> Grid<u16> {
     })
 }
 
+/// Writes a frame of so many bits.
+fn write(path: &Path, bit_depth: u32) -> Grid<u16> {
+    let values = values(bit_depth);
+    let frame = GreyFrame {
+        values: &values,
+        bit_depth,
+    };
+    let text = [("camera", "\u{e9}l\u{e8}ve \"7\"".to_owned())];
+    write_raw(path, frame, &text).expect("the frame is written");
+    values
+}
+
 fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("a temporary folder")
 }
 
-/// Writes a PNG file with `chunk` before its image.
-fn png(path: &PathBuf, (colour, depth): (ColorType, BitDepth), chunk: Option<&[u8]>, data: &[u8]) {
+/// Writes a PNG file of one row, with the bits of grey values in its chunk sBIT if there are any.
+fn png(path: &PathBuf, colour: ColorType, values: &[u16], bits: &[u8]) {
     let mut file = Vec::new();
-    let pixel = colour.samples() * if depth == BitDepth::Sixteen { 2 } else { 1 };
-    let width = u32::try_from(data.len() / pixel).expect("a short row");
+    let width = u32::try_from(values.len() / colour.samples()).expect("a short row");
     let mut encoder = Encoder::new(&mut file, width, 1);
     encoder.set_color(colour);
-    encoder.set_depth(depth);
+    encoder.set_depth(BitDepth::Sixteen);
     let mut writer = encoder.write_header().expect("a header");
-    if let Some(bits) = chunk {
+    if !bits.is_empty() {
         writer.write_chunk(png::chunk::sBIT, bits).expect("a chunk");
     }
-    writer.write_image_data(data).expect("an image");
+    let data: Vec<u8> = values
+        .iter()
+        .flat_map(|value| value.to_be_bytes())
+        .collect();
+    writer.write_image_data(&data).expect("an image");
     writer.finish().expect("an end");
     fs::write(path, file).expect("a file");
-}
-
-fn write_tiff<C: colortype::ColorType>(path: &PathBuf, size: [u32; 2], data: &[C::Inner])
-where
-    [C::Inner]: tiff::encoder::TiffValue,
-{
-    let mut file = Cursor::new(Vec::new());
-    let mut encoder = TiffEncoder::new(&mut file).expect("a header");
-    let image = encoder.write_image::<C>(size[0], size[1], data);
-    image.expect("an image");
-    fs::write(path, file.into_inner()).expect("a file");
 }
 
 #[test]
 fn frames_of_all_bit_depths_come_back_unchanged() {
     let folder = folder();
     for bit_depth in BIT_DEPTHS {
-        let values = values(bit_depth);
-        let frame = GreyFrame {
-            values: &values,
-            bit_depth,
-        };
         for name in ["a.png", "a.tif", "a.TIFF"] {
             let path = folder.path().join(name);
-            let text = [("camera", "\u{e9}l\u{e8}ve \"7\"".to_owned())];
-            write_raw(&path, frame, &text).expect("the frame is written");
+            let values = write(&path, bit_depth);
             let back = read_raw(&path, None, None).expect("the frame is read");
-            assert_eq!(
-                back.values,
-                values.map(|&value| f32::from(value)),
-                "{name}, {bit_depth} bits"
-            );
+            let expected = values.map(|&value| f32::from(value));
+            assert_eq!(back.values, expected, "{name}, {bit_depth} bits");
             assert_eq!(back.bit_depth, Some(bit_depth), "{name}");
             let full = u16::MAX >> (16 - bit_depth);
             assert_eq!(back.saturated, values.map(|&value| value == full), "{name}");
         }
-    }
-}
-
-#[test]
-fn eight_bits_take_a_byte_and_more_take_two() {
-    let folder = folder();
-    for (bit_depth, expected) in [(8, BitDepth::Eight), (10, BitDepth::Sixteen)] {
-        let path = folder.path().join("a.png");
-        write_raw(
-            &path,
-            GreyFrame {
-                values: &values(bit_depth),
-                bit_depth,
-            },
-            &[],
-        )
-        .expect("the frame is written");
-        let file = Cursor::new(fs::read(&path).expect("the file"));
-        let reader = png::Decoder::new(file).read_info().expect("a PNG");
-        assert_eq!(reader.info().bit_depth, expected, "{bit_depth} bits");
+        // Eight bits take a byte, and more take two.
+        let file = File::open(folder.path().join("a.png")).expect("the file");
+        let reader = png::Decoder::new(std::io::BufReader::new(file)).read_info();
+        let stored = reader.expect("a PNG").info().bit_depth as u32;
+        assert_eq!(stored, if bit_depth == 8 { 8 } else { 16 });
     }
 }
 
 #[test]
 fn values_that_other_programs_scaled_up_are_scaled_back() {
     let path = folder().keep().join("a.png");
-    let sixteen: Vec<u8> = [0x0010_u16, 0x0AB0, 0xFFFF].map(u16::to_be_bytes).concat();
     png(
         &path,
-        (ColorType::Grayscale, BitDepth::Sixteen),
-        Some(&[12]),
-        &sixteen,
+        ColorType::Grayscale,
+        &[0x0010, 0x0AB0, 0xFFFF],
+        &[12],
     );
     let image = read_raw(&path, None, None).expect("the frame is read");
     assert_eq!(image.values.values(), [1.0, 171.0, 4_095.0]);
     assert_eq!((image.bit_depth, image.saturated_pixels()), (Some(12), 1));
-    assert!(
-        image.interpretation.contains("scaled up"),
-        "{}",
-        image.interpretation
-    );
+    assert!(image.interpretation.contains("scaled up"), "{image:?}");
 }
 
 #[test]
 fn the_bits_of_a_camera_can_be_told() {
     let path = folder().keep().join("a.png");
-    let sixteen: Vec<u8> = [7_u16, 1_023].map(u16::to_be_bytes).concat();
-    png(
-        &path,
-        (ColorType::Grayscale, BitDepth::Sixteen),
-        None,
-        &sixteen,
-    );
+    png(&path, ColorType::Grayscale, &[7, 1_023], &[]);
     let of = |bits| read_raw(&path, None, bits);
-    let image = of(None).expect("the frame is read");
-    assert_eq!(image.bit_depth, Some(16), "the file does not know");
-    assert_eq!(
-        image.saturated_pixels(),
-        1,
-        "but its values end at that of 10 bits"
-    );
-    for (bits, saturated) in [(10, 1), (12, 0), (16, 0)] {
-        let told = of(Some(bits)).expect("the bits are enough");
-        assert_eq!(
-            (told.bit_depth, told.saturated_pixels()),
-            (Some(bits), saturated)
-        );
+    // The file has 16 and does not know better, but its values end at the largest of 10.
+    for (told, bits, saturated) in [
+        (None, 16, 1),
+        (Some(10), 10, 1),
+        (Some(12), 12, 0),
+        (Some(16), 16, 0),
+    ] {
+        let image = of(told).expect("the bits are enough");
+        let found = (image.bit_depth, image.saturated_pixels());
+        assert_eq!(found, (Some(bits), saturated), "{told:?}");
     }
-    let error = of(Some(8)).expect_err("1023 does not fit").to_string();
+    let refused = |bits| of(Some(bits)).expect_err("other bits").to_string();
+    let told = refused(8);
     assert!(
-        error.contains("at most 255, but there is one of 1023"),
-        "{error}"
+        told.contains("at most 255, but there is one of 1023"),
+        "{told}"
     );
-    write_raw(
-        &path,
-        GreyFrame {
-            values: &values(10),
-            bit_depth: 10,
-        },
-        &[],
-    )
-    .expect("the frame is written");
-    let error = of(Some(12)).expect_err("ten bits are ten").to_string();
-    assert!(error.contains("have 10 bits"), "{error}");
+    write(&path, 10);
+    let told = refused(12);
+    assert!(told.contains("have 10 bits"), "{told}");
 }
 
 #[test]
 fn colours_are_chosen_or_averaged() {
     let path = folder().keep().join("a.png");
-    let data = [10, 20, 60, 255, 0, 0];
-    png(&path, (ColorType::Rgb, BitDepth::Eight), None, &data);
+    png(&path, ColorType::Rgb, &[10, 20, 60, 65_535, 0, 0], &[]);
     let of = |channel| read_raw(&path, channel, None).expect("the frame is read");
-    assert_eq!(of(None).values.values(), [30.0, 85.0]);
+    assert_eq!(of(None).values.values(), [30.0, 21_845.0]);
     assert_eq!(of(None).saturated_pixels(), 1, "one channel is enough");
     assert_eq!(of(Some("g")).values.values(), [20.0, 0.0]);
-    assert_eq!(
-        of(Some("g")).saturated_pixels(),
-        0,
-        "the other channel does not count"
-    );
+    assert_eq!(of(Some("g")).saturated_pixels(), 0, "another channel");
+    let missing = read_raw(&path, Some("A"), None);
     assert!(
-        matches!(
-            read_raw(&path, Some("A"), None),
-            Err(ImageError::Channel { .. })
-        ),
-        "there is no channel A"
+        matches!(missing, Err(ImageError::Channel { .. })),
+        "{missing:?}"
     );
 
-    let path = path.with_extension("tif");
-    write_tiff::<colortype::RGB16>(&path, [2, 1], &[100, 200, 600, 3, 3, 3]);
-    let of = |channel| read_raw(&path, channel, None).expect("the frame is read");
+    let mut file = Cursor::new(Vec::new());
+    let mut encoder = TiffEncoder::new(&mut file).expect("a header");
+    let image = encoder.write_image::<colortype::RGB16>(2, 1, &[100, 200, 600, 3, 3, 3]);
+    image.expect("an image");
+    let of = |channel| raw(file.get_ref(), RawFormat::Tiff, channel).expect("the frame is read");
     assert_eq!(of(None).values.values(), [300.0, 3.0]);
     assert_eq!(of(Some("B")).values.values(), [600.0, 3.0]);
 }
@@ -190,22 +163,17 @@ fn colours_are_chosen_or_averaged() {
 #[test]
 fn what_is_no_frame_is_refused_in_words() {
     let folder = folder();
-    let file = |name: &str, content: &[u8]| {
-        let path = folder.path().join(name);
+    for [name, content, part] in tem00_testkit::rows(
+        "a.gif => => use .png, .tif, .jpg, .bmp or .pgm
+        a.png => => not a readable PNG
+        a.tif => II*\0 => TIFF
+        b.tif => no image at all => TIFF",
+    ) {
+        let path = folder.path().join(&name);
         fs::write(&path, content).expect("the file is written");
-        read_raw(&path, None, None).expect_err(name).to_string()
-    };
-    assert!(
-        file("a.gif", b"").contains("use .png, .tif, .jpg, .bmp or .pgm"),
-        "another format"
-    );
-    assert!(
-        file("a.png", b"").contains("not a readable PNG"),
-        "an empty PNG"
-    );
-    assert!(file("a.tif", b"II*\0").contains("TIFF"), "a cut header");
-    assert!(file("b.tif", b"no image at all").contains("TIFF"), "text");
-
+        let told = read_raw(&path, None, None).expect_err(&name).to_string();
+        assert!(told.contains(&part), "{name}: {told}");
+    }
     let missing = read_raw(&folder.path().join("none.png"), None, None);
     assert!(matches!(missing, Err(ImageError::Io(_))), "missing");
 }
@@ -213,56 +181,31 @@ fn what_is_no_frame_is_refused_in_words() {
 #[test]
 fn cut_files_are_errors() {
     let folder = folder();
-    for name in ["a.png", "a.tif"] {
+    for (name, format) in [("a.png", RawFormat::Png), ("a.tif", RawFormat::Tiff)] {
         let path = folder.path().join(name);
-        write_raw(
-            &path,
-            GreyFrame {
-                values: &values(12),
-                bit_depth: 12,
-            },
-            &[],
-        )
-        .expect("the frame is written");
+        write(&path, 12);
         let whole = fs::read(&path).expect("the file");
         for length in (0..whole.len() - 12).step_by(7) {
-            fs::write(&path, &whole[..length]).expect("a cut file");
-            assert!(
-                read_raw(&path, None, None).is_err(),
-                "{name}: {length} bytes"
-            );
+            let cut = raw(&whole[..length], format, None);
+            assert!(cut.is_err(), "{name}: {length} bytes");
         }
     }
 }
 
 #[test]
 fn absurd_sizes_are_refused_before_memory_is_taken() {
-    let folder = folder();
-    let path = folder.path().join("a.tif");
-    write_raw(
-        &path,
-        GreyFrame {
-            values: &values(8),
-            bit_depth: 8,
-        },
-        &[],
-    )
-    .expect("the frame is written");
+    let path = folder().keep().join("a.tif");
+    write(&path, 8);
     let mut file = fs::read(&path).expect("the file");
     // The entries of width and height, tags 256 and 257, of one LONG each.
     for tag in [256_u16, 257] {
         let key: Vec<u8> = [tag.to_le_bytes(), 4_u16.to_le_bytes()].concat();
-        let place = file
-            .windows(4)
-            .position(|bytes| bytes == key)
-            .expect("the tag");
-        file[place + 8..place + 12].copy_from_slice(&1_000_000_u32.to_le_bytes());
+        let place = file.windows(4).position(|bytes| bytes == key);
+        let place = place.expect("the tag") + 8;
+        file[place..place + 4].copy_from_slice(&1_000_000_u32.to_le_bytes());
     }
-    fs::write(&path, file).expect("the file");
-    assert!(
-        read_raw(&path, None, None).is_err(),
-        "a TIFF of 10¹² pixels"
-    );
+    let read = raw(&file, RawFormat::Tiff, None);
+    assert!(read.is_err(), "a TIFF of 10¹² pixels");
 
     let mut file = Vec::new();
     let encoder = Encoder::new(&mut file, 1_000_000, 1_000_000);
@@ -270,10 +213,8 @@ fn absurd_sizes_are_refused_before_memory_is_taken() {
     let chunk = writer.write_chunk(png::chunk::IDAT, &[0; 16]);
     chunk.expect("a chunk");
     drop(writer);
-    let path = path.with_extension("png");
-    fs::write(&path, file).expect("the file");
-    let error = read_raw(&path, None, None)
+    let told = raw(&file, RawFormat::Png, None)
         .expect_err("10¹² pixels")
         .to_string();
-    assert!(error.contains("1000000 × 1000000 pixels"), "{error}");
+    assert!(told.contains("1000000 × 1000000 pixels"), "{told}");
 }

@@ -2,8 +2,9 @@
 
 use std::io::Cursor;
 
-use super::{RawFormat, RawImage, decode};
-use crate::image::ImageError;
+use tem00_testkit::{robust, rows};
+
+use super::{RawFormat, decode, hex, numbers, raw};
 use crate::image::{LoadedImage, Reading, Transfer};
 
 const GREY_JPEG: &[u8] = include_bytes!("../data/grey.jpg");
@@ -11,12 +12,6 @@ const TURNED_JPEG: &[u8] = include_bytes!("../data/turned.jpg");
 const RESTARTS_JPEG: &[u8] = include_bytes!("../data/restarts.jpg");
 const PROGRESSIVE_JPEG: &[u8] = include_bytes!("../data/progressive.jpg");
 const COLOUR_JPEG: &[u8] = include_bytes!("../data/colour.jpg");
-
-fn raw(file: &[u8], format: RawFormat, channel: Option<&str>) -> Result<RawImage, ImageError> {
-    decode(Cursor::new(file), format)?
-        .judged(None)?
-        .image(channel)
-}
 
 fn light(file: &[u8], format: RawFormat, transfer: Option<Transfer>) -> LoadedImage {
     let reading = Reading {
@@ -32,20 +27,13 @@ fn light(file: &[u8], format: RawFormat, transfer: Option<Transfer>) -> LoadedIm
 
 /// A bitmap of so many bits and rows from the bottom up, with its rows given as they stand in the file.
 fn bitmap(size: [i32; 2], bits: u16, palette: &[[u8; 4]], rows: &[u8]) -> Vec<u8> {
-    let offset = 54 + 4 * u32::try_from(palette.len()).expect("a palette");
+    let colours = u32::try_from(palette.len()).expect("a palette");
     let mut file = b"BM\0\0\0\0\0\0\0\0".to_vec();
-    file.extend(offset.to_le_bytes());
-    file.extend(40_u32.to_le_bytes());
-    file.extend(size.iter().flat_map(|side| side.to_le_bytes()));
-    file.extend(1_u16.to_le_bytes());
-    file.extend(bits.to_le_bytes());
+    file.extend([54 + 4 * colours, 40].map(u32::to_le_bytes).concat());
+    file.extend(size.map(i32::to_le_bytes).concat());
+    file.extend([1, bits].map(u16::to_le_bytes).concat());
     file.extend([0; 16]);
-    file.extend(
-        u32::try_from(palette.len())
-            .expect("a palette")
-            .to_le_bytes(),
-    );
-    file.extend([0; 4]);
+    file.extend([colours, 0].map(u32::to_le_bytes).concat());
     file.extend(palette.iter().flatten());
     file.extend(rows);
     file
@@ -72,18 +60,10 @@ fn bitmaps_stand_upside_down_in_rows_of_whole_words() {
 #[test]
 fn grey_palettes_make_grey_bitmaps() {
     let palette: Vec<_> = (0..=255).map(|grey| [grey, grey, grey, 0]).collect();
-    let grey = raw(
-        &bitmap([3, 1], 8, &palette, &[7, 200, 255, 0]),
-        RawFormat::Bmp,
-        None,
-    );
-    let grey = grey.expect("a bitmap");
+    let file = bitmap([3, 1], 8, &palette, &[7, 200, 255, 0]);
+    let grey = raw(&file, RawFormat::Bmp, None).expect("a bitmap");
     assert_eq!(grey.values.values(), [7.0, 200.0, 255.0]);
-    assert!(
-        grey.interpretation.starts_with("grey, 8 bits"),
-        "{}",
-        grey.interpretation
-    );
+    assert!(grey.interpretation.starts_with("grey, 8 bits"), "{grey:?}");
     assert_eq!(grey.saturated_pixels(), 1);
     // Blue, green, red.
     let colours = bitmap([2, 1], 8, &[[1, 2, 6, 0], [5, 5, 5, 0]], &[0, 1, 0, 0]);
@@ -92,75 +72,57 @@ fn grey_palettes_make_grey_bitmaps() {
 }
 
 #[test]
-fn maps_of_twelve_bits_know_their_bits() {
-    let mut file = b"P5 # a camera\n# of 12 bits\n3 1\n4095\n".to_vec();
-    file.extend([0x00, 0x07, 0x0a, 0xbc, 0x0f, 0xff]);
-    let image = raw(&file, RawFormat::Pnm, None).expect("a map");
-    assert_eq!(image.values.values(), [7.0, 2_748.0, 4_095.0]);
-    assert_eq!((image.bit_depth, image.saturated_pixels()), (Some(12), 1));
-    let light = light(&file, RawFormat::Pnm, None);
+fn maps_are_read_in_bytes_and_as_text_in_grey_and_in_colour() {
+    // The header, bytes behind it, the values and their bits.
+    let table = "
+        P5 # a camera\\n# of 12 bits\\n3 1\\n4095\\n => 0007 0abc 0fff => 7 2748 4095 => 12
+        P2\\n2 2 # four\\n255\\n1 2\\n30\\n 255 => => 1 2 30 255 => 8
+        P6 1 1 255\\n => 01 02 06 => 3 => 8
+        P3 1 1 65535 1 2 60000\\n => => 20001 => 16";
+    for [header, bytes, expected, bits] in rows(table) {
+        let file = [header.as_bytes(), &hex(&bytes)].concat();
+        let image = raw(&file, RawFormat::Pnm, None).expect(&header);
+        assert_eq!(image.values.values(), numbers(&expected), "{header}");
+        assert_eq!(image.bit_depth.map(|bits| bits.to_string()), Some(bits));
+    }
+    let blue = raw(b"P3 1 1 65535 1 2 60000\n", RawFormat::Pnm, Some("b"));
+    assert_eq!(blue.expect("a map").values.values(), [60_000.0]);
+    let light = light(b"P2 3 1 4095 7 2748 4095", RawFormat::Pnm, None);
     assert_eq!(light.saturated, Some(1.0 / 3.0));
-    assert!(
-        (light.values[(1, 0)] - 2_748.0 / 4_095.0).abs() < 1e-7,
-        "in proportion"
-    );
-}
-
-#[test]
-fn maps_are_read_as_text_and_in_colour() {
-    let grey = raw(b"P2\n2 2 # four\n255\n1 2\n30\n 255", RawFormat::Pnm, None);
-    assert_eq!(
-        grey.expect("a map").values.values(),
-        [1.0, 2.0, 30.0, 255.0]
-    );
-    let colour = raw(b"P6 1 1 255\n\x01\x02\x06", RawFormat::Pnm, None).expect("a map");
-    assert_eq!(colour.values.values(), [3.0]);
-    let text = raw(b"P3 1 1 65535 1 2 60000\n", RawFormat::Pnm, Some("b")).expect("a map");
-    assert_eq!(
-        (text.values.values(), text.bit_depth),
-        (&[60_000.0][..], Some(16))
-    );
+    let part = light.values[(1, 0)];
+    assert!((part - 2_748.0 / 4_095.0).abs() < 1e-7, "in proportion");
 }
 
 #[test]
 fn headers_of_maps_may_end_as_on_windows_and_the_length_must_fit() {
     // The first byte of the pixels is a line feed, or a carriage return.
     for first in [b'\n', b'\r', b' ', 7] {
-        for (magic, largest, pixels) in [
-            ("P5", 255, &[first, 1, 2][..]),
-            ("P5", 65_535, &[first, 1, 2, 3, 4, 5]),
-            ("P6", 255, &[first, 1, 2, 3, 4, 5, 6, 7, 8]),
-        ] {
+        for (magic, largest, count) in [("P5", 255, 3), ("P5", 65_535, 6), ("P6", 255, 9)] {
+            let pixels: Vec<u8> = [first].into_iter().chain(1..count).collect();
             let header = format!("{magic}\n# a camera\n3 1\n{largest}\n");
             let map = |header: &str, pixels: &[u8]| {
                 raw(&[header.as_bytes(), pixels].concat(), RawFormat::Pnm, None)
             };
-            let expected = map(&header, pixels).expect("a map");
-            for end in ["\r\n", " "] {
-                let header = if end == " " {
-                    header.trim_end().to_owned() + end
-                } else {
-                    header.replace('\n', end)
-                };
-                let image = map(&header, pixels).expect("a map");
+            let expected = map(&header, &pixels).expect("a map");
+            for header in [
+                header.replace('\n', "\r\n"),
+                header.trim_end().to_owned() + " ",
+            ] {
+                let image = map(&header, &pixels).expect("a map");
                 assert_eq!(image.values, expected.values, "{header:?}, {first}");
-                let next = map(&header, &[pixels, header.as_bytes()].concat());
+                let next = map(&header, &[&pixels, header.as_bytes()].concat());
                 assert!(next.expect("two maps").has_further_images, "{header:?}");
-                for wrong in [&[pixels, &b"\n"[..]].concat(), &pixels[1..]] {
+                for wrong in [&[&pixels, &b"\n"[..]].concat(), &pixels[1..]] {
                     assert!(map(&header, wrong).is_err(), "{header:?}: another length");
                 }
             }
         }
     }
     // Every value of twelve bits comes back.
-    let values: Vec<u16> = (0..4_096).collect();
-    let pixels: Vec<u8> = values
-        .iter()
-        .flat_map(|value| value.to_be_bytes())
-        .collect();
+    let pixels: Vec<u8> = (0..4_096_u16).flat_map(u16::to_be_bytes).collect();
     let file = [&b"P5 4096 1 4095\n"[..], &pixels].concat();
     let found = raw(&file, RawFormat::Pnm, None).expect("a map").values;
-    let expected: Vec<f32> = values.into_iter().map(f32::from).collect();
+    let expected: Vec<f32> = (0..4_096_u16).map(f32::from).collect();
     assert_eq!(found.values(), expected);
 }
 
@@ -168,14 +130,11 @@ fn headers_of_maps_may_end_as_on_windows_and_the_length_must_fit() {
 fn photographs_have_the_grey_values_of_another_reader() {
     let grey = raw(GREY_JPEG, RawFormat::Jpeg, None).expect("a photograph");
     assert_eq!((grey.values.width(), grey.values.height()), (24, 16));
-    let expected = |x: usize, y: usize| (20 + 6 * x + 4 * y) as f32;
     for (y, row) in grey.values.rows().enumerate() {
         for (x, &value) in row.iter().enumerate() {
             // Decoders may round the cosine transform by one.
-            assert!(
-                (value - expected(x, y)).abs() <= 1.0,
-                "({x}, {y}) is {value}"
-            );
+            let expected = (20 + 6 * x + 4 * y) as f32;
+            assert!((value - expected).abs() <= 1.0, "({x}, {y}) is {value}");
         }
     }
     for (channel, at) in [("R", 20.0), ("G", 235.0), ("B", 60.0)] {
@@ -193,20 +152,14 @@ fn photographs_have_the_grey_values_of_another_reader() {
 #[test]
 fn photographs_of_other_kinds_have_the_same_grey_values() {
     let expected = raw(GREY_JPEG, RawFormat::Jpeg, None).expect("a photograph");
-    for (name, file, orientation) in [
-        ("turned", TURNED_JPEG, 6),
-        ("restarts", RESTARTS_JPEG, 1),
-        ("progressive", PROGRESSIVE_JPEG, 1),
-    ] {
-        let image = raw(file, RawFormat::Jpeg, None).expect(name);
-        assert_eq!(image.values, expected.values, "{name}");
-        assert_eq!(image.orientation, orientation, "{name}");
+    for (file, orientation) in [(TURNED_JPEG, 6), (RESTARTS_JPEG, 1), (PROGRESSIVE_JPEG, 1)] {
+        let image = raw(file, RawFormat::Jpeg, None).expect("a photograph");
+        assert_eq!(image.values, expected.values, "{orientation}");
+        assert_eq!(image.orientation, orientation);
     }
     let samples = decode(Cursor::new(TURNED_JPEG), RawFormat::Jpeg).expect("a photograph");
-    let upright = samples
-        .upright()
-        .judged(None)
-        .and_then(|samples| samples.image(None));
+    let upright = samples.upright().judged(None);
+    let upright = upright.and_then(|samples| samples.image(None));
     let upright = upright.expect("a photograph").values;
     assert_eq!((upright.width(), upright.height()), (16, 24));
     // A quarter turn to the right: the left lower corner comes to the left upper one.
@@ -217,105 +170,80 @@ fn photographs_of_other_kinds_have_the_same_grey_values() {
 
 #[test]
 fn photographs_without_all_of_their_data_are_refused() {
-    for (name, file) in [
-        ("one scan", GREY_JPEG),
-        ("colour", COLOUR_JPEG),
-        ("restarts", RESTARTS_JPEG),
-        ("progressive", PROGRESSIVE_JPEG),
-    ] {
-        let scan = file
-            .windows(2)
-            .position(|pair| pair == [0xff, 0xda])
-            .expect("a scan");
+    let marker = |file: &[u8], kind: u8| {
+        let place = file.windows(2).position(|pair| pair == [0xff, kind]);
+        place.expect("a marker")
+    };
+    for file in [GREY_JPEG, COLOUR_JPEG, RESTARTS_JPEG, PROGRESSIVE_JPEG] {
+        let scan = marker(file, 0xda);
         let start = scan + 2 + usize::from(file[scan + 3]);
         // The last bytes may hold but the ones that fill them.
         for length in start..file.len() - 4 {
             let cut = [&file[..length], &[0xff, 0xd9]].concat();
-            let refused = raw(&cut, RawFormat::Jpeg, None).map(|_| ());
-            let told = refused.expect_err(name).to_string();
-            assert!(
-                told.contains("before its last pixel"),
-                "{name}, {length}: {told}"
-            );
+            let told = raw(&cut, RawFormat::Jpeg, None)
+                .expect_err("cut")
+                .to_string();
+            assert!(told.contains("before its last pixel"), "{length}: {told}");
         }
         let followed = [file, b"anything else \xff\xd8 \xff\xd9"].concat();
         assert!(
             raw(&followed, RawFormat::Jpeg, None).is_ok(),
-            "{name}, with more behind it"
+            "more behind it"
         );
     }
-    // A restart and what stands before it are lost on the way.
-    let restart = RESTARTS_JPEG
-        .windows(2)
-        .position(|pair| pair == [0xff, 0xd1])
-        .expect("one");
-    let next = RESTARTS_JPEG
-        .windows(2)
-        .position(|pair| pair == [0xff, 0xd2])
-        .expect("one");
-    let lost = [&RESTARTS_JPEG[..restart], &RESTARTS_JPEG[next..]].concat();
-    assert!(
-        raw(&lost, RawFormat::Jpeg, None).is_err(),
-        "a restart is missing"
-    );
-    let end = [&RESTARTS_JPEG[..restart], &[0xff, 0xd9]].concat();
-    assert!(
-        raw(&end, RawFormat::Jpeg, None).is_err(),
-        "cut where a restart was"
-    );
+    // A restart and what stands before it are lost on the way, or the file is cut there.
+    let [restart, next] = [0xd1, 0xd2].map(|kind| marker(RESTARTS_JPEG, kind));
+    for rest in [&RESTARTS_JPEG[next..], &[0xff, 0xd9]] {
+        let lost = [&RESTARTS_JPEG[..restart], rest].concat();
+        assert!(
+            raw(&lost, RawFormat::Jpeg, None).is_err(),
+            "a restart is missing"
+        );
+    }
 }
 
 #[test]
 fn cut_and_mutated_files_are_errors_or_images_and_no_panics() {
-    let files = [
-        (GREY_JPEG.to_vec(), RawFormat::Jpeg),
-        (COLOUR_JPEG.to_vec(), RawFormat::Jpeg),
-        (bitmap([2, 2], 24, &[], &[7; 16]), RawFormat::Bmp),
-        (
-            bitmap([3, 1], 8, &[[1, 1, 1, 0]; 4], &[0, 1, 2, 0]),
-            RawFormat::Bmp,
-        ),
-        (b"P5 3 2 255\n123456".to_vec(), RawFormat::Pnm),
-        (b"P3 1 2 99 1 2 3 4 5 6\n".to_vec(), RawFormat::Pnm),
+    let grey = [[1, 1, 1, 0]; 4];
+    let bitmaps = [
+        bitmap([2, 2], 24, &[], &[7; 16]),
+        bitmap([3, 1], 8, &grey, &[0, 1, 2, 0]),
     ];
-    for (file, format) in files {
-        assert!(raw(&file, format, None).is_ok(), "{format:?}");
-        for length in 0..file.len().saturating_sub(2) {
-            let cut = raw(&file[..length], format, None);
-            assert!(cut.is_err(), "{format:?} of {length} bytes");
-        }
-        let mut state = 1_u32;
-        for _ in 0..2_000 {
-            let mut mutated = file.clone();
-            for _ in 0..2 {
-                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                let place = (state >> 8) as usize % mutated.len();
-                mutated[place] = state.to_le_bytes()[3];
+    let maps = [&b"P5 3 2 255\n123456"[..], b"P3 1 2 99 1 2 3 4 5 6\n"];
+    for (format, files) in [
+        (RawFormat::Jpeg, [GREY_JPEG, COLOUR_JPEG]),
+        (RawFormat::Bmp, [&bitmaps[0], &bitmaps[1]]),
+        (RawFormat::Pnm, maps),
+    ] {
+        for file in files {
+            assert!(raw(file, format, None).is_ok(), "{format:?}");
+            for length in 0..file.len() - 2 {
+                let cut = raw(&file[..length], format, None);
+                assert!(cut.is_err(), "{format:?} of {length} bytes");
             }
-            // Any answer will do.
-            let _ = raw(&mutated, format, None);
         }
+        robust(|bytes| drop(raw(bytes, format, None)), &files);
     }
 }
 
 #[test]
 fn what_these_formats_cannot_hold_is_said() {
     let refused = |file: &[u8], format| {
-        raw(file, format, None)
-            .expect_err("it is wrong")
-            .to_string()
+        let read = raw(file, format, None);
+        read.expect_err("it is wrong").to_string()
     };
-    for file in [
-        &b"P4 1 1\n"[..],
-        b"P5 1 1 70000\n12",
-        b"P5 1 1 0\n12",
-        b"P2 2 1 9 1",
-        b"P2 2 1 9 1 2 3",
-        b"P5 99999999 99999999 255\n",
-        b"P5 1 x 255\n",
-        b"P5 99999999999 1 255\n",
-    ] {
-        assert!(!refused(file, RawFormat::Pnm).is_empty(), "{file:?}");
+    let table = "
+        P4 1 1\\n => with none of P2, P3, P5 and P6
+        P5 1 1 70000\\n12 =>
+        P5 1 1 0\\n12 =>
+        P2 2 1 9 1 =>
+        P2 2 1 9 1 2 3 =>
+        P5 99999999 99999999 255\\n =>
+        P5 1 x 255\\n =>
+        P5 99999999999 1 255\\n =>";
+    for [file, part] in rows(table) {
+        let told = refused(file.as_bytes(), RawFormat::Pnm);
+        assert!(told.contains(&part), "{file}: {told}");
     }
     let mut compressed = bitmap([1, 1], 8, &[], &[0; 4]);
     compressed[30] = 1;

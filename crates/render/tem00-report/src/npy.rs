@@ -8,7 +8,6 @@ use tem00_numerics::Grid;
 mod element;
 mod error;
 mod header;
-mod literal;
 
 use element::{Element, ElementType};
 pub use error::NpyError;
@@ -89,16 +88,13 @@ impl<R: Read> NpyReader<R> {
     }
 
     /// Returns the type of the values as the file names it, such as `<c8` for `complex64`.
-    pub fn element_type(&self) -> &str {
-        &self.header.element_type
+    pub fn element_type(&self) -> String {
+        self.header.element_type()
     }
 
     /// Returns whether the values are complex.
     pub fn is_complex(&self) -> bool {
-        matches!(
-            ElementType::from_name(&self.header.element_type),
-            Some(ElementType::Complex(..))
-        )
+        ElementType::from_name(&self.element_type()).is_some_and(|found| found.numbers == 2)
     }
 
     /// Reads a two-dimensional array of real values that takes no more than `memory_limit` bytes.
@@ -127,25 +123,21 @@ impl<R: Read> NpyReader<R> {
         let Some([height, width]) = self.grid_shape() else {
             return Err(NpyError::Shape(self.header.shape));
         };
-        let (bytes_each, decode) = self.decoder()?;
+        let name = self.element_type();
+        let element_type = ElementType::from_name(&name)
+            .filter(|found| found.numbers == T::NUMBERS)
+            .ok_or(NpyError::ElementType {
+                found: name,
+                allowed: T::READABLE,
+            })?;
         let count = self.count_within::<T>(memory_limit)?;
         let (width, height) = (to_usize(width), to_usize(height));
-        let values = self.values(count, bytes_each, &decode)?;
+        let values = self.values(count, element_type)?;
         if self.header.columns_first {
             let columns = grid(height, width, values)?;
             return Ok(Grid::from_fn(width, height, |x, y| columns[(y, x)]));
         }
         grid(width, height, values)
-    }
-
-    /// The bytes of a value, and how they are understood.
-    fn decoder<T: Element>(&self) -> Result<(usize, impl Fn(&[u8]) -> T + use<T, R>), NpyError> {
-        ElementType::from_name(&self.header.element_type)
-            .and_then(T::decoder)
-            .ok_or_else(|| NpyError::ElementType {
-                found: self.header.element_type.clone(),
-                allowed: T::READABLE,
-            })
     }
 
     /// The number of values, if they take no more than `limit` bytes while they are read.
@@ -164,23 +156,19 @@ impl<R: Read> NpyReader<R> {
             return Err(NpyError::MemoryLimit { needed, limit });
         }
         let count = count.and_then(|count| usize::try_from(count).ok());
-        count.ok_or(NpyError::Memory { bytes: needed })
+        count.ok_or(NpyError::Memory(needed))
     }
 
     /// The `count` values in the order of the file.
-    fn values<T>(
-        &mut self,
-        count: usize,
-        bytes_each: usize,
-        decode: &impl Fn(&[u8]) -> T,
-    ) -> Result<Vec<T>, NpyError> {
+    fn values<T: Element>(&mut self, count: usize, of: ElementType) -> Result<Vec<T>, NpyError> {
         let (mut values, mut buffer) = (Vec::new(), vec![0; CHUNK]);
         while values.len() < count {
-            let more = (count - values.len()).min(buffer.len() / bytes_each);
-            let bytes = &mut buffer[..more * bytes_each];
+            let more = (count - values.len()).min(buffer.len() / of.bytes());
+            let bytes = &mut buffer[..more * of.bytes()];
             self.reader.read_exact(bytes)?;
             reserve(&mut values, more, count)?;
-            values.extend(bytes.chunks_exact(bytes_each).map(decode));
+            let each = bytes.chunks_exact(of.bytes());
+            values.extend(each.map(|bytes| of.decode::<T>(bytes)));
         }
         Ok(values)
     }
@@ -225,9 +213,8 @@ fn reserve<T>(values: &mut Vec<T>, more: usize, count: usize) -> Result<(), NpyE
         return Ok(());
     }
     let wanted = (2 * values.len()).clamp(needed, count);
-    let refused = |_| NpyError::Memory {
-        bytes: (wanted as u64).saturating_mul(size_of::<T>() as u64),
-    };
+    let bytes = (wanted as u64).saturating_mul(size_of::<T>() as u64);
+    let refused = |_| NpyError::Memory(bytes);
     values
         .try_reserve_exact(wanted - values.len())
         .map_err(refused)
@@ -244,7 +231,7 @@ fn check_finite(grid: &Grid<Complex<f32>>) -> Result<(), NpyError> {
         None => Ok(()),
         Some(bad) => {
             let index = [bad / grid.width(), bad % grid.width()];
-            Err(NpyError::NotFinite { index })
+            Err(NpyError::NotFinite(index))
         }
     }
 }

@@ -24,7 +24,7 @@ pub(super) fn read(reader: impl Read) -> Result<Samples, ImageError> {
         checked_area(width, height)?,
         BYTES_PER_PIXEL + if file.is_complex() { 20 } else { 8 },
     )?;
-    let element_type = file.element_type().to_owned();
+    let element_type = file.element_type();
     let (values, interpretation) = if file.is_complex() {
         let amplitude = file.into_complex(MEMORY)?;
         (amplitude.map(|&u| intensity(u)), "squared magnitudes")
@@ -64,82 +64,15 @@ mod tests {
     }
 
     fn light(file: &[u8]) -> Result<LoadedImage, ImageError> {
-        let reading = Reading {
-            black_level: Some(0.0),
-            ..Reading::default()
-        };
-        read(file)?.judged(None)?.light(&reading)
+        read(file)?.judged(None)?.light(&Reading::default())
     }
 
     #[test]
     fn values_say_what_they_were() {
-        let halves = [0x3c00_u16, 0xc000, 0x0001, 0x7bff];
-        let cases: [(&str, Vec<u8>, [f32; 4]); 12] = [
-            (
-                "<u2",
-                [1_u16, 2, 300, 4].map(u16::to_le_bytes).concat(),
-                [1.0, 2.0, 300.0, 4.0],
-            ),
-            (
-                ">i2",
-                [-1_i16, 2, 300, -32768].map(i16::to_be_bytes).concat(),
-                [-1.0, 2.0, 300.0, -32768.0],
-            ),
-            (
-                "<i4",
-                [-1_i32, 2, 70_000, 4].map(i32::to_le_bytes).concat(),
-                [-1.0, 2.0, 70_000.0, 4.0],
-            ),
-            (
-                "<i8",
-                [-1_i64, 2, 1 << 40, 4].map(i64::to_le_bytes).concat(),
-                [-1.0, 2.0, (1_u64 << 40) as f32, 4.0],
-            ),
-            (
-                "<u4",
-                [1_u32, 2, 1 << 31, 4].map(u32::to_le_bytes).concat(),
-                [1.0, 2.0, (1_u64 << 31) as f32, 4.0],
-            ),
-            (
-                ">u8",
-                [1_u64, 2, 1 << 40, 4].map(u64::to_be_bytes).concat(),
-                [1.0, 2.0, (1_u64 << 40) as f32, 4.0],
-            ),
-            ("|i1", vec![255, 2, 127, 128], [-1.0, 2.0, 127.0, -128.0]),
-            ("|u1", vec![255, 2, 127, 128], [255.0, 2.0, 127.0, 128.0]),
-            ("|b1", vec![1, 0, 0, 1], [1.0, 0.0, 0.0, 1.0]),
-            // 1, −2, the smallest and the largest number of binary16: 2⁻²⁴ and 65504.
-            (
-                "<f2",
-                halves.map(u16::to_le_bytes).concat(),
-                [1.0, -2.0, 5.960_464_5e-8, 65_504.0],
-            ),
-            (
-                ">f2",
-                halves.map(u16::to_be_bytes).concat(),
-                [1.0, -2.0, 5.960_464_5e-8, 65_504.0],
-            ),
-            (
-                ">f8",
-                [1.5_f64, 2.0, 3.0, 4.0].map(f64::to_be_bytes).concat(),
-                [1.5, 2.0, 3.0, 4.0],
-            ),
-        ];
-        for (element_type, values, expected) in cases {
-            for shape in ["(2, 2)", "(2, 2, 1)", "(1, 2, 2)", "(1, 2, 2, 1)"] {
-                let image = light(&array(element_type, shape, &values)).expect("an NPY file");
-                assert_eq!(image.values.values(), expected, "{element_type} {shape}");
-                let told = image.interpretation;
-                assert!(
-                    told.starts_with(&format!("values of the type {element_type}")),
-                    "{told}"
-                );
-            }
-        }
-    }
-
-    #[test]
-    fn complex_amplitudes_are_read_as_intensities() {
+        let image = light(&array("<u2", "(1, 2)", &[1, 0, 44, 1])).expect("an NPY file");
+        assert_eq!(image.values.values(), [1.0, 300.0]);
+        assert_eq!(image.interpretation, "values of the type <u2");
+        // Complex amplitudes are read as intensities.
         let image = Grid::from_fn(2, 2, |x, y| Complex::new(x as f32, 3.0 * y as f32));
         let mut file = Vec::new();
         write_npy(&image, &mut file).expect("written");
@@ -149,37 +82,17 @@ mod tests {
     }
 
     #[test]
-    fn shapes_that_are_no_image_are_refused() {
-        let read_shape = |shape: &str| read(&array("<f4", shape, &[])[..]).map(|_| ());
-        assert!(
-            matches!(read_shape("(4,)"), Err(ImageError::Shape(_))),
-            "a line"
-        );
-        assert!(
-            matches!(read_shape("(4, 4, 3)"), Err(ImageError::Shape(_))),
-            "colours"
-        );
-        assert!(
-            matches!(read_shape("(0, 4)"), Err(ImageError::Size { .. })),
-            "nothing"
-        );
-        assert!(
-            matches!(
-                read_shape("(1000000, 1000000)"),
-                Err(ImageError::Size { .. })
-            ),
-            "too large"
-        );
-        assert!(
-            matches!(read_shape("(4, 4)"), Err(ImageError::Npy(_))),
-            "data is missing"
-        );
-    }
-
-    #[test]
-    fn unknown_types_are_named() {
-        let error = read(&array("<U2", "(1, 2)", &[0; 16])[..]).map(drop);
-        let error = error.expect_err("text is no light");
-        assert!(error.to_string().contains("<U2"), "{error}");
+    fn shapes_and_types_that_are_no_image_are_refused() {
+        let table = "
+            <f4 => (4,) => the shape [4]; two dimensions
+            <f4 => (4, 4, 3) => the shape [4, 4, 3]; two dimensions
+            <f4 => (0, 4) => 4 × 0 pixels
+            <f4 => (1000000, 1000000) => 1000000 × 1000000 pixels
+            <f4 => (4, 4) => ends before its array does
+            <U2 => (1, 2) => values of the type <U2 are not supported";
+        for [element_type, shape, part] in tem00_testkit::rows(table) {
+            let error = light(&array(&element_type, &shape, &[0; 16])).expect_err(&shape);
+            assert!(error.to_string().contains(&part), "{error}");
+        }
     }
 }

@@ -2,31 +2,34 @@
 
 use num_complex::Complex;
 
-/// A value that files hold and grids keep.
+/// A value of one or two numbers that files hold and grids keep.
 pub(super) trait Element: Copy {
     /// The type as a file names it that is written.
     const WRITTEN: &'static str;
     /// The types that are read, in words.
     const READABLE: &'static str;
+    /// The numbers of a value.
+    const NUMBERS: usize;
 
-    /// The bytes of one value of that type, and the value that they stand for.
-    fn decoder(element_type: ElementType) -> Option<(usize, impl Fn(&[u8]) -> Self)>;
+    /// Returns the value of some numbers.
+    fn of(number: impl Fn(usize) -> f32) -> Self;
 
     fn encode(&self, bytes: &mut Vec<u8>);
 }
 
-/// A type that is understood, and whether its bytes begin with the highest.
+/// A type that is understood.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum ElementType {
-    /// One number.
-    Real(Number, bool),
-    /// Two numbers, the real part first.
-    Complex(Number, bool),
+pub(super) struct ElementType {
+    number: Number,
+    /// The numbers of a value, the real part first.
+    pub(super) numbers: usize,
+    /// Whether the bytes of a number begin with the highest.
+    highest_first: bool,
 }
 
 /// Number types of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Number {
+enum Number {
     /// `float16`.
     Half,
     /// `float32`.
@@ -48,23 +51,39 @@ impl ElementType {
             ">" => true,
             _ => return None,
         };
-        let real = |number| Some(Self::Real(number, highest_first));
-        match kind {
-            "f2" => real(Number::Half),
-            "f4" => real(Number::Single),
-            "f8" => real(Number::Double),
-            "b1" | "u1" => real(Number::Unsigned(1)),
-            "u2" => real(Number::Unsigned(2)),
-            "u4" => real(Number::Unsigned(4)),
-            "u8" => real(Number::Unsigned(8)),
-            "i1" => real(Number::Signed(1)),
-            "i2" => real(Number::Signed(2)),
-            "i4" => real(Number::Signed(4)),
-            "i8" => real(Number::Signed(8)),
-            "c8" => Some(Self::Complex(Number::Single, highest_first)),
-            "c16" => Some(Self::Complex(Number::Double, highest_first)),
-            _ => None,
-        }
+        let number = match kind {
+            "f2" => Number::Half,
+            "f4" | "c8" => Number::Single,
+            "f8" | "c16" => Number::Double,
+            "b1" | "u1" => Number::Unsigned(1),
+            "u2" => Number::Unsigned(2),
+            "u4" => Number::Unsigned(4),
+            "u8" => Number::Unsigned(8),
+            "i1" => Number::Signed(1),
+            "i2" => Number::Signed(2),
+            "i4" => Number::Signed(4),
+            "i8" => Number::Signed(8),
+            _ => return None,
+        };
+        Some(Self {
+            number,
+            numbers: if kind.starts_with('c') { 2 } else { 1 },
+            highest_first,
+        })
+    }
+
+    /// Returns the bytes of a value.
+    pub(super) const fn bytes(self) -> usize {
+        self.numbers * self.number.bytes()
+    }
+
+    /// Returns the value of its bytes.
+    pub(super) fn decode<T: Element>(self, bytes: &[u8]) -> T {
+        let each = self.number.bytes();
+        T::of(|index| {
+            self.number
+                .value(&bytes[index * each..][..each], self.highest_first)
+        })
     }
 }
 
@@ -120,13 +139,10 @@ fn half(bits: u16) -> f32 {
 impl Element for f32 {
     const WRITTEN: &'static str = "<f4";
     const READABLE: &'static str = "float16, float32, float64, bool, or integers of 8 to 64 bits";
+    const NUMBERS: usize = 1;
 
-    fn decoder(element_type: ElementType) -> Option<(usize, impl Fn(&[u8]) -> Self)> {
-        let ElementType::Real(number, highest_first) = element_type else {
-            return None;
-        };
-        let decode = move |bytes: &[u8]| number.value(bytes, highest_first);
-        Some((number.bytes(), decode))
+    fn of(number: impl Fn(usize) -> f32) -> Self {
+        number(0)
     }
 
     fn encode(&self, bytes: &mut Vec<u8>) {
@@ -137,19 +153,10 @@ impl Element for f32 {
 impl Element for Complex<f32> {
     const WRITTEN: &'static str = "<c8";
     const READABLE: &'static str = "complex64 or complex128";
+    const NUMBERS: usize = 2;
 
-    fn decoder(element_type: ElementType) -> Option<(usize, impl Fn(&[u8]) -> Self)> {
-        let ElementType::Complex(number, highest_first) = element_type else {
-            return None;
-        };
-        let decode = move |bytes: &[u8]| {
-            let (re, im) = bytes.split_at(number.bytes());
-            Self::new(
-                number.value(re, highest_first),
-                number.value(im, highest_first),
-            )
-        };
-        Some((2 * number.bytes(), decode))
+    fn of(number: impl Fn(usize) -> f32) -> Self {
+        Self::new(number(0), number(1))
     }
 
     fn encode(&self, bytes: &mut Vec<u8>) {

@@ -1,24 +1,25 @@
-use core::fmt;
-use std::{error, io};
+use std::io;
+
+use thiserror::Error;
 
 /// Error of reading a NumPy file.
-#[derive(Debug)]
+#[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum NpyError {
     /// The file is not a NumPy file.
+    #[error("not a NumPy file (NPY)")]
     Foreign,
-    /// The version of the format is unknown.
-    Version {
-        /// The number before the point.
-        major: u8,
-        /// The number after the point.
-        minor: u8,
-    },
+    /// The version of the format is unknown: the numbers before and after the point.
+    #[error("version of the NPY format must be 1.0, 2.0 or 3.0, got {0}.{1}")]
+    Version(u8, u8),
     /// The header breaks a rule of the format: the rule.
-    Header(&'static str),
+    #[error("header of the NPY file: {0}")]
+    Header(String),
     /// The file ends before the array does.
+    #[error("NPY file ends before its array does")]
     Truncated,
     /// The values are of another type.
+    #[error("values must be {allowed}, got the type {found}")]
     ElementType {
         /// The type as the file names it.
         found: String,
@@ -26,66 +27,25 @@ pub enum NpyError {
         allowed: &'static str,
     },
     /// The array does not have two dimensions, or has no values.
+    #[error("array must have 2 dimensions of at least 1 each, got the shape {0:?}")]
     Shape(Vec<u64>),
-    /// A value is not finite, or too large for single precision.
-    NotFinite {
-        /// Row and column of the value.
-        index: [usize; 2],
-    },
+    /// A value is not finite, or too large for single precision: its row and column.
+    #[error("values must be finite and below 3.4e38, got another at the index {0:?}")]
+    NotFinite([usize; 2]),
     /// The array takes more memory than allowed.
+    #[error("memory for the array must be at most {limit} bytes, got {needed}")]
     MemoryLimit {
         /// The bytes that the array takes while it is read.
         needed: u64,
         /// The bytes that it may take.
         limit: u64,
     },
-    /// The machine refused the memory of the array.
-    Memory {
-        /// The bytes that were asked for.
-        bytes: u64,
-    },
+    /// The machine refused the memory of the array, of so many bytes.
+    #[error("memory for the array refused: {0} bytes")]
+    Memory(u64),
     /// The reader failed.
-    Io(io::Error),
-}
-
-impl fmt::Display for NpyError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Foreign => write!(f, "not a NumPy file (NPY)"),
-            Self::Version { major, minor } => write!(
-                f,
-                "version of the NPY format must be 1.0, 2.0 or 3.0, got {major}.{minor}"
-            ),
-            Self::Header(rule) => write!(f, "header of the NPY file: {rule}"),
-            Self::Truncated => write!(f, "NPY file ends before its array does"),
-            Self::ElementType { found, allowed } => {
-                write!(f, "values must be {allowed}, got the type {found}")
-            }
-            Self::Shape(shape) => write!(
-                f,
-                "array must have 2 dimensions of at least 1 each, got the shape {shape:?}"
-            ),
-            Self::NotFinite { index } => write!(
-                f,
-                "values must be finite and below 3.4e38, got another at the index {index:?}"
-            ),
-            Self::MemoryLimit { needed, limit } => write!(
-                f,
-                "memory for the array must be at most {limit} bytes, got {needed}"
-            ),
-            Self::Memory { bytes } => write!(f, "memory for the array refused: {bytes} bytes"),
-            Self::Io(error) => write!(f, "file could not be read: {error}"),
-        }
-    }
-}
-
-impl error::Error for NpyError {
-    fn source(&self) -> Option<&(dyn error::Error + 'static)> {
-        match self {
-            Self::Io(error) => Some(error),
-            _ => None,
-        }
-    }
+    #[error("file could not be read: {0}")]
+    Io(#[source] io::Error),
 }
 
 impl From<io::Error> for NpyError {

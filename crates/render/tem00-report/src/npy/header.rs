@@ -2,10 +2,10 @@
 
 use std::io::Read;
 
-use super::{
-    NpyError,
-    literal::{Literal, Literals},
-};
+use serde::Deserialize;
+use serde_json::Value;
+
+use super::NpyError;
 
 const MAGIC: &[u8; 6] = b"\x93NUMPY";
 /// The values begin at a multiple of this.
@@ -15,10 +15,12 @@ const LONGEST: usize = 1 << 16;
 /// NumPy leaves room for the first side to grow to this many digits.
 const GROWTH: usize = 21;
 
-/// Description of the array.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Description of the array: the entries of the dictionary in a header.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Header {
-    pub(super) element_type: String,
+    descr: Value,
+    #[serde(rename = "fortran_order")]
     pub(super) columns_first: bool,
     pub(super) shape: Vec<u64>,
 }
@@ -43,68 +45,25 @@ impl Header {
                 reader.read_exact(&mut length)?;
                 u32::from_le_bytes(length) as usize
             }
-            [major, minor] => return Err(NpyError::Version { major, minor }),
+            [major, minor] => return Err(NpyError::Version(major, minor)),
         };
         if length > LONGEST {
-            return Err(NpyError::Header("it must be at most 65536 bytes long"));
+            return Err(NpyError::Header(
+                "it must be at most 65536 bytes long".into(),
+            ));
         }
         let mut text = vec![0; length];
         reader.read_exact(&mut text)?;
-        let text = str::from_utf8(&text).map_err(|_| NpyError::Header("it must be text"))?;
-        Self::parse(text)
+        let header = serde_json::from_str(&json(&String::from_utf8_lossy(&text)));
+        header.map_err(|error| NpyError::Header(error.to_string()))
     }
 
-    /// Reads a dictionary like `{'descr': '<c8', 'fortran_order': False, 'shape': (2, 3), }`.
-    fn parse(text: &str) -> Result<Self, NpyError> {
-        let mut entries = Literals::new(text);
-        let mut found = [None, None, None];
-        if !entries.takes('{') {
-            return Err(NpyError::Header("it must be a dictionary of Python"));
+    /// Returns the type of the values as the file names it.
+    pub(super) fn element_type(&self) -> String {
+        match &self.descr {
+            Value::String(name) => name.clone(),
+            other => other.to_string(),
         }
-        while !entries.takes('}') {
-            let known = match entries.text() {
-                Some("descr") => 0,
-                Some("fortran_order") => 1,
-                Some("shape") => 2,
-                _ => {
-                    return Err(NpyError::Header(
-                        "its entries must be descr, fortran_order and shape",
-                    ));
-                }
-            };
-            if !entries.takes(':') {
-                return Err(NpyError::Header("an entry has no value"));
-            }
-            found[known] = Some(entries.value()?);
-            if !entries.takes(',') && !entries.clone().takes('}') {
-                return Err(NpyError::Header("its entries must be separated by commas"));
-            }
-        }
-        if !entries.is_at_end() {
-            return Err(NpyError::Header("nothing must follow its dictionary"));
-        }
-        Self::from_entries(found)
-    }
-
-    fn from_entries(entries: [Option<Literal>; 3]) -> Result<Self, NpyError> {
-        let [element_type, columns_first, shape] = entries;
-        let element_type = match element_type {
-            Some(Literal::Text(name) | Literal::Other(name)) => name,
-            _ => return Err(NpyError::Header("descr must name the type of the values")),
-        };
-        let Some(Literal::Boolean(columns_first)) = columns_first else {
-            return Err(NpyError::Header("fortran_order must be True or False"));
-        };
-        let Some(Literal::Numbers(shape)) = shape else {
-            return Err(NpyError::Header(
-                "shape must be a tuple of integers of at least 0",
-            ));
-        };
-        Ok(Self {
-            element_type,
-            columns_first,
-            shape,
-        })
     }
 
     /// The bytes before an array whose rows follow each other, as NumPy writes them.
@@ -128,4 +87,25 @@ impl Header {
         bytes.extend(text.into_bytes());
         bytes
     }
+}
+
+/// Returns a dictionary of Python, like `{'descr': '<c8', 'fortran_order': False, 'shape': (2, 3), }`, as JSON.
+fn json(python: &str) -> String {
+    let mut json = String::with_capacity(python.len());
+    for c in python.chars() {
+        match c {
+            '\'' => json.push('"'),
+            '(' => json.push('['),
+            'T' | 'F' => json.push(c.to_ascii_lowercase()),
+            // Python 2 wrote an L behind long numbers.
+            'L' if json.ends_with(|before: char| before.is_ascii_digit()) => {}
+            ')' | ']' | '}' => {
+                let end = json.trim_end();
+                json.truncate(end.strip_suffix(',').unwrap_or(end).len());
+                json.push(if c == ')' { ']' } else { c });
+            }
+            _ => json.push(c),
+        }
+    }
+    json
 }

@@ -1,6 +1,7 @@
 use proptest::prelude::*;
 
 use tem00_speckle::PupilField;
+use tem00_testkit::{robust, rows};
 
 use super::*;
 
@@ -72,30 +73,40 @@ fn another_library_reads_what_is_written() {
 
 #[test]
 fn every_type_and_order_of_bytes_is_understood() {
-    let bytes = |values: &[[u8; 4]]| values.concat();
-    let little = bytes(&[1.5_f32, -2.0].map(f32::to_le_bytes));
-    let big = bytes(&[1.5_f32, -2.0].map(f32::to_be_bytes));
-    let doubles = |to: fn(f64) -> [u8; 8]| [1.5, -2.0].map(to).concat();
-    for (descr, values) in [
-        ("<f4", little.clone()),
-        (">f4", big.clone()),
-        ("<f8", doubles(f64::to_le_bytes)),
-        (">f8", doubles(f64::to_be_bytes)),
-    ] {
-        let grid = real(&array(descr, "(1, 2)", &values)).unwrap();
-        assert_eq!(grid.values(), [1.5, -2.0], "{descr}");
-        let descr = descr.replace('f', "c").replace('8', "16").replace('4', "8");
-        let grid = complex(&array(&descr, "(1, 1)", &values)).unwrap();
-        assert_eq!(grid.values(), [Complex::new(1.5, -2.0)], "{descr}");
-    }
-    for (descr, values, expected) in [
-        ("|u1", vec![0, 255], [0.0, 255.0]),
-        ("<u2", vec![1, 2, 255, 255], [513.0, 65_535.0]),
-        (">u2", vec![1, 2, 0, 9], [258.0, 9.0]),
-    ] {
-        let grid = real(&array(descr, "(2, 1)", &values)).unwrap();
-        assert_eq!(grid.values(), expected, "{descr}");
-        assert_eq!((grid.width(), grid.height()), (1, 2), "{descr}");
+    // Two numbers. Of binary16 the smallest and the largest are 2⁻²⁴ and 65504.
+    let table = "
+        <f4 => 0000c03f 000000c0 => 1.5 -2
+        >f4 => 3fc00000 c0000000 => 1.5 -2
+        <f8 => 000000000000f83f 00000000000000c0 => 1.5 -2
+        >f8 => 3ff8000000000000 c000000000000000 => 1.5 -2
+        <f2 => 0100 ff7b => 5.9604645e-8 65504
+        >f2 => 3c00 c000 => 1 -2
+        |b1 => 01 00 => 1 0
+        |u1 => 00 ff => 0 255
+        <u2 => 0102 ffff => 513 65535
+        >u2 => 0102 0009 => 258 9
+        <u4 => 01000000 00000080 => 1 2147483648
+        >u8 => 0000000000000001 0000010000000000 => 1 1099511627776
+        |i1 => ff 80 => -1 -128
+        >i2 => ffff 8000 => -1 -32768
+        <i4 => ffffffff 70110100 => -1 70000
+        <i8 => ffffffffffffffff 0000000000010000 => -1 1099511627776";
+    for [descr, bytes, numbers] in rows(table) {
+        let digits: Vec<u32> = bytes.chars().filter_map(|c| c.to_digit(16)).collect();
+        let pairs = digits.chunks_exact(2);
+        let bytes: Vec<u8> = pairs.map(|pair| (16 * pair[0] + pair[1]) as u8).collect();
+        let numbers = numbers.split(' ').map(|word| word.parse().unwrap());
+        let numbers: Vec<f32> = numbers.collect();
+        for shape in ["(1, 2)", "(1, 2, 1)", "(1, 1, 2)"] {
+            let grid = real(&array(&descr, shape, &bytes)).unwrap();
+            assert_eq!(grid.values(), numbers, "{descr}");
+            assert_eq!((grid.width(), grid.height()), (2, 1), "{descr} {shape}");
+        }
+        if descr.ends_with("f4") || descr.ends_with("f8") {
+            let descr = descr.replace("f8", "c16").replace("f4", "c8");
+            let grid = complex(&array(&descr, "(1, 1)", &bytes)).unwrap();
+            assert_eq!(grid.values(), [Complex::new(1.5, -2.0)], "{descr}");
+        }
     }
 }
 
@@ -125,87 +136,51 @@ fn headers_of_other_writers_are_understood() {
 
 #[test]
 fn what_is_no_field_says_what_it_is() {
-    let header_of = |text: &str| header(1, text);
-    let with = |entry: &str| header_of(&format!("{{'fortran_order': False, {entry}}}"));
-    let nested = with(&format!("'shape': {}", "(".repeat(60_000)));
-    let record = with("'descr': [('a', '<f4'), ('b', '<f4', (2,))], 'shape': (2, 2)");
-    let beyond = [0.0, 0.0, 0.0, 1e39].map(f64::to_le_bytes).concat();
-    let files: &[(&str, Vec<u8>, &str)] = &[
-        ("text", b"P5 640 480 255".to_vec(), "not a NumPy file"),
-        ("version", header(4, "{}"), "got 4.0"),
-        ("no dictionary", header_of("[1]"), "dictionary"),
-        ("nothing in it", header_of("{}"), "descr"),
-        (
-            "unknown entry",
-            with("'size': 3"),
-            "descr, fortran_order and shape",
-        ),
-        ("no value", with("'shape'"), "no value"),
-        ("no comma", with("'shape': (1, 2) 'descr': '<c8'"), "commas"),
-        ("more", header_of("{} {}"), "nothing must follow"),
-        ("a word", with("'shape': twelve"), "literal"),
-        ("open", with("'shape': (1, 2"), "not closed"),
-        ("nested", nested, "not closed"),
-        (
-            "negative",
-            with("'descr': '<c8', 'shape': (-1, 2)"),
-            "integers of at least 0",
-        ),
-        (
-            "huge",
-            with("'descr': '<c8', 'shape': (99999999999999999999, 1)"),
-            "integers of at least 0",
-        ),
-        (
-            "a line",
-            array("<c8", "(4,)", &[0; 32]),
-            "got the shape [4]",
-        ),
-        ("a scalar", array("<c8", "()", &[0; 8]), "got the shape []"),
-        ("a cube", array("<c8", "(2, 2, 2)", &[0; 64]), "[2, 2, 2]"),
-        ("empty", array("<c8", "(0, 4)", &[]), "got the shape [0, 4]"),
-        (
-            "real",
-            array("<f8", "(1, 2)", &[0; 16]),
-            "complex128, got the type <f8",
-        ),
-        (
-            "whole",
-            array("<i8", "(1, 2)", &[0; 16]),
-            "got the type <i8",
-        ),
-        (
-            "half an order",
-            array("=c8", "(1, 2)", &[0; 16]),
-            "got the type =c8",
-        ),
-        ("record", record, "[('a', '<f4'), ('b', '<f4', (2,))]"),
-        ("cut", array("<c8", "(1, 2)", &[0; 15]), "ends before"),
-        (
-            "a hole",
-            array("<c8", "(1, 1)", &[0, 0, 0, 0, 0, 0, 192, 127]),
-            "index [0, 0]",
-        ),
-        (
-            "too large",
-            array("<c16", "(2, 1)", &beyond),
-            "index [1, 0]",
-        ),
-        (
-            "many",
-            array("<c8", "(1000000, 1000000)", &[]),
-            "at most 1048576 bytes",
-        ),
-        (
-            "overflow",
-            array("<c8", "(9999999999, 9999999999)", &[]),
-            "1048576 bytes",
-        ),
-    ];
-    for (name, file, part) in files {
+    let refused = |file: &[u8], part: &str| {
         let error = complex(file).unwrap_err().to_string();
-        assert!(error.contains(part), "{name}: {error}");
+        assert!(error.contains(part), "{part}: {error}");
+    };
+    // Headers, beside the order of columns.
+    let table = "
+        'size': 3 => unknown field `size`
+        'shape': (1, 2) => missing field `descr`
+        'shape' => expected `:`
+        'shape': (1, 2) 'descr': '<c8' => expected `,` or `}`
+        'shape': twelve => expected ident
+        'shape': (1, 2 => expected `,` or `]`
+        'descr': '<c8', 'shape': 12 => expected a sequence
+        'descr': '<c8', 'shape': (-1, 2) => integer `-1`
+        'descr': '<c8', 'shape': (99999999999999999999, 1) => expected u64
+        'descr': [('a', '<f4'), ('b', '<f4', (2,))], 'shape': (2, 2) => got the type [[\"a\",\"<f4\"]";
+    for [entries, part] in rows(table) {
+        let text = format!("{{'fortran_order': False, {entries}}}");
+        refused(&header(1, &text), &part);
     }
+    let nested = format!("{{'fortran_order': False, 'descr': {}", "(".repeat(60_000));
+    refused(&header(1, &nested), "recursion limit");
+    refused(&header(1, "[1]"), "header of the NPY file");
+    refused(&header(1, "{} {}"), "header of the NPY file");
+    refused(b"P5 640 480 255", "not a NumPy file");
+    refused(&header(4, "{}"), "got 4.0");
+    // Types and shapes.
+    let table = "
+        <c8 => (4,) => got the shape [4]
+        <c8 => () => got the shape []
+        <c8 => (2, 2, 2) => [2, 2, 2]
+        <c8 => (0, 4) => got the shape [0, 4]
+        <f8 => (1, 2) => complex128, got the type <f8
+        <i8 => (1, 2) => got the type <i8
+        =c8 => (1, 2) => got the type =c8
+        <c8 => (1, 9) => ends before
+        <c8 => (1000000, 1000000) => at most 1048576 bytes
+        <c8 => (9999999999, 9999999999) => 1048576 bytes";
+    for [descr, shape, part] in rows(table) {
+        refused(&array(&descr, &shape, &[0; 64]), &part);
+    }
+    let hole = array("<c8", "(1, 1)", &[0, 0, 0, 0, 0, 0, 192, 127]);
+    refused(&hole, "index [0, 0]");
+    let beyond = [0.0, 0.0, 0.0, 1e39].map(f64::to_le_bytes).concat();
+    refused(&array("<c16", "(2, 1)", &beyond), "index [1, 0]");
     let error = real(&array("<c8", "(1, 1)", &[0; 8])).unwrap_err();
     assert!(error.to_string().contains("float32"), "{error}");
     let endless = [&b"\x93NUMPY\x02\x00\xff\xff\xff\xff"[..], &[b' '; 99]].concat();
@@ -237,7 +212,7 @@ fn memory_is_only_asked_for_as_the_file_fills_it() {
     // More values than there are addresses.
     let endless = array("<c8", "(9999999999, 9999999999)", &[0; 800]);
     let cut = NpyReader::new(endless.as_slice()).and_then(|array| array.into_complex(u64::MAX));
-    assert!(matches!(cut, Err(NpyError::Memory { .. })), "{cut:?}");
+    assert!(matches!(cut, Err(NpyError::Memory(_))), "{cut:?}");
 
     // What the limit counts: once the values, twice if they are turned.
     let file = array("<c16", "(4, 4)", &[0; 256]);
@@ -251,20 +226,17 @@ fn memory_is_only_asked_for_as_the_file_fills_it() {
     assert!(within(&file, 256) && !within(&file, 255), "Fortran order");
 }
 
-proptest! {
-    #[test]
-    fn no_bytes_make_the_reader_panic(
-        at in 0_usize..140, new in proptest::collection::vec(any::<u8>(), 0..24), cut in 0_usize..200,
-    ) {
-        let mut file = Vec::new();
-        write_npy(&wave(3, 3), &mut file).unwrap();
-        let end = (at + new.len()).min(file.len());
-        file.splice(at..end, new);
-        file.truncate(file.len().saturating_sub(cut.saturating_sub(100)));
-        // Whatever it is, it comes to an end without much memory.
-        let _ = (complex(&file), real(&file));
-    }
+#[test]
+fn no_bytes_make_the_reader_panic() {
+    let mut file = Vec::new();
+    write_npy(&wave(3, 3), &mut file).unwrap();
+    robust(
+        |bytes| (complex(bytes).is_ok(), real(bytes).is_ok()),
+        &[&file],
+    );
+}
 
+proptest! {
     #[test]
     fn no_text_makes_the_reader_panic(text in "[{}()\\[\\]'\":, a-eTrueFalsdcohp0-9_\\-]{0,60}") {
         let _ = NpyReader::new(header(1, &text).as_slice()).map(|array| array.shape().to_vec());

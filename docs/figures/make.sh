@@ -33,5 +33,5 @@ cp "$work/lines/raw_0000_lines.png" docs/figures/triangulation_lines.png
 tem00-inspect triangulate examples/scenes/triangulation/hexagon_nut.toml -o "$work/nut"
 cp "$work/nut/height_map.png" docs/figures/triangulation_nut.png
 # What they were made from: a test compares it.
-cksum examples/scenes/triangulation/{step_gauge,hexagon_nut}.toml examples/scenes/meshes/{step_gauge,hexagon_nut}.ply \
+md5sum examples/scenes/triangulation/{step_gauge,hexagon_nut}.toml examples/scenes/meshes/{step_gauge,hexagon_nut}.ply \
     > docs/figures/made_from.txt

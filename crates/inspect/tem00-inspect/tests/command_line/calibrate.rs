@@ -1,14 +1,17 @@
 //! `tem00-inspect calibrate`.
 
-use std::{fs, path::Path};
+use std::fs;
 
 use glam::DVec2;
-use serde_json::Value;
+use png::BitDepth;
 use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
 use tem00_tracer::RigidMotion;
 use tem00_triangulation::{DVec3, LaserPlane};
 
-use super::{folder, message, run};
+use super::{
+    helpers::{rounded, write_png},
+    *,
+};
 
 const SQUARE: f64 = 12e-3;
 const OPTIONS: &str = "--corners 6x4 --square 12mm --pixel-pitch 16um --radial 0";
@@ -53,26 +56,18 @@ fn photograph(path: &Path, pose: &RigidMotion, grey: impl Fn(DVec3) -> f64) {
         let distance = (origin - ray.origin).dot(normal) / ray.direction.dot(normal);
         grey(ray.origin + distance * ray.direction)
     };
-    let mean = |pixel: u32| {
-        let corner = DVec2::new(f64::from(pixel % 320), f64::from(pixel / 320));
-        let inside = |i: u32| DVec2::new(f64::from(i % 4), f64::from(i / 4)) / 4.0 + 0.125;
-        (0..16).map(|i| at(corner + inside(i))).sum::<f64>() / 16.0
-    };
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "grey values lie between 0 and 255"
-    )]
-    let pixels: Vec<u8> = (0..320 * 240)
-        .map(|pixel| mean(pixel).round() as u8)
-        .collect();
-    let file = fs::File::create(path).expect("the file is made");
-    let mut encoder = png::Encoder::new(file, 320, 240);
-    encoder.set_color(png::ColorType::Grayscale);
-    let mut writer = encoder.write_header().expect("the header is written");
-    writer
-        .write_image_data(&pixels)
-        .expect("the image is written");
+    write_png(path, [320, 240], BitDepth::Eight, |x, y| {
+        let inside = |i: usize| DVec2::new((i % 4) as f64, (i / 4) as f64) / 4.0 + 0.125;
+        let corner = DVec2::new(x as f64, y as f64);
+        [rounded(
+            (0..16).map(|i| at(corner + inside(i))).sum::<f64>() / 16.0,
+        )]
+    });
+}
+
+/// The light of a line of 2.4 mm full width in the plane y = 0.
+fn line(point: DVec3) -> f64 {
+    (-2.0 * (point.y / 1.2e-3).powi(2)).exp()
 }
 
 /// Photographs of five boards, drawn from the geometry alone.
@@ -87,9 +82,8 @@ fn photographs(folder: &Path) {
             if board && dark { 40.0 } else { 200.0 }
         };
         photograph(&folder.join(format!("board_{number}.png")), &pose, squares);
-        // A line of 2.4 mm full width in the plane y = 0.
-        let line = |point: DVec3| 200.0 * (-2.0 * (point.y / 1.2e-3).powi(2)).exp();
-        photograph(&folder.join(format!("line_{number}.png")), &pose, line);
+        let path = folder.join(format!("line_{number}.png"));
+        photograph(&path, &pose, |point| 200.0 * line(point));
     }
 }
 
@@ -97,30 +91,17 @@ fn photographs(folder: &Path) {
 fn photographs_give_camera_and_plane() {
     let folder = folder();
     photographs(folder.path());
-    let done = run(
-        folder.path(),
-        &format!("calibrate . {OPTIONS} -o found.json"),
-    );
-    let told = String::from_utf8_lossy(&done.stdout);
-    assert!(
-        done.status.success(),
-        "{}",
-        String::from_utf8_lossy(&done.stderr)
-    );
-    for part in [
+    let line = format!("calibrate . {OPTIONS} -o found.json");
+    let parts = [
         "image distance",
         "principal point x",
         "120 corners on 5 boards",
         "in 5 of 5 pictures, are used; left out: 0 too far off, ",
         "found.json",
-    ] {
-        assert!(told.contains(part), "{part}: {told}");
-    }
-    let text = fs::read_to_string(folder.path().join("found.json")).expect("the file is there");
-    let found: Value = serde_json::from_str(&text).expect("it is JSON");
-    let number = |value: &Value| value.as_f64().expect("a number");
-    let vector =
-        |value: &Value| DVec3::new(number(&value[0]), number(&value[1]), number(&value[2]));
+    ];
+    assert_has(&said(folder.path(), &line, 0).out, &parts);
+    let found = json(&read(&folder.path().join("found.json")));
+    let vector = |key: &str| DVec3::from([0, 1, 2].map(|axis| number(&found["plane"][key][axis])));
     let [f, focus] = ["focal_length", "focus_distance"].map(|key| number(&found["camera"][key]));
     let distance = f * focus / (focus - f);
     let sigma = number(&found["covariance"]["rows"][0][0]).sqrt();
@@ -130,74 +111,53 @@ fn photographs_give_camera_and_plane() {
         error < 5.0 * sigma && sigma < 1e-4,
         "{error:e}, {sigma:e} m"
     );
-    let plane = LaserPlane::new(
-        vector(&found["plane"]["point"]),
-        vector(&found["plane"]["normal"]),
-    );
-    let plane = plane.expect("the plane has a normal");
+    let plane = LaserPlane::new(vector("point"), vector("normal"));
     let origin = pose(0).inverse().point(DVec3::ZERO);
     // A tenth of a pixel of 0.33 mm.
-    assert!(
-        plane.distance(origin).abs() < 3e-5,
-        "{:e} m",
-        plane.distance(origin)
-    );
+    let distance = plane.expect("the plane has a normal").distance(origin);
+    assert!(distance.abs() < 3e-5, "{distance:e} m");
 }
 
 #[test]
 fn what_photographs_of_lines_did_not_give_is_told() {
     let folder = folder();
     photographs(folder.path());
+    let path = |number: u32| folder.path().join(format!("line_{number}.png"));
     // Two of five clipped, one without a line, and one without a photograph of it.
     for number in [1, 2] {
-        let line = |point: DVec3| (600.0 * (-2.0 * (point.y / 1.2e-3).powi(2)).exp()).min(255.0);
-        let path = folder.path().join(format!("line_{number}.png"));
-        photograph(&path, &pose(number), line);
+        let clipped = |point| (600.0 * line(point)).min(255.0);
+        photograph(&path(number), &pose(number), clipped);
     }
-    photograph(&folder.path().join("line_3.png"), &pose(3), |_| 0.0);
-    fs::remove_file(folder.path().join("line_4.png")).expect("it was there");
-    let done = run(folder.path(), &format!("calibrate . {OPTIONS}"));
-    let told = message(&done);
-    assert_eq!(
-        done.status.code(),
-        Some(2),
-        "one line leaves the plane open: {told}"
-    );
-    for part in [
+    photograph(&path(3), &pose(3), |_| 0.0);
+    fs::remove_file(path(4)).expect("it was there");
+    let command = format!("calibrate . {OPTIONS}");
+    // One line leaves the plane open.
+    let told = said(folder.path(), &command, 2).told;
+    let parts = [
         "because pixels are saturated",
         "3 of 4 pictures of the line gave no point",
-    ] {
-        assert!(told.contains(part), "{part}: {told}");
-    }
+    ];
+    assert_has(&told, &parts);
 
-    let line = |point: DVec3| 200.0 * (-2.0 * (point.y / 1.2e-3).powi(2)).exp();
-    photograph(&folder.path().join("line_4.png"), &pose(4), line);
-    let done = run(folder.path(), &format!("calibrate . {OPTIONS}"));
-    let (table, told) = (String::from_utf8_lossy(&done.stdout), message(&done));
-    assert_eq!(done.status.code(), Some(0), "{told}");
-    for part in [
+    photograph(&path(4), &pose(4), |point| 200.0 * line(point));
+    let Said { out, told } = said(folder.path(), &command, 0);
+    let parts = [
         "3 of 5 pictures of the line gave no point: line_1 (pixels are saturated: expose shorter), line_2",
         "line_3 (no line was found",
-    ] {
-        assert!(told.contains(part), "{part}: {told}");
-    }
+    ];
+    assert_has(&told, &parts);
     // 640 columns of the two clipped photographs, if the line crosses the whole image.
-    assert!(table.contains("in 2 of 5 pictures, are used"), "{table}");
-    assert!(table.contains(" saturated."), "{table}");
+    assert_has(&out, &["in 2 of 5 pictures, are used", " saturated."]);
 }
 
 #[test]
 fn what_cannot_be_calibrated_with_is_told_in_words() {
     let folder = folder();
-    let refused = |line: &str, part: &str| {
-        let done = run(folder.path(), line);
-        let told = String::from_utf8_lossy(&done.stderr).into_owned();
-        assert_eq!(done.status.code(), Some(2), "{line}: {told}");
-        assert!(told.contains(part), "{line}: {told}");
-    };
-    photograph(&folder.path().join("board_1.png"), &pose(0), |_| 100.0);
-    photograph(&folder.path().join("line_1.png"), &pose(0), |_| 100.0);
-    refused(&format!("calibrate . {OPTIONS}"), "board_1.png");
-    fs::write(folder.path().join("board_1.png"), "no image").expect("the file is written");
-    refused(&format!("calibrate . {OPTIONS}"), "cannot read");
+    let path = |name: &str| folder.path().join(name);
+    let command = format!("calibrate . {OPTIONS}");
+    photograph(&path("board_1.png"), &pose(0), |_| 100.0);
+    photograph(&path("line_1.png"), &pose(0), |_| 100.0);
+    assert_has(&said(folder.path(), &command, 2).told, &["board_1.png"]);
+    fs::write(path("board_1.png"), "no image").expect("the file is written");
+    assert_has(&said(folder.path(), &command, 2).told, &["cannot read"]);
 }

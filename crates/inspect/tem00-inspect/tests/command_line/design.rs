@@ -1,132 +1,107 @@
 //! `tem00-inspect design`: searches among set-ups.
 
-use std::{fs, path::Path};
+use std::fs;
 
 use tem00_triangulation::{Budget, read_setup};
 
-use super::{assert_code, files, folder, run, text};
+use super::*;
 
-pub(super) const SETUP: &str = include_str!("../cmd/files/design.toml");
-
-fn setup_folder(require: &str) -> tempfile::TempDir {
-    let folder = folder();
-    let text = format!("{SETUP}\n[design.require]\n{require}\n");
-    fs::write(folder.path().join("a.toml"), text).expect("the set-up is written");
-    folder
-}
-
-fn json(path: &Path) -> serde_json::Value {
-    let text = fs::read_to_string(path).expect("the file is there");
-    serde_json::from_str(&text).expect("JSON")
+fn record(folder: &tempfile::TempDir) -> Value {
+    json(&read(&folder.path().join("out/a/design.json")))
 }
 
 #[test]
 fn a_best_line_below_two_speckles_sends_for_trials() {
+    let folder = written(DESIGN);
     for (thickness, is_thin) in [("2e-5", true), ("2e-4", false)] {
-        let folder = setup_folder("");
-        let line =
-            format!("design a.toml --set laser.line_thickness={thickness} --set laser.power=1e-3");
-        let output = run(folder.path(), &line);
-        assert_code(&output, 0);
-        let told = text(&output.stdout).contains("ask the trials of `tem00-inspect budget`");
-        assert_eq!(told, is_thin, "{thickness}: {}", text(&output.stdout));
+        let options = format!("--set laser.line_thickness={thickness} --set laser.power=1e-3");
+        let printed = said(folder.path(), &format!("design a.toml {options}"), 0).out;
+        let told = printed.contains("ask the trials of `tem00-inspect budget`");
+        assert_eq!(told, is_thin, "{thickness}: {printed}");
     }
 }
 
 #[test]
 fn a_search_over_linewidths_says_what_each_leaves_of_noise_and_contrast() {
-    let folder = folder();
-    let file = folder.path().join("a.toml");
-    let broad = SETUP.replace("angle = [", "linewidth = [\"1 nm\", \"20 nm\"]\nangle = [");
-    fs::write(&file, broad).expect("the set-up is written");
-    let output = run(folder.path(), "design a.toml --best 2");
-    assert_code(&output, 0);
-    let (report, table) = (
-        json(&folder.path().join("out/a/design.json")),
-        text(&output.stdout),
-    );
-    for column in [
+    let folder = written(DESIGN);
+    let linewidths = "--set 'design.vary.linewidth=[\"1 nm\", \"20 nm\"]'";
+    let table = said(
+        folder.path(),
+        &format!("design a.toml --best 2 {linewidths}"),
+        0,
+    )
+    .out;
+    let columns = [
         "line noise over one wavelength",
         "contrast over one wavelength",
-    ] {
-        assert!(table.contains(column), "{column}: {table}");
-    }
-    let winner = read_setup(&folder.path().join("out/a/best.toml")).expect("a set-up file");
+    ];
+    assert_has(&table, &columns);
+    let out = folder.path().join("out/a");
+    let winner = read_setup(&out.join("best.toml")).expect("a set-up file");
     let effect = winner.line().bandwidth;
-    let best = &report["best"][0];
+    let best = &record(&folder)["best"][0];
     assert_eq!(best["linewidth"], 20e-9, "{best}");
     assert_eq!(best["line_noise_ratio"], effect.line_noise_ratio, "{best}");
     assert_eq!(best["contrast_ratio"], effect.contrast, "{best}");
     let words = "of the noise of the line, which counts for the uncertainty";
-    let page = fs::read_to_string(folder.path().join("out/a/design.html")).expect("text");
-    assert!(page.contains(words), "{words}");
-
-    fs::write(&file, SETUP).expect("the set-up is written");
-    let output = run(folder.path(), "design a.toml --best 2");
-    assert_code(&output, 0);
-    let table = text(&output.stdout);
+    assert_has(&read(&out.join("design.html")), &[words]);
+    let table = said(folder.path(), "design a.toml --best 2", 0).out;
     assert!(!table.contains("contrast over"), "one wavelength: {table}");
 }
 
 #[test]
 fn a_search_writes_its_files_and_a_winner_that_reads_back() {
-    let folder = setup_folder("saturation = 0.9\ndepth_of_field = \"15 mm\"");
-    let output = run(folder.path(), "design a.toml --best 2");
-    assert_code(&output, 0);
+    let folder = written(DESIGN);
+    let require = "--set design.require.saturation=0.9 --set 'design.require.depth_of_field=15 mm'";
+    said(
+        folder.path(),
+        &format!("design a.toml --best 2 {require}"),
+        0,
+    );
     let out = folder.path().join("out/a");
-    let mut expected = vec!["best.toml", "design.csv", "design.html", "design.json"];
-    let drawings = [
-        "over_angle.png",
-        "over_angle.svg",
-        "over_f_number.png",
-        "over_f_number.svg",
-        "sensitivity.png",
-        "sensitivity.svg",
-        "trade_off.png",
-        "trade_off.svg",
-    ];
-    expected.extend(drawings);
+    let mut expected = ["best.toml", "design.csv", "design.html", "design.json"]
+        .map(str::to_owned)
+        .to_vec();
+    for name in ["over_angle", "over_f_number", "sensitivity", "trade_off"] {
+        expected.extend(["png", "svg"].map(|end| format!("{name}.{end}")));
+    }
     assert_eq!(files(&out), expected);
 
-    let written = fs::read_to_string(out.join("best.toml")).expect("text");
-    assert!(
-        written.contains("exposure = \"0.05 ms\"\n") && written.contains("angle = \"40 deg\" #"),
-        "{written}"
+    let written = read(&out.join("best.toml"));
+    assert_has(
+        &written,
+        &["exposure = \"0.05 ms\"\n", "angle = \"40 deg\" #"],
     );
     // The winner is a set-up file, and its budget is what the search says of it, bit by bit.
     let winner = read_setup(&out.join("best.toml")).expect("a set-up file");
     let budget = Budget::new(&winner).expect("the line is found");
-    let found = json(&out.join("design.json"));
-    let best = found["best"].as_array().expect("a list");
-    assert_eq!(best.len(), 2, "{found}");
-    let uncertainty = best[0]["uncertainty"].as_f64();
+    let found = record(&folder);
+    assert_eq!(found["best"].as_array().map(Vec::len), Some(2), "{found}");
+    let uncertainty = found["best"][0]["uncertainty"].as_f64();
     assert_eq!(uncertainty, Some(budget.combined()), "{found}");
-    assert_code(&run(folder.path(), "budget out/a/best.toml --trials 20"), 0);
+    said(folder.path(), "budget out/a/best.toml --trials 20", 0);
 
-    let csv = fs::read_to_string(out.join("design.csv")).expect("text");
+    let csv = read(&out.join("design.csv"));
     assert_eq!(csv.lines().count(), 7, "a line of headings and six set-ups");
-    assert!(
-        csv.starts_with("number,f_number,angle_rad,uncertainty_m,"),
-        "{csv}"
-    );
+    let headings = "number,f_number,angle_rad,uncertainty_m,";
+    assert!(csv.starts_with(headings), "{csv}");
     let columns: Vec<_> = csv.lines().map(|line| line.split(',').count()).collect();
     assert!(columns.iter().all(|&count| count == columns[0]), "{csv}");
 }
 
 #[test]
 fn where_no_set_up_will_do_there_is_no_winner() {
-    let folder = setup_folder("field_width = \"2 m\"");
-    fs::create_dir_all(folder.path().join("out/a")).expect("a folder");
-    let best = folder.path().join("out/a/best.toml");
-    fs::write(&best, "the winner of another search").expect("written");
-    let output = run(folder.path(), "design a.toml");
-    assert_code(&output, 3);
-    assert!(!best.exists(), "the winner of another search");
-    let page = fs::read_to_string(folder.path().join("out/a/design.html")).expect("text");
-    assert!(!page.contains("best.toml"), "{page}");
-    let printed = run(folder.path(), "design a.toml --json");
-    assert_code(&printed, 3);
-    let printed: serde_json::Value = serde_json::from_slice(&printed.stdout).expect("JSON");
+    let folder = written(DESIGN);
+    let out = folder.path().join("out/a");
+    fs::create_dir_all(&out).expect("a folder");
+    fs::write(out.join("best.toml"), "the winner of another search").expect("written");
+    let line = "design a.toml --json --set 'design.require.field_width=2 m'";
+    let printed = json(&said(folder.path(), line, 3).out);
+    assert!(
+        !out.join("best.toml").exists(),
+        "the winner of another search"
+    );
+    assert!(!read(&out.join("design.html")).contains("best.toml"));
     assert_eq!(printed["allowed"], 0, "{printed}");
     assert_eq!(printed["best"], serde_json::json!([]), "{printed}");
     assert!(
@@ -138,32 +113,25 @@ fn where_no_set_up_will_do_there_is_no_winner() {
 #[test]
 fn what_a_search_finds_best_has_good_light_in_its_budget() {
     // Steel: f-number by exposure, without a word on the light.
-    let vary = "f_number = [4, 5.6, 8, 11]\n\
-                exposure = { from = \"0.02 ms\", to = \"0.64 ms\", steps = 6, scale = \"log\" }";
-    let (setup, _) = SETUP.split_once("[design.vary]").expect("the set-up");
+    let (setup, _) = DESIGN.split_once("[design.vary]").expect("the set-up");
+    let vary = "[design.vary]\nf_number = [4, 5.6, 8, 11]\n";
+    let exposures =
+        "exposure = { from = \"0.02 ms\", to = \"0.64 ms\", steps = 6, scale = \"log\" }";
     let folder = folder();
-    let text_of = |exposure: &str, vary: &str| {
-        let setup = setup.replace("\"0.05 ms\"", exposure);
-        format!("{setup}[design.vary]\n{vary}\n")
-    };
-    for (name, exposure, vary) in [
-        ("fixed", "\"0.05 ms\"", vary),
-        ("auto", "\"auto\"", "f_number = [4, 5.6, 8, 11]"),
+    for (name, text) in [
+        ("fixed", format!("{setup}{vary}{exposures}")),
+        ("auto", replaced(setup, "\"0.05 ms\"", "\"auto\"") + vary),
     ] {
-        let file = folder.path().join(format!("{name}.toml"));
-        fs::write(file, text_of(exposure, vary)).expect("written");
-        assert_code(&run(folder.path(), &format!("design {name}.toml")), 0);
+        fs::write(folder.path().join(format!("{name}.toml")), text).expect("written");
+        said(folder.path(), &format!("design {name}.toml"), 0);
         let line = format!("budget out/{name}/best.toml --trials 20 -o {name}");
-        let output = run(folder.path(), &line);
-        assert_code(&output, 0);
-        let told = text(&output.stdout);
-        assert!(told.contains("in the brightest pixel: good\n"), "{told}");
+        let told = said(folder.path(), &line, 0).out;
+        assert_has(&told, &["in the brightest pixel: good\n"]);
         assert!(!told.contains("The light is not right"), "{told}");
         // The frames of the trials are drawn and exposed: few columns lose their line to bright grains.
-        let record = json(&folder.path().join(name).join("budget.json"));
-        assert!(record["trials"]["invalid"].as_f64() < Some(0.1), "{record}");
-        let best = fs::read_to_string(folder.path().join(format!("out/{name}/best.toml")));
-        let best = best.expect("text");
+        let record = json(&read(&folder.path().join(name).join("budget.json")));
+        assert!(number(&record["trials"]["invalid"]) < 0.1, "{record}");
+        let best = read(&folder.path().join(format!("out/{name}/best.toml")));
         let chosen = best.contains("exposure = \"auto\" # ");
         assert_eq!(chosen, name == "auto", "{best}");
         let is_long = |word: &str| word.bytes().filter(u8::is_ascii_digit).count() > 6;

@@ -1,14 +1,10 @@
 //! `tem00-inspect lines` on images as cameras write them.
 
-use std::{fs, path::Path};
-
 use png::BitDepth;
-use serde_json::Value;
 
 use super::{
-    assert_code, folder,
     helpers::{noise, rounded, write_png},
-    message, run,
+    *,
 };
 
 const SIZE: usize = 64;
@@ -28,14 +24,16 @@ pub(super) fn write_line(path: &Path) {
     write_grey(path, |x, y| rounded(4_000.0 * line(x, y)));
 }
 
-/// Returns the numbers of points and of valid ones in a table of `tem00-inspect lines`.
-fn points(path: &Path) -> [usize; 2] {
-    let table = fs::read_to_string(path).expect("the table");
-    let valid = table
-        .lines()
-        .skip(1)
-        .map(|row| row.split(',').nth(7) == Some("1"));
-    [valid.clone().count(), valid.filter(|valid| *valid).count()]
+/// Finds the lines of `a.png`, checks the numbers of its points and of valid ones, and returns what was said.
+#[track_caller]
+fn found(folder: &Path, options: &str, code: i32, valid: usize) -> Said {
+    let said = said(folder, &format!("lines a.png -o f {options}"), code);
+    let table = read(&folder.join("f/a.csv"));
+    let rows = table.lines().skip(1);
+    let is_valid = |row: &&str| row.split(',').nth(7) == Some("1");
+    let counts = [rows.clone().count(), rows.filter(is_valid).count()];
+    assert_eq!(counts, [SIZE, valid], "{}", said.told);
+    said
 }
 
 #[test]
@@ -54,61 +52,51 @@ fn saturation_of_lines_is_one_judgement_whatever_the_bits_and_where_they_lie() {
         (3_931, 1),
         (235, 1),
     ] {
-        let full = f64::from(largest);
+        let (full, step) = (f64::from(largest), f64::from(step));
         for (exposure, is_clipped) in [(0.9, false), (1.5, true)] {
             write_grey(&file, |x, y| {
-                let value =
-                    f64::from(step) * (exposure * full * line(x, y) / f64::from(step)).round();
+                let value = step * (exposure * full * line(x, y) / step).round();
                 rounded(value.min(full))
             });
-            let case = format!("{largest} in steps of {step}, exposure {exposure}");
+            let (code, valid) = if is_clipped { (3, 0) } else { (0, SIZE) };
             for detector in ["centre_of_gravity", "blais_rioux"] {
-                let output = run(
-                    folder.path(),
-                    &format!("lines a.png --detector {detector} -o f"),
-                );
-                let told = message(&output);
+                let options = format!("--detector {detector}");
+                let told = found(folder.path(), &options, code, valid).told;
                 let warning =
                     "100 % of the points are not valid, 100 % because pixels are saturated";
-                assert_eq!(told.contains(warning), is_clipped, "{case}: {told}");
-                assert_code(&output, if is_clipped { 3 } else { 0 });
-                let valid = if is_clipped { 0 } else { SIZE };
                 assert_eq!(
-                    points(&folder.path().join("f/a.csv")),
-                    [SIZE, valid],
-                    "{case}"
+                    told.contains(warning),
+                    is_clipped,
+                    "{largest}, {step}: {told}"
                 );
             }
         }
     }
     // Who knows the bits is believed.
-    let output = run(folder.path(), "lines a.png --bits 16 -o f");
-    assert_code(&output, 0);
+    found(folder.path(), "--bits 16", 0, SIZE);
 }
 
 #[test]
 fn a_pixel_is_saturated_if_one_of_its_channels_is() {
     let folder = folder();
-    let path = |name: &str| folder.path().join(name);
-    let colours = [[0, 1, 2], [2, 0, 1], [1, 2, 0]];
+    let file = folder.path().join("a.png");
     for (depth, full) in [(BitDepth::Eight, 255.0), (BitDepth::Sixteen, 4_095.0)] {
-        for places in colours {
-            let pixel = |lights: [f64; 3]| {
-                places.map(|place: usize| rounded((full * lights[place]).min(full)))
-            };
-            write_png(&path("a.png"), [SIZE, SIZE], depth, |x, y| {
-                pixel([1.5, 0.3, 0.1].map(|part| part * line(x, y)))
+        // The channels of bright, of dim and of little light.
+        for [bright, dim, dark] in [[0, 1, 2], [1, 2, 0], [2, 0, 1]] {
+            write_png(&file, [SIZE, SIZE], depth, |x, y| {
+                let mut pixel = [0; 3];
+                for (channel, part) in [(bright, 1.5), (dim, 0.3), (dark, 0.1)] {
+                    pixel[channel] = rounded((full * part * line(x, y)).min(full));
+                }
+                pixel
             });
-            let bright = ["R", "G", "B"][places.iter().position(|place| *place == 0).expect("one")];
-            let dim = ["R", "G", "B"][places.iter().position(|place| *place == 1).expect("one")];
-            for (channel, code) in [
-                (String::new(), 3),
-                (format!("--channel {bright}"), 3),
-                (format!("--channel {dim}"), 0),
+            let name = |channel: usize| format!("--channel {}", ["R", "G", "B"][channel]);
+            for (channel, code, valid) in [
+                (String::new(), 3, 0),
+                (name(bright), 3, 0),
+                (name(dim), 0, SIZE),
             ] {
-                let output = run(folder.path(), &format!("lines a.png -o f {channel}"));
-                assert_code(&output, code);
-                let told = message(&output);
+                let told = found(folder.path(), &channel, code, valid).told;
                 let is_told = told.contains("because pixels are saturated: expose shorter");
                 assert_eq!(is_told, code == 3, "{channel}: {told}");
             }
@@ -125,18 +113,10 @@ fn half_a_line_on_saturated_pixels_is_no_result() {
             let exposure = if x < columns { 1.5 } else { 0.9 };
             [rounded((exposure * 255.0 * line(x, y)).min(255.0))]
         });
-        let output = run(folder.path(), "lines a.png --json -o f");
-        assert_code(&output, code);
-        let record: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let printed = found(folder.path(), "--json", code, SIZE - columns).out;
+        let record = json(&printed);
         let warning = record["warnings"][0].as_str().unwrap_or_default();
-        assert_eq!(
-            warning.contains("pixels are saturated"),
-            is_told,
-            "{columns}: {record}"
-        );
-        assert_eq!(
-            points(&folder.path().join("f/a.csv")),
-            [SIZE, SIZE - columns]
-        );
+        let found = warning.contains("pixels are saturated");
+        assert_eq!(found, is_told, "{columns}: {record}");
     }
 }

@@ -1,50 +1,18 @@
 //! The commands of `docs/tutorial.md` and `docs/certificate.md` do what they say, some on smaller set-ups and scenes.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::{fs, path::PathBuf};
 
-use serde_json::Value;
+use super::*;
 
-use super::{folder, helpers::words, message, tem00, text};
-
-/// What is made smaller, so that the commands take seconds: file, what it has, what it gets.
-const SMALLER: [(&str, &str, &str); 8] = [
-    ("examples/setups/design.toml", "steps = 7", "steps = 2"),
-    ("examples/setups/design.toml", "steps = 6", "steps = 2"),
-    (
-        "examples/setups/design.toml",
-        "line_thickness = [\"0.08 mm\", \"0.1 mm\", ",
-        "line_thickness = [",
-    ),
-    (
-        "examples/scenes/triangulation/step_gauge.toml",
-        "samples_per_pixel = 4",
-        "samples_per_pixel = 2",
-    ),
-    // The middle of the line has the noise of all of it.
-    (
-        "examples/scenes/triangulation/step_gauge.toml",
-        "resolution = [864, 144]",
-        "resolution = [288, 144]",
-    ),
-    (
-        "examples/scenes/triangulation/step_gauge.toml",
-        "principal_point = [432, 112]",
-        "principal_point = [144, 112]",
-    ),
-    (
-        "examples/scenes/triangulation/calibration.toml",
-        "samples_per_pixel = 16",
-        "samples_per_pixel = 1",
-    ),
-    (
-        "examples/scenes/triangulation/calibration.toml",
-        "boards = 8",
-        "boards = 4",
-    ),
-];
+/// Options that make commands smaller, so that they take seconds: the beginning of a command, and what it gets. The middle of
+/// a line has the noise of all of it.
+const SMALLER: &str = "
+    budget => --trials 20
+    design => --set design.vary.f_number.steps=2 --set design.vary.exposure.steps=2 \
+              --set 'design.vary.line_thickness=[\"0.15 mm\", \"0.2 mm\", \"0.3 mm\"]'
+    triangulate examples/scenes/triangulation/step_gauge => --spp 2 --set 'camera.resolution=[288, 144]' \
+              --set 'camera.principal_point=[144, 112]'
+    triangulate examples/scenes/triangulation/calibration => --spp 1 --set calibration.boards=4";
 
 fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..")
@@ -59,15 +27,6 @@ fn copy(name: &str, to: &Path) {
             let file = path.file_name().expect("a file has a name");
             fs::copy(&path, to.join(name).join(file)).expect("the file is copied");
         }
-    }
-}
-
-fn make_smaller(folder: &Path) {
-    for (file, from, to) in SMALLER {
-        let path = folder.join(file);
-        let text = fs::read_to_string(&path).expect("the file is read");
-        assert!(text.contains(from), "{file} has no `{from}`");
-        fs::write(&path, text.replace(from, to)).expect("the file is written");
     }
 }
 
@@ -87,12 +46,8 @@ fn commands(page: &str) -> Vec<String> {
     commands.map(without_comment).collect()
 }
 
-fn page() -> String {
-    page_named("tutorial.md")
-}
-
-fn page_named(name: &str) -> String {
-    fs::read_to_string(repository().join("docs").join(name)).expect("the page is there")
+fn page(name: &str) -> String {
+    read(&repository().join("docs").join(name))
 }
 
 /// A folder with what the commands of the page read.
@@ -108,22 +63,10 @@ fn clone() -> tempfile::TempDir {
     folder
 }
 
-/// Runs a command and returns what it prints.
-fn printed(folder: &Path, command: &str) -> String {
-    let mut program = tem00(folder, "");
-    let output = program.args(words(command)).output();
-    let output = output.expect("the program starts");
-    let why = message(&output);
-    assert!(output.status.success(), "tem00-inspect {command}: {why}");
-    text(&output.stdout)
-}
-
 #[test]
 #[ignore = "renders for a minute: with the judges, in release"]
 fn the_commands_of_the_tutorial_work() {
-    let folder = clone();
-    make_smaller(folder.path());
-    let page = page();
+    let (folder, page) = (clone(), page("tutorial.md"));
     let commands = commands(&page);
     for name in ["budget", "design", "triangulate", "lines", "calibrate"] {
         let named = commands.iter().any(|command| command.starts_with(name));
@@ -139,18 +82,16 @@ fn the_commands_of_the_tutorial_work() {
         ["cargo install --path crates/inspect/tem00-inspect"]
     );
     for command in commands {
-        let trials = if command.starts_with("budget") {
-            " --trials 20"
-        } else {
-            ""
-        };
-        printed(folder.path(), &format!("{command}{trials}"));
+        let smaller = tem00_testkit::rows(SMALLER).find(|[begin, _]| command.starts_with(begin));
+        let options = smaller.map_or_else(String::new, |[_, options]| options);
+        said(folder.path(), &format!("{command} {options}"), 0);
     }
     // What the eight frames say of themselves does not hang on the samples of a pixel.
     let quoted = figures(&page, "triangulate", "expanded, 95 %");
-    let found = fs::read_to_string(folder.path().join("out/step_gauge/measurement.json"));
-    let found: Value = serde_json::from_str(&found.expect("the record")).expect("JSON");
-    let found = found["uncertainty"]["expanded"].as_f64().expect("a number");
+    let found = json(&read(
+        &folder.path().join("out/step_gauge/measurement.json"),
+    ));
+    let found = number(&found["uncertainty"]["expanded"]);
     assert!(
         (1e6 * found / quoted[0] - 1.0).abs() < 0.05,
         "{found}, {quoted:?}"
@@ -159,15 +100,10 @@ fn the_commands_of_the_tutorial_work() {
 
 /// Returns the block of results after the command that begins so.
 fn quoted<'a>(page: &'a str, command: &str) -> Vec<&'a str> {
-    let start = page
-        .find(&format!("\ntem00-inspect {command}"))
-        .expect(command);
-    let block = blocks(&page[start..], "text").into_iter().next();
-    block
-        .expect("results")
-        .lines()
-        .filter(|line| !line.is_empty())
-        .collect()
+    let start = page.find(&format!("\ntem00-inspect {command}"));
+    let blocks = blocks(&page[start.expect(command)..], "text");
+    let lines = blocks[0].lines();
+    lines.filter(|line| !line.is_empty()).collect()
 }
 
 /// Returns the numbers of the row of a name in the results of a command.
@@ -179,28 +115,19 @@ fn figures(page: &str, command: &str, name: &str) -> Vec<f64> {
     numbers.filter_map(|word| word.parse().ok()).collect()
 }
 
+/// The names of the rows of a budget begin so.
+const ROWS: &str = "speckle |shot|dark|quant|PRNU|DSNU|detector b|calib|combined";
+
 /// Checks that each line of results is a line of what was printed, perhaps without some columns. The last
 /// two columns of a budget are by trials, which take longer than a test should.
 fn check_results(quoted: &[&str], printed: &str) {
     let by_trials = quoted.iter().any(|line| line.contains("± (µm)"));
     for line in quoted {
         let line = line.split(" By trials").next().unwrap_or(line);
-        let line = line.trim_end_matches('…');
-        let mut wanted: Vec<&str> = line.split_whitespace().collect();
-        let row = [
-            "speckle ",
-            "shot",
-            "dark",
-            "quant",
-            "PRNU",
-            "DSNU",
-            "detector b",
-            "calib",
-            "combined",
-        ];
+        let mut wanted: Vec<&str> = line.trim_end_matches('…').split_whitespace().collect();
         if by_trials && line.starts_with("source") {
             wanted.truncate(wanted.len() - 5);
-        } else if row.iter().any(|name| line.starts_with(name)) {
+        } else if ROWS.split('|').any(|name| line.starts_with(name)) {
             wanted.truncate(wanted.len() - 2);
         }
         let holds = printed.lines().any(|found| {
@@ -214,42 +141,35 @@ fn check_results(quoted: &[&str], printed: &str) {
 #[test]
 #[ignore = "renders for a minute: with the judges, in release"]
 fn the_results_in_the_tutorial_are_those_of_the_program() {
-    let (folder, page) = (clone(), page());
-    for (command, options) in [
-        (
-            "budget examples/setups/data_sheet.toml -o out/budget",
-            " --trials 0",
-        ),
-        (
-            "budget examples/setups/design.toml -o out/averaged",
-            " --trials 0",
-        ),
-        ("design examples/setups/design.toml -o out/design", ""),
-        ("budget out/design/best.toml -o out/best", " --trials 0"),
-    ] {
-        let found = printed(folder.path(), &format!("{command}{options}"));
-        check_results(&quoted(&page, command), &found);
-    }
+    let (folder, page) = (clone(), page("tutorial.md"));
     // The table of the decision has the same numbers, rounded.
     let row = page.lines().find(|line| line.starts_with("| U (95 %)"));
     let row = row.expect("the table");
-    for command in [
-        "examples/setups/data_sheet",
-        "examples/setups/design",
-        "out/design/best",
+    for (command, options) in [
+        (
+            "budget examples/setups/data_sheet.toml -o out/budget",
+            "--trials 0",
+        ),
+        (
+            "budget examples/setups/design.toml -o out/averaged",
+            "--trials 0",
+        ),
+        ("design examples/setups/design.toml -o out/design", ""),
+        ("budget out/design/best.toml -o out/best", "--trials 0"),
     ] {
-        let results = quoted(&page, &format!("budget {command}.toml")).join("\n");
-        let (_, rest) = results.split_once("U = ").expect("an expanded uncertainty");
-        let (number, _) = rest.split_once(" µm").expect("in micrometres");
-        let number: f64 = number.parse().expect("a number");
-        assert!(
-            row.contains(&format!("{number:.0} µm")),
-            "{number} in {row}"
-        );
+        let found = said(folder.path(), &format!("{command} {options}"), 0).out;
+        let results = quoted(&page, command);
+        check_results(&results, &found);
+        let results = results.join("\n");
+        if let Some((_, rest)) = results.split_once("U = ") {
+            let number = rest.split(' ').next().and_then(|word| word.parse().ok());
+            let number: f64 = number.expect("an expanded uncertainty");
+            assert_has(row, &[&format!("{number:.0} µm")]);
+        }
     }
     // The figure is the diagram of the search.
     let numbers = |path: PathBuf| -> Vec<f64> {
-        let svg = fs::read_to_string(&path).expect("the figure");
+        let svg = read(&path);
         let (_, svg) = svg.split_once("<rect").expect("a drawing");
         let words = svg.split(|c: char| !(c.is_ascii_digit() || c == '.'));
         words.filter_map(|word| word.parse().ok()).collect()
@@ -264,7 +184,7 @@ fn the_results_in_the_tutorial_are_those_of_the_program() {
 #[test]
 #[ignore = "renders for a minute: with the judges, in release"]
 fn the_commands_of_the_page_on_certificates_print_its_results() {
-    let (folder, page) = (clone(), page_named("certificate.md"));
+    let (folder, page) = (clone(), page("certificate.md"));
     let parts: Vec<&str> = page.split("\ntem00-inspect ").skip(1).collect();
     assert_eq!(parts.len(), 3, "commands");
     for part in parts {
@@ -272,16 +192,14 @@ fn the_commands_of_the_page_on_certificates_print_its_results() {
         let lines = blocks(results, "text").into_iter().flat_map(str::lines);
         let lines: Vec<&str> = lines.filter(|line| !line.is_empty()).collect();
         assert!(lines.len() > 1, "{command} has no results");
-        check_results(
-            &lines,
-            &printed(folder.path(), &format!("{command} --trials 0")),
-        );
+        let printed = said(folder.path(), &format!("{command} --trials 0"), 0).out;
+        check_results(&lines, &printed);
     }
     for (language, file) in [
         ("toml", "examples/setups/toleranced.toml"),
         ("xml", "out/scaled/certificate.xml"),
     ] {
-        let text = fs::read_to_string(folder.path().join(file)).expect("the file");
+        let text = read(&folder.path().join(file));
         for line in blocks(&page, language).into_iter().flat_map(str::lines) {
             assert!(text.contains(line), "{file} has no `{line}`");
         }
@@ -290,8 +208,8 @@ fn the_commands_of_the_page_on_certificates_print_its_results() {
 
 #[test]
 fn formulas_and_trials_agree_as_the_tutorial_says() {
-    let page = page();
-    assert!(page.contains("agree to 3 %"), "the claim");
+    let page = page("tutorial.md");
+    assert_has(&page, &["agree to 3 %"]);
     for command in [
         "budget examples/setups/data_sheet.toml",
         "budget out/design/best.toml",
@@ -311,49 +229,26 @@ fn formulas_and_trials_agree_as_the_tutorial_says() {
 
 #[test]
 fn the_search_begins_with_the_data_sheet() {
-    let read = |name: &str| fs::read_to_string(repository().join("examples/setups").join(name));
-    let [sheet, design] = ["data_sheet.toml", "design.toml"].map(|name| read(name).expect(name));
-    let parts = |text: &str| text[text.find("[laser]").expect("a laser")..].to_owned();
-    let (sheet, design) = (parts(&sheet), parts(&design));
-    let rest = design
-        .strip_prefix(sheet.trim_end())
-        .expect("the same keys");
-    assert!(rest.trim_start().starts_with("[average]"), "{rest}");
-}
-
-/// The cyclic redundancy check of `cksum`, after POSIX.
-fn cksum(bytes: &[u8]) -> u32 {
-    let length = bytes.len().to_le_bytes();
-    let used = length.len() - length.iter().rev().take_while(|byte| **byte == 0).count();
-    let bytes = bytes.iter().chain(&length[..used]);
-    !bytes.fold(0, |sum: u32, byte| {
-        (0..8).fold(sum ^ (u32::from(*byte) << 24), |sum, _| {
-            let next = sum << 1;
-            if sum >> 31 == 1 {
-                next ^ 0x04c1_1db7
-            } else {
-                next
-            }
-        })
-    })
+    let parts = |name: &str| {
+        let text = read(&repository().join("examples/setups").join(name));
+        text[text.find("[laser]").expect("a laser")..].to_owned()
+    };
+    let design = parts("design.toml");
+    let rest = design.strip_prefix(parts("data_sheet.toml").trim_end());
+    let rest = rest.expect("the same keys").trim_start();
+    assert!(rest.starts_with("[average]"), "{rest}");
 }
 
 #[test]
 fn the_rendered_figures_are_of_the_scenes_as_they_are() {
-    // The check value of the standard's algorithm for these nine bytes.
-    assert_eq!(cksum(b"123456789"), 930_766_865);
-    let list =
-        fs::read_to_string(repository().join("docs/figures/made_from.txt")).expect("the list");
+    let list = read(&repository().join("docs/figures/made_from.txt"));
     assert!(list.lines().count() >= 2, "{list}");
     for line in list.lines() {
-        let [sum, size, name] = line.split(' ').collect::<Vec<_>>()[..] else {
-            panic!("{line}");
-        };
+        let (sum, name) = line.split_once("  ").expect("a checksum and a name");
         let bytes = fs::read(repository().join(name)).expect(name);
-        let found = [cksum(&bytes).to_string(), bytes.len().to_string()];
+        let found = format!("{:x}", md5::compute(bytes));
         assert_eq!(
-            found,
-            [sum, size],
+            found, sum,
             "{name}: docs/figures/make.sh makes the figures again"
         );
     }

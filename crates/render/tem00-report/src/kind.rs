@@ -6,6 +6,15 @@ use tem00_config::{DocumentKind, kind_of_document};
 
 use crate::failure::Failure;
 
+/// Returns what the end of a file's name stands for, in capitals or not.
+pub(crate) fn of_ending<T: Copy>(path: &Path, known: &[(&str, T)]) -> Option<T> {
+    let ending = path.extension()?.to_str()?;
+    let found = known
+        .iter()
+        .find(|(name, _)| ending.eq_ignore_ascii_case(name));
+    found.map(|(_, kind)| *kind)
+}
+
 /// The number of bytes that determine the kind of a file.
 const MAX_BYTES: u64 = 1 << 20;
 
@@ -84,5 +93,17 @@ pub fn wrong_or(path: &Path, needed: Kind, otherwise: impl FnOnce() -> Failure) 
                 format!("try `{} {name}`", kind.command()),
             )
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_name_tells_the_format() {
+        let of = |name: &str| of_ending(Path::new(name), &[("png", 1), ("exr", 2)]);
+        assert_eq!(["a/b.PNG", "b.exr"].map(of), [Some(1), Some(2)]);
+        assert_eq!(["b.jpg", "png", ""].map(of), [None; 3]);
     }
 }

@@ -11,6 +11,8 @@ use tem00_config::open_input;
 use tem00_numerics::{Grid, MemoryError, check_memory};
 use thiserror::Error;
 
+use crate::kind::of_ending;
+
 /// The most pixels that are read from a file: 2²⁸, which is 1 GiB of `f32`.
 pub(super) const MAXIMUM_PIXELS: u64 = 1 << 28;
 
@@ -34,11 +36,8 @@ pub enum Format {
 impl Format {
     /// Returns the format that the name of `path` asks for.
     pub fn of_path(path: &Path) -> Option<Self> {
-        let extension = path.extension()?.to_str()?;
-        [("png", Self::Png), ("exr", Self::Exr), ("npy", Self::Npy)]
-            .into_iter()
-            .find(|(name, _)| extension.eq_ignore_ascii_case(name))
-            .map(|(_, format)| format)
+        let known = [("png", Self::Png), ("exr", Self::Exr), ("npy", Self::Npy)];
+        of_ending(path, &known)
     }
 }
 
@@ -247,15 +246,6 @@ pub(super) fn intensity(amplitude: Complex<f32>) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_name_tells_the_format() {
-        assert_eq!(Format::of_path(Path::new("a/b.PNG")), Some(Format::Png));
-        assert_eq!(Format::of_path(Path::new("b.exr")), Some(Format::Exr));
-        assert_eq!(Format::of_path(Path::new("b.npy")), Some(Format::Npy));
-        assert_eq!(Format::of_path(Path::new("b.jpg")), None);
-        assert_eq!(Format::of_path(Path::new("png")), None);
-    }
 
     #[test]
     fn absurd_sizes_are_refused_before_memory_is_taken() {

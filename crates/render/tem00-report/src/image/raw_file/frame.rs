@@ -4,6 +4,8 @@ use std::path::Path;
 
 use tem00_numerics::Grid;
 
+use crate::kind::of_ending;
+
 /// The text entry that holds the bits of a grey value.
 pub(super) const BIT_DEPTH: &str = "bit_depth";
 
@@ -77,11 +79,7 @@ impl RawFormat {
 
     /// Returns the format that the name of `path` asks for.
     pub fn of_path(path: &Path) -> Option<Self> {
-        let extension = path.extension()?.to_str()?;
-        let mut known = Self::KNOWN.into_iter();
-        known
-            .find(|(name, _)| extension.eq_ignore_ascii_case(name))
-            .map(|(_, format)| format)
+        of_ending(path, &Self::KNOWN)
     }
 }
 

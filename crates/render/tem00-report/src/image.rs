@@ -11,6 +11,7 @@ mod reading;
 mod saturation;
 mod selection;
 
+pub(crate) use self::png_file::write_png;
 pub use self::{
     common::{Crop, Format, ImageError, Transfer, open},
     exr_file::{Layer, Window, write_exr},

@@ -13,7 +13,7 @@ mod png_frame;
 mod pnm_frame;
 mod samples;
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 mod tiff_frame;
 mod tiff_packed;
 mod tiff_pixels;

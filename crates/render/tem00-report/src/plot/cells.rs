@@ -7,6 +7,7 @@ use kuva::render::{
 };
 
 use super::colours::HOLE;
+use crate::image::write_png;
 
 /// The placeholder of the cells.
 const MARK: &str = "data-cells=\"\"";
@@ -80,13 +81,8 @@ fn rgba(colour: &Color) -> [u8; 4] {
 }
 
 fn png(columns: usize, rows: usize, pixels: &[u8]) -> Option<Vec<u8>> {
-    let [width, height] = [columns, rows].map(|cells| u32::try_from(cells).ok());
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width?, height?);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_depth(png::BitDepth::Eight);
-    let mut writer = encoder.write_header().ok()?;
-    writer.write_image_data(pixels).ok()?;
-    writer.finish().ok()?;
+    let kind = (png::ColorType::Rgba, png::BitDepth::Eight);
+    write_png(&mut bytes, [columns, rows], kind, &[], pixels, |_| {}).ok()?;
     Some(bytes)
 }

@@ -1,7 +1,8 @@
 use std::io::{BufRead, Seek, SeekFrom, Write};
 
-use png::{BitDepth, ColorType, Decoder, Encoder, Reader, Transformations};
+use png::{BitDepth, ColorType, Decoder, Reader, Transformations};
 
+use super::super::png_file::write_png;
 use super::{
     BIT_DEPTH, BYTES_PER_PIXEL, Components, GreyFrame, ImageError, MAX_DEFLATION, Samples,
     StoredCurve, check_length, check_room, checked_area, orientation::of_exif, stated_bit_depth,
@@ -135,31 +136,18 @@ pub(super) fn write(
     frame: GreyFrame<'_>,
     text: &[(&str, String)],
 ) -> Result<(), ImageError> {
-    let size = |pixels: usize| u32::try_from(pixels).unwrap_or(u32::MAX);
-    let values = frame.values;
-    let mut encoder = Encoder::new(writer, size(values.width()), size(values.height()));
-    encoder.set_compression(png::Compression::Fast);
-    encoder.set_color(ColorType::Grayscale);
-    encoder.add_itxt_chunk(BIT_DEPTH.to_owned(), frame.bit_depth.to_string())?;
-    for (keyword, content) in text {
-        encoder.add_itxt_chunk((*keyword).to_owned(), content.clone())?;
-    }
-    let data: Vec<u8> = if frame.bit_depth == 8 {
-        encoder.set_depth(BitDepth::Eight);
-        values
-            .values()
-            .iter()
-            .map(|value| value.to_be_bytes()[1])
-            .collect()
+    let values = frame.values.values().iter();
+    let (depth, data): (_, Vec<u8>) = if frame.bit_depth == 8 {
+        let low = values.map(|value| value.to_be_bytes()[1]);
+        (BitDepth::Eight, low.collect())
     } else {
-        encoder.set_depth(BitDepth::Sixteen);
-        values
-            .values()
-            .iter()
-            .flat_map(|value| value.to_be_bytes())
-            .collect()
+        let both = values.flat_map(|value| value.to_be_bytes());
+        (BitDepth::Sixteen, both.collect())
     };
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(&data)?;
-    Ok(writer.finish()?)
+    let text = [&[(BIT_DEPTH, frame.bit_depth.to_string())][..], text].concat();
+    let size = [frame.values.width(), frame.values.height()];
+    let kind = (ColorType::Grayscale, depth);
+    write_png(writer, size, kind, &text, &data, |encoder| {
+        encoder.set_compression(png::Compression::Fast);
+    })
 }

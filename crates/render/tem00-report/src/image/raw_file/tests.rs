@@ -15,7 +15,7 @@ fn raw(file: &[u8], format: RawFormat, channel: Option<&str>) -> Result<RawImage
 }
 
 /// Returns the bytes of pairs of hexadecimal digits.
-fn hex(text: &str) -> Vec<u8> {
+pub(in crate::image) fn hex(text: &str) -> Vec<u8> {
     let digits: Vec<u32> = text.chars().filter_map(|c| c.to_digit(16)).collect();
     let bytes = digits.chunks_exact(2);
     bytes.map(|pair| (16 * pair[0] + pair[1]) as u8).collect()

@@ -10,7 +10,7 @@ use kuva::{
 };
 
 use super::cells::Cells;
-use crate::{atomic::write_atomically, failure::Failure, report::is_unwanted};
+use crate::{atomic::write_atomically, failure::Failure, kind::of_ending, report::is_unwanted};
 
 /// The pixels of a PNG per unit of the drawing.
 const PNG_SCALE: f32 = 2.5;
@@ -24,11 +24,7 @@ pub enum Format {
 
 impl Format {
     pub fn of_path(path: &Path) -> Option<Self> {
-        let extension = path.extension()?.to_str()?;
-        [("svg", Self::Svg), ("png", Self::Png)]
-            .into_iter()
-            .find(|(name, _)| extension.eq_ignore_ascii_case(name))
-            .map(|(_, format)| format)
+        of_ending(path, &[("svg", Self::Svg), ("png", Self::Png)])
     }
 }
 
@@ -87,13 +83,16 @@ impl Drawing {
     }
 }
 
-/// Returns the range of the axes of a diagram without a point.
-pub(super) const EMPTY: (f64, f64) = (0.0, 1.0);
-
-/// Gives a diagram its size and the sizes of its letters: it is read on a telephone, and two of them stand
-/// side by side on a desk.
-pub(super) fn styled(layout: Layout) -> Layout {
-    layout
+/// Returns what is drawn with the axes about it, and no axes of their own without anything. It is read on a telephone, and two
+/// diagrams stand side by side on a desk: hence its size and the sizes of its letters.
+pub(super) fn panel(plots: Vec<Plot>, title: &str, [across, up]: [&str; 2]) -> Panel {
+    const EMPTY: (f64, f64) = (0.0, 1.0);
+    let layout = if plots.is_empty() {
+        Layout::new(EMPTY, EMPTY)
+    } else {
+        Layout::auto_from_plots(&plots)
+    };
+    let layout = layout
         .with_width(WIDTH)
         .with_height(HEIGHT)
         .with_title_size(15)
@@ -102,6 +101,8 @@ pub(super) fn styled(layout: Layout) -> Layout {
         .with_body_size(12)
         .with_legend_position(LegendPosition::OutsideBottomColumns)
         .with_legend_box(false)
+        .with_title(title);
+    (plots, layout.with_x_label(across).with_y_label(up))
 }
 
 const WIDTH: f64 = 480.0;
@@ -164,15 +165,6 @@ fn with_own_ids(svg: &str) -> String {
 mod tests {
     use super::*;
     use crate::plot::Chart;
-
-    #[test]
-    fn the_name_tells_the_format() {
-        let of = |name: &str| Format::of_path(Path::new(name));
-        assert_eq!(of("a/b.SVG"), Some(Format::Svg));
-        assert_eq!(of("b.png"), Some(Format::Png));
-        assert_eq!(of("b.pdf"), None);
-        assert_eq!(of("svg"), None);
-    }
 
     #[test]
     fn a_drawing_is_the_same_whatever_was_drawn_before() {

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use kuva::prelude::{ColorMap, Heatmap, Layout, Plot};
+use kuva::prelude::{ColorMap, Heatmap, Plot};
 use tem00_numerics::Grid;
 
 use super::{
     colours::HOLE,
-    drawing::{Drawing, EMPTY, Panel, styled},
+    drawing::{Drawing, Panel, panel},
 };
 
 /// The most cells that are drawn along an axis.
@@ -52,21 +52,13 @@ impl HeatMap<'_> {
         let finite = rows.iter().flatten().any(|value| value.is_finite());
         let [x, y] = self.ranges;
         let spans = [x, y].iter().all(|(from, to)| to - from > 0.0);
-        let (plots, layout) = if finite && spans {
-            let mut map = Heatmap::new()
-                .with_data(rows)
-                .with_color_map(self.scale.colours());
+        let map = (finite && spans).then(|| {
+            let map = Heatmap::new().with_data(rows);
+            let mut map = map.with_color_map(self.scale.colours());
             (map.cell_size, map.x_range, map.y_range) = (1.0, Some(x), Some(y));
-            let plots = vec![Plot::from(map)];
-            let layout = Layout::auto_from_plots(&plots);
-            (plots, layout)
-        } else {
-            (Vec::new(), Layout::new(EMPTY, EMPTY))
-        };
-        let layout = styled(layout)
-            .with_title(self.title)
-            .with_x_label(self.labels[0]);
-        let layout = layout.with_y_label(self.labels[1]);
+            Plot::from(map)
+        });
+        let (plots, layout) = panel(Vec::from_iter(map), self.title, self.labels);
         let to_scale = self.to_scale && !plots.is_empty();
         let layout = if to_scale {
             layout.with_equal_aspect()

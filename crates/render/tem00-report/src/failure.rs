@@ -50,14 +50,7 @@ impl Failure {
 
     /// Returns why work that was done has no result, and what to change.
     pub fn no_result(message: impl Into<String>, help: impl Into<String>) -> Self {
-        Self::NoResult(
-            Problem {
-                message: message.into(),
-                help: Some(help.into()),
-                excerpt: None,
-            }
-            .into(),
-        )
+        Self::NoResult(Problem::new(message.into(), Some(help.into())).into())
     }
 
     /// Returns a complaint about a position in a text file.
@@ -113,25 +106,24 @@ impl Failure {
         }
     }
 
-    /// Returns what is wrong, in one line.
-    pub fn message(&self) -> &str {
+    const fn problem(&self) -> Option<&Problem> {
         match self {
             Self::Input(problem)
             | Self::Unavailable(problem)
             | Self::Running(problem)
-            | Self::NoResult(problem) => &problem.message,
-            Self::Interrupted => "interrupted",
-            Self::NoReader => "nobody reads standard output",
+            | Self::NoResult(problem) => Some(problem),
+            Self::Interrupted | Self::NoReader => None,
         }
     }
 
-    /// Returns the failure with a word in front of what it says that it is about.
+    /// Returns what is wrong, in one line.
+    pub fn message(&self) -> &str {
+        self.problem().map_or("", |problem| &problem.message)
+    }
+
+    /// Returns what the work needs and does not find, with a word in front of what it says that it is about.
     pub fn about(mut self, what: impl core::fmt::Display) -> Self {
-        if let Self::Input(problem)
-        | Self::Unavailable(problem)
-        | Self::Running(problem)
-        | Self::NoResult(problem) = &mut self
-        {
+        if let Self::Unavailable(problem) = &mut self {
             problem.message = format!("{what}: {}", problem.message);
         }
         self
@@ -151,12 +143,8 @@ impl Failure {
     /// Returns what to print on standard error, if anything.
     pub fn report(&self) -> Option<String> {
         match self {
-            Self::Input(problem)
-            | Self::Unavailable(problem)
-            | Self::Running(problem)
-            | Self::NoResult(problem) => Some(problem.printed()),
             Self::Interrupted => Some("tem00: interrupted\n".into()),
-            Self::NoReader => None,
+            other => other.problem().map(Problem::printed),
         }
     }
 }

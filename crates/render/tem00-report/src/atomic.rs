@@ -176,31 +176,21 @@ mod tests {
     }
 
     #[test]
-    fn a_failure_leaves_the_old_file_and_nothing_else() {
+    fn a_success_replaces_the_old_file_and_a_failure_leaves_it() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let path = folder.path().join("image.png");
-        fs::write(&path, "old").expect("the old file");
-
+        write_atomically(&path, |writer| writer.write_all(b"old")).expect("written");
+        write_atomically(&path, |writer| writer.write_all(b"new")).expect("written");
         let result = write_atomically(&path, |writer| {
-            writer.write_all(b"half of the new")?;
+            // What is being written stays.
+            remove_abandoned(folder.path());
+            assert_eq!(names(folder.path()).len(), 2);
+            writer.write_all(b"half of the next")?;
             writer.flush()?;
             Err(io::Error::other("the disk is full"))
         });
-
         assert!(result.is_err(), "the failure is passed on");
-        assert_eq!(fs::read(&path).expect("the old file"), b"old");
-        assert_eq!(names(folder.path()), ["image.png"]);
-    }
-
-    #[test]
-    fn a_success_replaces_the_old_file() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let path = folder.path().join("image.png");
-        fs::write(&path, "old").expect("the old file");
-
-        write_atomically(&path, |writer| writer.write_all(b"new")).expect("the write succeeds");
-
-        assert_eq!(fs::read(&path).expect("the new file"), b"new");
+        assert_eq!(fs::read(&path).expect("the file"), b"new");
         assert_eq!(names(folder.path()), ["image.png"]);
     }
 
@@ -241,18 +231,6 @@ mod tests {
         drop(other);
         probe_writable(&path("image.png")).expect("the folder can be written");
         assert!(!path(".tem00-2.part").exists(), "its writer has gone");
-    }
-
-    #[test]
-    fn what_is_being_written_stays() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let path = folder.path().join("image.png");
-        write_atomically(&path, |writer| {
-            remove_abandoned(folder.path());
-            writer.write_all(b"new")
-        })
-        .expect("the write succeeds");
-        assert_eq!(names(folder.path()), ["image.png"]);
     }
 
     #[test]

@@ -120,33 +120,32 @@ mod tests {
         [1, 2, 3].map(|k| Grid::from_fn(7, 5, |x, y| (0.1 * (x + 7 * y * k) as f32).exp()))
     }
 
-    const WINDOW: Window = Window {
-        origin: [10, 20],
-        image: [64, 48],
-    };
-
-    fn written(grids: &[Grid<f32>; 3]) -> Vec<u8> {
+    fn written([red, green, blue]: &[Grid<f32>; 3]) -> Vec<u8> {
         let mut file = Cursor::new(Vec::new());
-        let layers = [
-            Layer {
-                name: "total".into(),
-                wavelength: None,
-                comments: "linear sRGB".into(),
-                channels: vec![("R", &grids[0]), ("G", &grids[1]), ("B", &grids[2])],
-            },
-            Layer {
-                name: "laser 0".into(),
-                wavelength: Some(650e-9),
-                comments: "λ".into(),
-                channels: vec![("speckle", &grids[1]), ("incoherent", &grids[2])],
-            },
+        let layer = |name: &str, wavelength, comments: &str, channels| Layer {
+            name: name.into(),
+            wavelength,
+            comments: comments.into(),
+            channels,
+        };
+        let [of_all, of_one] = [
+            vec![("R", red), ("G", green), ("B", blue)],
+            vec![("speckle", green), ("incoherent", blue)],
         ];
-        write_exr(&mut file, &layers, Some(WINDOW)).expect("written");
+        let layers = [
+            layer("total", None, "linear sRGB", of_all),
+            layer("laser 0", Some(650e-9), "λ", of_one),
+        ];
+        let window = Window {
+            origin: [10, 20],
+            image: [64, 48],
+        };
+        write_exr(&mut file, &layers, Some(window)).expect("written");
         file.into_inner()
     }
 
     #[test]
-    fn a_part_knows_its_place_in_the_image() {
+    fn a_part_knows_its_place_in_the_image_and_its_light() {
         let file = written(&example());
         let meta = MetaData::read_from_buffered(&file[..], true).expect("an EXR header");
         for header in &meta.headers {
@@ -155,25 +154,12 @@ mod tests {
             assert_eq!(header.own_attributes.layer_position, Vec2(10, 20));
             assert_eq!(header.layer_size, Vec2(7, 5));
         }
-    }
-
-    #[test]
-    fn attributes_are_stored_with_their_layer() {
-        let file = written(&example());
-        let meta = MetaData::read_from_buffered(&file[..], true).expect("an EXR header");
-        let [total, laser] = &meta.headers[..] else {
-            panic!("the file has two layers");
-        };
-        assert!(
-            total.own_attributes.other.is_empty(),
-            "the total has no wavelength"
-        );
-        assert_eq!(laser.own_attributes.comments, Some(Text::from("?")));
-        assert_eq!(laser.own_attributes.layer_name, Some(Text::from("laser 0")));
-        assert_eq!(
-            laser.own_attributes.other.get(&Text::from("wavelength_m")),
-            Some(&AttributeValue::F64(650e-9))
-        );
+        let [total, laser] = [0, 1].map(|layer| &meta.headers[layer].own_attributes);
+        assert!(total.other.is_empty(), "no wavelength");
+        assert_eq!(laser.comments, Some(Text::from("?")));
+        assert_eq!(laser.layer_name, Some(Text::from("laser 0")));
+        let wavelength = laser.other.get(&Text::from("wavelength_m"));
+        assert_eq!(wavelength, Some(&AttributeValue::F64(650e-9)));
     }
 
     #[test]

@@ -13,28 +13,8 @@ use super::{
 };
 
 /// Words in the names of channels and layers that show no light: opacity, distance, identifiers, geometry.
-const NO_LIGHT: [&str; 20] = [
-    "a",
-    "alpha",
-    "ra",
-    "ga",
-    "ba",
-    "ar",
-    "ag",
-    "ab",
-    "opacity",
-    "z",
-    "zback",
-    "depth",
-    "id",
-    "objectid",
-    "materialid",
-    "normal",
-    "normals",
-    "position",
-    "motion",
-    "uv",
-];
+const NO_LIGHT: &str = "a alpha ra ga ba ar ag ab opacity \
+    z zback depth id objectid materialid normal normals position motion uv";
 
 /// Reads one channel, or the mean of R, G and B.
 ///
@@ -145,7 +125,8 @@ impl NamedChannel<'_> {
     fn may_be_light(&self) -> bool {
         let full = self.full_name().to_lowercase();
         let mut words = full.split('.');
-        let no_light = |word: &str| NO_LIGHT.contains(&word) || word.starts_with("crypto");
+        let is_known = |word: &str| NO_LIGHT.split(' ').any(|known| known == word);
+        let no_light = |word: &str| is_known(word) || word.starts_with("crypto");
         !self.is_identifier && !words.any(no_light)
     }
 }
@@ -245,6 +226,7 @@ mod tests {
         Encoding, Image, ImageAttributes, IntegerBounds, LayerAttributes, WritableImage,
     };
     use tem00_numerics::Grid;
+    use tem00_testkit::rows;
 
     use super::*;
     use crate::image::{Layer, LoadedImage, Reading, write_exr};
@@ -260,7 +242,7 @@ mod tests {
     }
 
     /// A file of the program.
-    fn written(grids: &[Grid<f32>; 3]) -> Vec<u8> {
+    fn written([red, green, blue]: &[Grid<f32>; 3]) -> Vec<u8> {
         let mut file = Cursor::new(Vec::new());
         let layer = |name: &str, channels| Layer {
             name: name.into(),
@@ -268,7 +250,6 @@ mod tests {
             comments: String::new(),
             channels,
         };
-        let [red, green, blue] = grids;
         let layers = [
             layer("total", vec![("R", red), ("G", green), ("B", blue)]),
             layer("laser 0", vec![("speckle", green), ("incoherent", blue)]),
@@ -277,30 +258,25 @@ mod tests {
         file.into_inner()
     }
 
-    /// The name of a part of a file, and those of its channels.
-    type Part<'a> = (&'a str, &'a [&'a str]);
-
-    /// A file of parts with channels of two pixels; those of identifiers have `#` before their names.
-    fn parts(parts: &[Part<'_>]) -> Vec<u8> {
-        let channel = |(index, name): (usize, &&str)| match name.strip_prefix('#') {
+    /// A file of parts, with `/` between them, with channels of two pixels behind their names and colons; identifiers have
+    /// `#` before their names.
+    fn parts(text: &str) -> Vec<u8> {
+        let channel = |(index, name): (usize, &str)| match name.strip_prefix('#') {
             Some(name) => AnyChannel::new(name, FlatSamples::U32(vec![7, 8])),
-            None => AnyChannel::new(*name, FlatSamples::F32(vec![1.0 + index as f32; 2])),
+            None => AnyChannel::new(name, FlatSamples::F32(vec![1.0 + index as f32; 2])),
         };
-        let part = |(name, channels): &Part<'_>| {
-            let channels = channels.iter().enumerate().map(channel).collect();
+        let part = |text: &str| {
+            let (name, channels) = text.split_once(':').expect("a name");
+            let channels = channels.split_whitespace().enumerate().map(channel);
             let attributes = LayerAttributes {
-                layer_name: (!name.is_empty()).then(|| (*name).into()),
+                layer_name: (!name.trim().is_empty()).then(|| name.trim().into()),
                 ..LayerAttributes::default()
             };
-            exr::prelude::Layer::new(
-                (2, 1),
-                attributes,
-                Encoding::SMALL_LOSSLESS,
-                AnyChannels::sort(channels),
-            )
+            let channels = AnyChannels::sort(channels.collect());
+            exr::prelude::Layer::new((2, 1), attributes, Encoding::SMALL_LOSSLESS, channels)
         };
         let display = ImageAttributes::new(IntegerBounds::from_dimensions((2, 1)));
-        let image = Image::from_layers(display, parts.iter().map(part).collect::<Vec<_>>());
+        let image = Image::from_layers(display, text.split('/').map(part).collect::<Vec<_>>());
         let mut file = Cursor::new(Vec::new());
         image.write().to_buffered(&mut file).expect("written");
         file.into_inner()
@@ -308,60 +284,35 @@ mod tests {
 
     #[test]
     fn light_is_chosen_and_never_alpha_depth_or_an_identifier() {
-        let cases: [(&[Part<'_>], &str); 14] = [
-            (&[("", &["A", "Y"])], "channel Y"),
-            (&[("", &["A", "B", "G", "R", "Z"])], "mean of R, G and B"),
-            (&[("", &["Y", "RY", "BY"])], "channel Y"),
-            (
-                &[("", &["A", "depth", "#id", "intensity"])],
-                "channel intensity",
-            ),
-            (
-                &[("", &["Z", "#object", "A", "b", "g", "r"])],
-                "mean of R, G and B",
-            ),
-            // Layers: those without a name first, then the only one with light.
-            (
-                &[("", &["R", "G", "B", "spot.R", "spot.G", "spot.B"])],
-                "mean of R, G and B",
-            ),
-            (
-                &[("", &["A", "Z", "spot.R", "spot.G", "spot.B"])],
-                "mean of R, G and B of spot",
-            ),
-            (
-                &[("", &["N.X", "N.Y", "N.Z", "spot.Y", "crypto00.R"])],
-                "channel spot.Y",
-            ),
-            // Parts: the first, or the only one with light.
-            (&[("left", &["Y"]), ("right", &["Y"])], "channel left.Y"),
-            (
-                &[("depth", &["Z"]), ("beauty", &["Y", "A"])],
-                "channel beauty.Y",
-            ),
-            // What is not plain is asked for.
-            (
-                &[("", &["real", "imaginary"])],
-                "by --channel: imaginary, real",
-            ),
-            (&[("", &["A"])], "by --channel: A"),
-            (&[("", &["X", "Y", "Z"])], "by --channel: X, Y, Z"),
-            (&[("", &["up.Y", "down.Y"])], "by --channel: down.Y, up.Y"),
-        ];
-        for (content, expected) in cases {
-            let read = read_light(&parts(content), None);
-            let told = match read {
+        // Layers without a name come first, then the only one with light; so do parts. What is not plain is asked for.
+        let table = "
+            :A Y => channel Y
+            :A B G R Z => mean of R, G and B
+            :Y RY BY => channel Y
+            :A depth #id intensity => channel intensity
+            :Z #object A b g r => mean of R, G and B
+            :R G B spot.R spot.G spot.B => mean of R, G and B
+            :A Z spot.R spot.G spot.B => mean of R, G and B of spot
+            :N.X N.Y N.Z spot.Y crypto00.R => channel spot.Y
+            left:Y / right:Y => channel left.Y
+            depth:Z / beauty:Y A => channel beauty.Y
+            :real imaginary => by --channel: imaginary, real
+            :A => by --channel: A
+            :X Y Z => by --channel: X, Y, Z
+            :up.Y down.Y => by --channel: down.Y, up.Y";
+        for [content, expected] in rows(table) {
+            let told = match read_light(&parts(&content), None) {
                 Ok(image) => image.interpretation,
                 Err(error) => error.to_string(),
             };
-            assert!(told.contains(expected), "{content:?}: {told}");
+            assert!(told.contains(&expected), "{content}: {told}");
             let is_whole = told.len() == expected.len()
                 || told.contains("--channel")
                 || told.contains("differ");
-            assert!(is_whole, "{content:?}: {told}");
+            assert!(is_whole, "{content}: {told}");
         }
         // By its name any is read.
-        let alpha = read_light(&parts(&[("", &["A", "Y"])]), Some("A")).expect("there is one");
+        let alpha = read_light(&parts(":A Y"), Some("A")).expect("there is one");
         assert_eq!(alpha.interpretation, "channel A");
     }
 
@@ -369,12 +320,18 @@ mod tests {
     fn every_channel_survives_bit_by_bit() {
         let grids = example();
         let file = written(&grids);
-        let channel = |name| read_light(&file, Some(name)).expect("an EXR file").values;
-        assert_eq!(channel("total.R"), grids[0]);
-        assert_eq!(channel("laser 0.speckle"), grids[1]);
-        assert_eq!(channel("incoherent"), grids[2]);
+        for (name, grid) in ["total.R", "laser 0.speckle", "incoherent"]
+            .iter()
+            .zip(&grids)
+        {
+            let found = read_light(&file, Some(name)).expect("an EXR file");
+            assert_eq!(found.values, *grid);
+        }
         let error = read_light(&file, Some("spekle")).expect_err("there is none");
         assert!(error.to_string().contains("laser 0.speckle"), "{error}");
+        for length in [0, 8, 100, file.len() - 10] {
+            assert!(read_light(&file[..length], None).is_err(), "{length} bytes");
+        }
     }
 
     #[test]
@@ -382,10 +339,8 @@ mod tests {
         let grids = example();
         let image = read_light(&written(&grids), None).expect("an EXR file");
         let told = &image.interpretation;
-        assert!(
-            told.starts_with("mean of R, G and B of total, which differ"),
-            "{told}"
-        );
+        let expected = "mean of R, G and B of total, which differ";
+        assert!(told.starts_with(expected), "{told}");
         for (index, got) in image.values.values().iter().enumerate() {
             let values = grids.iter().map(|grid| f64::from(grid.values()[index]));
             let mean = values.sum::<f64>() / 3.0;
@@ -394,14 +349,6 @@ mod tests {
                 (f64::from(*got) / mean - 1.0).abs() < 6e-8,
                 "{got} is {mean}"
             );
-        }
-    }
-
-    #[test]
-    fn cut_files_and_claims_are_errors() {
-        let file = written(&example());
-        for length in [0, 8, 100, file.len() - 10] {
-            assert!(read_light(&file[..length], None).is_err(), "{length} bytes");
         }
     }
 }

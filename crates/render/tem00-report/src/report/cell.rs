@@ -59,23 +59,17 @@ impl From<&str> for Cell {
     }
 }
 
-impl From<usize> for Cell {
-    fn from(count: usize) -> Self {
-        Self::new(count, count.to_string())
-    }
+macro_rules! counts {
+    ($($count:ty),*) => {$(
+        impl From<$count> for Cell {
+            fn from(count: $count) -> Self {
+                Self::new(count, count.to_string())
+            }
+        }
+    )*};
 }
 
-impl From<u32> for Cell {
-    fn from(count: u32) -> Self {
-        Self::new(count, count.to_string())
-    }
-}
-
-impl From<u64> for Cell {
-    fn from(count: u64) -> Self {
-        Self::new(count, count.to_string())
-    }
-}
+counts!(usize, u32, u64);
 
 /// A number with five significant digits.
 impl From<f64> for Cell {

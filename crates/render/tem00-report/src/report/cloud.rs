@@ -55,13 +55,11 @@ impl Cloud<'_> {
         let count = self.points.len();
         let drawn = self.points.iter().enumerate();
         let drawn = drawn.filter(|&(index, _)| is_drawn(index, count, MAX_POINTS));
-        let mut dots = vec![String::new(); COLOURS];
-        let mut shown = 0;
+        let mut dots = vec![Vec::new(); COLOURS];
         for (_, point) in drawn {
-            let colour = frame.colour(point[2]);
-            push(&mut dots[colour], frame.place(*point));
-            shown += 1;
+            dots[frame.colour(point[2])].push(frame.place(*point));
         }
+        let shown: usize = dots.iter().map(Vec::len).sum();
         let mut svg = format!(
             "<svg class=\"cloud\" viewBox=\"-310 -215 620 430\" width=\"620\" height=\"430\" \
              data-azimuth=\"{AZIMUTH}\" data-elevation=\"{ELEVATION}\">"
@@ -182,9 +180,9 @@ impl Frame {
     }
 
     /// Returns the positions of the ends of the edges of the box.
-    fn edges(&self) -> String {
+    fn edges(&self) -> Vec<[f64; 3]> {
         let ends = [self.low, self.high];
-        let mut edges = String::new();
+        let mut edges = Vec::new();
         for axis in 0..3 {
             for (b, c) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 for a in 0..2 {
@@ -192,7 +190,7 @@ impl Frame {
                     corner[axis] = ends[a][axis];
                     corner[(axis + 1) % 3] = ends[b][(axis + 1) % 3];
                     corner[(axis + 2) % 3] = ends[c][(axis + 2) % 3];
-                    push(&mut edges, self.place(corner));
+                    edges.push(self.place(corner));
                 }
             }
         }
@@ -226,32 +224,24 @@ fn projected([x, y, z]: [f64; 3]) -> (f64, f64) {
 }
 
 /// Writes dots or edges as one element.
-fn path(svg: &mut String, class: &str, colour: &str, places: &str) {
-    let numbers: Vec<f64> = places
-        .split(' ')
-        .filter_map(|word| word.parse().ok())
-        .collect();
-    let mut d = String::new();
-    for (index, place) in numbers.chunks_exact(3).enumerate() {
-        let (across, down) = projected([place[0], place[1], place[2]]);
+fn path(svg: &mut String, class: &str, colour: &str, places: &[[f64; 3]]) {
+    let (mut positions, mut d) = (String::new(), String::new());
+    for (index, &[x, y, z]) in places.iter().enumerate() {
+        let (across, down) = projected([x, y, z]);
         let (command, end) = match class {
             "dots" => ("M", "h0"),
             _ if index % 2 == 0 => ("M", ""),
             _ => ("L", ""),
         };
+        let space = if index == 0 { "" } else { " " };
         // Memory takes whatever it is given.
+        let _ = write!(positions, "{space}{x:.0} {y:.0} {z:.0}");
         let _ = write!(d, "{command}{across:.1} {down:.1}{end}");
     }
     let _ = write!(
         svg,
-        "<path class=\"{class}\" stroke=\"{colour}\" data-p=\"{places}\" d=\"{d}\"/>"
+        "<path class=\"{class}\" stroke=\"{colour}\" data-p=\"{positions}\" d=\"{d}\"/>"
     );
-}
-
-fn push(places: &mut String, [x, y, z]: [f64; 3]) {
-    let space = if places.is_empty() { "" } else { " " };
-    // Memory takes whatever it is given.
-    let _ = write!(places, "{space}{x:.0} {y:.0} {z:.0}");
 }
 
 /// Returns the middle of the heights of a colour, from 0 to 1.

@@ -155,50 +155,28 @@ fn a_report_is_well_formed() {
 #[test]
 fn a_report_refers_to_nothing_outside() {
     let (html, script) = split(&report().html());
-    for outside in [
-        "http", "fetch", "import", "XMLHttp", "src", "//www", "Date", "random",
-    ] {
-        assert!(!script.contains(outside), "{outside} is not in the script");
+    for outside in "http fetch import XMLHttp src //www Date random".split(' ') {
+        assert!(!script.contains(outside), "{outside} is in the script");
     }
-    // The name of the language of drawings is no address to load anything from.
+    // The name of the language of drawings is no address to load anything from, and Base64 may hold two slashes in a row.
     let html = html.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
-    for outside in [
-        "http:", "https:", "//", "<link", "<script", "@import", "<iframe",
-    ] {
-        // Base64 may hold two slashes in a row.
-        let found = html.lines().filter(|line| !line.contains(";base64,"));
-        assert!(
-            !found.clone().any(|line| line.contains(outside)),
-            "{outside} is not there"
-        );
+    for line in html.lines().filter(|line| !line.contains(";base64,")) {
+        for outside in "http: https: // <link <script @import <iframe".split(' ') {
+            assert!(!line.contains(outside), "{outside} is there: {line}");
+        }
     }
-    let sources = html.split("src=\"").skip(1);
-    assert!(
-        sources.clone().count() == 1 && sources.clone().all(|source| source.starts_with("data:")),
-        "pictures are inside"
-    );
+    let sources: Vec<_> = html.split("src=\"").skip(1).collect();
+    let is_inside = sources.len() == 1 && sources[0].starts_with("data:");
+    assert!(is_inside, "pictures are inside");
 }
 
 #[test]
 fn drawings_do_not_share_names() {
     let html = report().html();
-    let mut ids: Vec<&str> = html
-        .split(" id=\"")
-        .skip(1)
-        .filter_map(|rest| rest.split('"').next())
-        .collect();
-    let count = ids.len();
-    ids.sort_unstable();
-    ids.dedup();
-    assert_eq!(ids.len(), count, "{ids:?}");
-}
-
-#[test]
-fn a_report_is_a_file() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = folder.path().join("report.html");
-    let report = report();
-    report.save_page(&path).expect("the folder can be written");
-    let read = std::fs::read_to_string(&path).expect("the file is there");
-    assert_eq!(read, report.html());
+    let ids = html.split(" id=\"").skip(1);
+    let ids: Vec<_> = ids.map(|rest| rest.split('"').next()).collect();
+    for (index, id) in ids.iter().enumerate() {
+        assert!(!ids[..index].contains(id), "{ids:?}");
+    }
+    assert!(!ids.is_empty(), "names");
 }

@@ -20,7 +20,7 @@ pub(crate) use self::{
     design::DesignArgs,
     lines::LinesArgs,
     list::{ListArgs, Listed},
-    setup::SetupArgs,
+    setup::{SETUP_HELP, SetupArgs},
     sweep::SweepArgs,
     triangulate::TriangulateArgs,
 };

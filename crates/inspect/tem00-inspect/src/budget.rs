@@ -13,19 +13,17 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use tem00_report::{
-    atomic::write_atomically,
-    failure::Failure,
-    kind::{Kind, wrong_or},
-    output,
-};
-use tem00_triangulation::{read_setup_with, read_uncertainty};
+use tem00_report::{atomic::write_atomically, failure::Failure, output};
+use tem00_triangulation::read_uncertainty;
 
 use self::{
     certificate::{CertificateData, certificate},
-    findings::{Findings, HELP, SetupFile},
+    findings::{Findings, SetupFile},
 };
-use crate::{args::BudgetArgs, date};
+use crate::{
+    args::{BudgetArgs, SETUP_HELP},
+    date,
+};
 
 /// Prints the budget of a set-up and writes its files.
 ///
@@ -35,32 +33,19 @@ use crate::{args::BudgetArgs, date};
 /// all files written, if the set-up measures nothing.
 pub(crate) fn run(args: &BudgetArgs, out: &mut impl Write) -> Result<(), Failure> {
     let day = date::today()?;
-    let (setup, (read, uncertainty, data)) = read_setup_with(
-        &args.common.setup,
-        args.common.files.reading(),
-        |document, setup| {
-            let uncertainty = read_uncertainty(document, setup)?;
-            let data = CertificateData::read(document, uncertainty.states_height())?;
-            let title = document.value("title");
-            let title = title.map(|title| title.string().map(str::to_owned));
-            let read = SetupFile {
-                path: &args.common.setup,
-                text: document.text().to_owned(),
-                title: title.transpose()?,
-            };
-            Ok((read, uncertainty, data))
-        },
-    )
-    .map_err(|error| {
-        wrong_or(&args.common.setup, Kind::Setup, || {
-            Failure::file(&args.common.setup, &error, HELP)
-        })
+    let (setup, (read, uncertainty, data)) = args.common.read(SETUP_HELP, |document, setup| {
+        let uncertainty = read_uncertainty(document, setup)?;
+        let data = CertificateData::read(document, uncertainty.states_height())?;
+        let title = document.value("title");
+        let title = title.map(|title| title.string().map(str::to_owned));
+        let read = SetupFile {
+            path: &args.common.setup,
+            text: document.text().to_owned(),
+            title: title.transpose()?,
+        };
+        Ok((read, uncertainty, data))
     })?;
-    let folder = output::folder(
-        args.common.output.as_deref(),
-        &output::name(&args.common.setup, "set-up"),
-    );
-    let _lock = output::prepare(&folder)?;
+    let (folder, _lock) = args.common.folder("set-up")?;
     let pool = output::thread_pool(args.common.threads)?;
     let findings = pool.install(|| Findings::new(args, (setup, &uncertainty), read))?;
     let report = report::report(&findings, draw(&findings, &folder)?, &day);

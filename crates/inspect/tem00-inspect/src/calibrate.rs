@@ -4,6 +4,7 @@ mod left_out;
 mod table;
 
 use std::{
+    collections::BTreeMap,
     fs,
     io::Write,
     path::{Path, PathBuf},
@@ -97,34 +98,25 @@ fn pairs(folder: &Path) -> Result<Vec<Pair>, Failure> {
             "name a folder with the images board_01.png, line_01.png and so on",
         )
     })?;
+    let (mut boards, mut lines) = (BTreeMap::new(), BTreeMap::new());
     let paths = entries.filter_map(|entry| entry.ok().map(|entry| entry.path()));
-    let mut lines = Vec::new();
-    let mut boards = Vec::new();
     for path in paths.filter(|path| RawFormat::of_path(path).is_some()) {
-        match path
-            .file_stem()
-            .and_then(|stem| stem.to_str())
+        let stem = path.file_stem().and_then(|stem| stem.to_str());
+        let (kind, number) = stem
             .and_then(|stem| stem.split_once('_'))
-        {
-            Some(("board", number)) => boards.push((number.to_owned(), path)),
-            Some(("line", number)) => lines.push((number.to_owned(), path)),
+            .unwrap_or_default();
+        let number = number.to_owned();
+        match kind {
+            "board" => drop(boards.insert((number, path.clone()), path)),
+            "line" => drop(lines.insert(number, path)),
             _ => (),
         }
     }
-    boards.sort();
-    let line = |number: &String| {
-        lines
-            .iter()
-            .find(|line| line.0 == *number)
-            .map(|line| line.1.clone())
-    };
-    let pairs: Vec<_> = boards
-        .into_iter()
-        .map(|(number, lit)| Pair {
-            line: line(&number),
-            lit,
-        })
-        .collect();
+    let pairs = boards.into_iter().map(|((number, _), lit)| Pair {
+        line: lines.get(&number).cloned(),
+        lit,
+    });
+    let pairs: Vec<_> = pairs.collect();
     let with_lines = pairs.iter().filter(|pair| pair.line.is_some()).count();
     if pairs.is_empty() || with_lines == 0 {
         return Err(Failure::input(

@@ -6,21 +6,12 @@ mod rows;
 
 use std::io::Write;
 
-use tem00_report::{
-    failure::Failure,
-    interrupt,
-    kind::{Kind, wrong_or},
-    output,
-    progress::Progress,
-};
+use tem00_report::{failure::Failure, interrupt, output, progress::Progress};
 use tem00_scan::{ScanError, SetupSensor};
 use tem00_topography::{Characteristics, Options, characterise};
-use tem00_triangulation::{Budget, Setup, TriangulationError, read_setup_with};
+use tem00_triangulation::{Budget, Setup, TriangulationError};
 
-use crate::args::CharacteriseArgs;
-
-const HELP: &str =
-    "examples/setups/ has set-up files, and docs/setup_file.md explains how to write them";
+use crate::args::{CharacteriseArgs, SETUP_HELP};
 
 /// Prints the characteristics of a set-up and writes their files.
 ///
@@ -29,15 +20,11 @@ const HELP: &str =
 /// Returns a failure if the input is not valid, if a file cannot be written, if the user ends it, or if the set-up
 /// measures nothing.
 pub(crate) fn run(args: &CharacteriseArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let path = &args.common.setup;
-    let read = read_setup_with(path, args.common.files.reading(), |document, _| {
-        Ok(document.text().to_owned())
-    });
-    let (setup, text) =
-        read.map_err(|error| wrong_or(path, Kind::Setup, || Failure::file(path, &error, HELP)))?;
+    let (setup, text) = args
+        .common
+        .read(SETUP_HELP, |document, _| Ok(document.text().to_owned()))?;
     check(args, &setup)?;
-    let folder = output::folder(args.common.output.as_deref(), &output::name(path, "set-up"));
-    let _lock = output::prepare(&folder)?;
+    let (folder, _lock) = args.common.folder("set-up")?;
     let pool = output::thread_pool(args.common.threads)?;
     let found = pool.install(|| measure(args, &setup))?;
     let drawings = drawings::save(&found, &folder)?;
@@ -57,7 +44,7 @@ fn check(args: &CharacteriseArgs, setup: &Setup) -> Result<(), Failure> {
             format!("{path}: no characteristics: {why}"),
             advice,
         )),
-        Err(error) => Err(Failure::input(format!("{path}: {error}"), HELP)),
+        Err(error) => Err(Failure::input(format!("{path}: {error}"), SETUP_HELP)),
     }
 }
 
@@ -73,6 +60,9 @@ fn measure(args: &CharacteriseArgs, setup: &Setup) -> Result<Characteristics, Fa
     let mut sensor = SetupSensor::new(setup, args.spp, args.seed, &progress, interrupt::flag());
     characterise(&mut sensor, options).map_err(|error| match error {
         ScanError::Cancelled => Failure::Interrupted,
-        error => Failure::input(format!("{}: {error}", args.common.setup.display()), HELP),
+        error => Failure::input(
+            format!("{}: {error}", args.common.setup.display()),
+            SETUP_HELP,
+        ),
     })
 }

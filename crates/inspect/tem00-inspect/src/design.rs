@@ -8,12 +8,8 @@ mod words;
 
 use std::io::Write;
 
-use tem00_report::{
-    failure::Failure,
-    kind::{Kind, wrong_or},
-    output,
-};
-use tem00_triangulation::{neighbours, read_design, read_setup_with, read_uncertainty};
+use tem00_report::{failure::Failure, output};
+use tem00_triangulation::{neighbours, read_design, read_uncertainty};
 
 use self::search::Design;
 use crate::args::DesignArgs;
@@ -28,23 +24,12 @@ const PART: f64 = 0.1;
 /// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or if no set-up
 /// keeps every constraint; all files but `best.toml` are written then, if any set-up is possible.
 pub(crate) fn run(args: &DesignArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let (_, (search, uncertainty, text)) = read_setup_with(
-        &args.common.setup,
-        args.common.files.reading(),
-        |document, setup| {
-            let search = read_design(document, setup.description())?;
-            let uncertainty = read_uncertainty(document, setup)?;
-            Ok((search, uncertainty, document.text().to_owned()))
-        },
-    )
-    .map_err(|error| {
-        wrong_or(&args.common.setup, Kind::Setup, || {
-            Failure::file(&args.common.setup, &error, HELP)
-        })
+    let (_, (search, uncertainty, text)) = args.common.read(HELP, |document, setup| {
+        let search = read_design(document, setup.description())?;
+        let uncertainty = read_uncertainty(document, setup)?;
+        Ok((search, uncertainty, document.text().to_owned()))
     })?;
-    let name = output::name(&args.common.setup, "design");
-    let folder = output::folder(args.common.output.as_deref(), &name);
-    let _lock = output::prepare(&folder)?;
+    let (folder, _lock) = args.common.folder("design")?;
     let pool = output::thread_pool(args.common.threads)?;
     let mut design = pool.install(|| Design::search(args, search, text))?;
     design.is_exact = uncertainty.quantities.is_empty();

@@ -3,7 +3,19 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use tem00_report::args::FileArgs;
+use tem00_config::{Document, Problem};
+use tem00_report::{
+    args::FileArgs,
+    failure::Failure,
+    folder_lock::FolderLock,
+    kind::{Kind, wrong_or},
+    output,
+};
+use tem00_triangulation::{Setup, read_setup_with};
+
+/// The help for a file that is not a set-up.
+pub(crate) const SETUP_HELP: &str =
+    "examples/setups/ has set-up files, and docs/setup_file.md explains how to write them";
 
 /// A set-up, and where the report on it goes.
 #[derive(Args, Clone, Debug)]
@@ -26,4 +38,27 @@ pub(crate) struct SetupArgs {
     /// Print JSON instead of a table.
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+impl SetupArgs {
+    /// Reads the set-up, and what a command wants of its file besides.
+    pub(crate) fn read<T>(
+        &self,
+        help: &str,
+        read: impl FnOnce(&Document<'_>, &Setup) -> Result<T, Problem>,
+    ) -> Result<(Setup, T), Failure> {
+        read_setup_with(&self.setup, self.files.reading(), read).map_err(|error| {
+            wrong_or(&self.setup, Kind::Setup, || {
+                Failure::file(&self.setup, &error, help)
+            })
+        })
+    }
+
+    /// Takes the folder for the files; `otherwise` is its name where the set-up has none.
+    pub(crate) fn folder(&self, otherwise: &str) -> Result<(PathBuf, FolderLock), Failure> {
+        let name = output::name(&self.setup, otherwise);
+        let folder = output::folder(self.output.as_deref(), &name);
+        let lock = output::prepare(&folder)?;
+        Ok((folder, lock))
+    }
 }

@@ -18,7 +18,7 @@ pub(super) fn verdicts(measured: &Measured) -> Vec<String> {
     let half = MICROMETRES.text(0.5 * measured.quoted_answer().interval.length());
     let mut lines = vec![format!(
         "Height {height} with the uncertain quantities of the set-up: U = {half} (95 %), by the {}.",
-        name(quoted)
+        quoted.name()
     )];
     lines.push(why(measured));
     if !measured.propagation.is_stable() {
@@ -71,28 +71,12 @@ fn why(measured: &Measured) -> String {
     }
 }
 
-pub(super) const fn name(quoted: Quoted) -> &'static str {
-    match quoted {
-        Quoted::FirstOrder => "law of propagation",
-        Quoted::Propagation => "propagation of distributions",
-        Quoted::VirtualExperiment => "virtual experiment",
-    }
-}
-
-const fn key(quoted: Quoted) -> &'static str {
-    match quoted {
-        Quoted::FirstOrder => "first_order",
-        Quoted::Propagation => "propagation",
-        Quoted::VirtualExperiment => "virtual_experiment",
-    }
-}
-
 /// Adds the answers and what contributes to them.
 pub(super) fn section(section: &mut Section, measured: &Measured) {
     let (validation, propagation) = (measured.validation(), &measured.propagation);
     section
         .fact("height", "height", MILLIMETRES.quantity(measured.measurement.height()))
-        .data("quoted", key(measured.quoted()))
+        .data("quoted", measured.quoted().key())
         .table(answers(measured))
         .paragraph(
             "Each answer in the words of the GUM. The law of propagation of uncertainty (JCGM 100) is first order; the \
@@ -133,19 +117,15 @@ fn answers(measured: &Measured) -> Table {
     let mut table = Table::new("The height and its uncertainty", columns).under("answers");
     let height = measured.measurement.height();
     let end = |end: f64| Cell::new(end, MICROMETRES.cell(end - height).text());
-    for method in [
-        Quoted::FirstOrder,
-        Quoted::Propagation,
-        Quoted::VirtualExperiment,
-    ] {
+    for method in Quoted::ALL {
         let Some(answer) = measured.answer(method) else {
             continue;
         };
         let estimate = format!("{:.4}", MILLIMETRES.of(answer.estimate));
         let error = answer.standard_error.map(|error| MICROMETRES.cell(error));
         table.row([
-            key(method).into(),
-            name(method).into(),
+            method.key().into(),
+            method.name().into(),
             Cell::new(answer.estimate, estimate),
             MICROMETRES.cell(answer.uncertainty),
             Cell::or_dash(error),
@@ -185,12 +165,7 @@ fn inputs(measured: &Measured) -> Table {
         columns.push(Column::new("total_index", "S_T (%)"));
     }
     let mut table = Table::new("What makes the height uncertain", columns).under("inputs");
-    let measurement = &measured.measurement;
-    let inputs = measurement
-        .sources()
-        .iter()
-        .zip(measurement.inputs().as_slice());
-    for (index, (&source, input)) in inputs.enumerate() {
+    for (index, (source, input)) in measured.inputs().enumerate() {
         table.row(cells(measured, index, source, input));
     }
     table

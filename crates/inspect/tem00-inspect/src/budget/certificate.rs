@@ -7,12 +7,9 @@ use tem00_triangulation::{MeasurementInput, Setup, SetupQuantity};
 use tem00_uncertainty::{CoverageProbability, Distribution, Input};
 
 pub(super) use self::data::CertificateData;
-use self::{
-    data::{Contact, Item},
-    element::Element,
-};
+use self::{data::Texts, element::Element};
 use super::{
-    answers::{name, source, verdicts},
+    answers::{source, verdicts},
     measured::{Measured, Quoted},
 };
 
@@ -48,7 +45,7 @@ fn administrative(data: &CertificateData) -> Element {
         Element::text("dcc:release", env!("CARGO_PKG_VERSION")),
         Element::text("dcc:type", "application"),
     ];
-    let person = Element::new("dcc:person", [words("dcc:name", &data.responsible)]);
+    let person = Element::new("dcc:person", worded("dcc:name", &data.own, "responsible"));
     let signer = [person, Element::text("dcc:mainSigner", true)];
     let laboratory = contact("dcc:contact", &data.laboratory);
     let statement = [
@@ -67,63 +64,63 @@ fn administrative(data: &CertificateData) -> Element {
     Element::new("dcc:administrativeData", parts)
 }
 
-fn core_data(data: &CertificateData) -> Element {
-    let [from, to] = &data.performed;
-    let parts = [
-        ("dcc:countryCodeISO3166_1", data.country.as_str()),
-        ("dcc:usedLangCodeISO639_1", "en"),
-        ("dcc:mandatoryLangCodeISO639_1", "en"),
-        ("dcc:uniqueIdentifier", &data.identifier),
-        ("dcc:beginPerformanceDate", from),
-        ("dcc:endPerformanceDate", to),
-        ("dcc:performanceLocation", data.place),
-        ("dcc:issueDate", &data.issued),
-    ];
-    Element::new(
-        "dcc:coreData",
-        parts.map(|(name, text)| Element::text(name, text)),
-    )
+/// Returns an element with the text of a key, if it is there.
+fn text(element: &'static str, texts: &Texts, key: &str) -> Option<Element> {
+    Some(Element::text(element, texts.get(key)?))
 }
 
-fn contact(element: &'static str, contact: &Contact) -> Element {
+/// Returns an element with the text of a key, in the language of the certificates.
+fn worded(element: &'static str, texts: &Texts, key: &str) -> Option<Element> {
+    Some(words(element, texts.get(key)?))
+}
+
+fn core_data(data: &CertificateData) -> Element {
+    let own = |element, key| text(element, &data.own, key);
+    let parts = [
+        text("dcc:countryCodeISO3166_1", &data.laboratory, "country"),
+        Some(Element::text("dcc:usedLangCodeISO639_1", "en")),
+        Some(Element::text("dcc:mandatoryLangCodeISO639_1", "en")),
+        own("dcc:uniqueIdentifier", "identifier"),
+        own("dcc:beginPerformanceDate", "performed_from"),
+        own("dcc:endPerformanceDate", "performed_to"),
+        own("dcc:performanceLocation", "performed_at"),
+        own("dcc:issueDate", "issued"),
+    ];
+    Element::new("dcc:coreData", parts.into_iter().flatten())
+}
+
+fn contact(element: &'static str, contact: &Texts) -> Element {
     let location = [
-        ("dcc:street", contact.street.as_ref()),
-        ("dcc:postCode", contact.post_code.as_ref()),
-        ("dcc:city", Some(&contact.city)),
-        ("dcc:countryCode", contact.country.as_ref()),
+        ("dcc:street", "street"),
+        ("dcc:postCode", "post_code"),
+        ("dcc:city", "city"),
+        ("dcc:countryCode", "country"),
     ];
     let location = location
         .into_iter()
-        .filter_map(|(name, text)| Some(Element::text(name, text?)));
-    let email = contact
-        .email
-        .iter()
-        .map(|email| Element::text("dcc:eMail", email));
-    let parts = [words("dcc:name", &contact.name)].into_iter().chain(email);
-    Element::new(
-        element,
-        parts.chain([Element::new("dcc:location", location)]),
-    )
+        .filter_map(|(name, key)| text(name, contact, key));
+    let parts = [
+        worded("dcc:name", contact, "name"),
+        text("dcc:eMail", contact, "email"),
+        Some(Element::new("dcc:location", location)),
+    ];
+    Element::new(element, parts.into_iter().flatten())
 }
 
-fn item(item: &Item) -> Element {
-    let mut parts = vec![words("dcc:name", &item.name)];
-    let manufacturer = item.manufacturer.iter();
-    parts.extend(
-        manufacturer.map(|name| Element::new("dcc:manufacturer", [words("dcc:name", name)])),
-    );
-    parts.extend(
-        item.model
-            .iter()
-            .map(|model| Element::text("dcc:model", model)),
-    );
-    let identification = [
-        Element::text("dcc:issuer", item.issuer),
-        Element::text("dcc:value", &item.identification),
-    ];
+fn item(item: &Texts) -> Element {
+    let manufacturer = worded("dcc:name", item, "manufacturer");
+    let identification = [("dcc:issuer", "issuer"), ("dcc:value", "identification")];
+    let identification = identification
+        .into_iter()
+        .filter_map(|(name, key)| text(name, item, key));
     let identification = Element::new("dcc:identification", identification);
-    parts.push(Element::new("dcc:identifications", [identification]));
-    Element::new("dcc:item", parts)
+    let parts = [
+        worded("dcc:name", item, "name"),
+        manufacturer.map(|name| Element::new("dcc:manufacturer", [name])),
+        text("dcc:model", item, "model"),
+        Some(Element::new("dcc:identifications", [identification])),
+    ];
+    Element::new("dcc:item", parts.into_iter().flatten())
 }
 
 fn results(measured: &Measured, setup: &Setup) -> Element {
@@ -154,7 +151,7 @@ fn methods(measured: &Measured) -> Element {
         }
     };
     let mut parts = vec![
-        words("dcc:name", name(quoted)),
+        words("dcc:name", quoted.name()),
         words(
             "dcc:description",
             format!("{what} {}", verdicts(measured).join(" ")),
@@ -168,10 +165,9 @@ fn methods(measured: &Measured) -> Element {
 fn influence(measured: &Measured, setup: &Setup) -> Option<Element> {
     let quantity = SetupQuantity::TemperatureChange;
     let change = MeasurementInput::Quantity(quantity);
-    let mut sources = measured.measurement.sources().iter();
-    let index = sources.position(|source| *source == change);
-    let data = match (index, quantity.value_in(setup.description())) {
-        (Some(index), _) => input(change, &measured.measurement.inputs().as_slice()[index]),
+    let known = measured.inputs().find(|(source, _)| *source == change);
+    let data = match (known, quantity.value_in(setup.description())) {
+        (Some((_, known)), _) => input(change, known),
         (None, 0.0) => return None,
         (None, exact) => self::quantity(
             words("dcc:name", quantity),
@@ -189,12 +185,8 @@ fn influence(measured: &Measured, setup: &Setup) -> Option<Element> {
 
 fn all_results(measured: &Measured) -> Vec<Element> {
     let inputs = measured
-        .measurement
-        .sources()
-        .iter()
-        .zip(measured.measurement.inputs().as_slice());
-    let inputs = inputs
-        .map(|(&source, known)| input(source, known))
+        .inputs()
+        .map(|(source, known)| input(source, known))
         .collect();
     let mut all = vec![
         result("Measured height", vec![height(measured)]),

@@ -9,11 +9,7 @@ use tem00_triangulation::{
 };
 
 use super::measured::{Measured, differs};
-use crate::args::BudgetArgs;
-
-/// The help for a file that is not a set-up.
-pub(super) const HELP: &str =
-    "examples/setups/ has set-up files, and docs/setup_file.md explains how to write them";
+use crate::args::{BudgetArgs, SETUP_HELP};
 
 /// The file of a set-up.
 pub(super) struct SetupFile<'a> {
@@ -65,7 +61,7 @@ impl<'a> Findings<'a> {
                 advice,
                 trials: None,
             }),
-            Err(error) => return Err(crate::measuring(&args.common.setup, &error, HELP)),
+            Err(error) => return Err(crate::measuring(&args.common.setup, &error, SETUP_HELP)),
         };
         Ok(Self {
             file,

@@ -6,7 +6,7 @@ use tem00_triangulation::{
     TriangulationError, VirtualExperiment,
 };
 use tem00_uncertainty::{
-    CoverageInterval, CoverageProbability, Decomposition, DecompositionOptions, FirstOrder,
+    CoverageInterval, CoverageProbability, Decomposition, DecompositionOptions, FirstOrder, Input,
     Propagation, PropagationOptions, Validation,
 };
 
@@ -54,6 +54,28 @@ pub(super) enum Quoted {
     VirtualExperiment,
 }
 
+impl Quoted {
+    pub(super) const ALL: [Self; 3] =
+        [Self::FirstOrder, Self::Propagation, Self::VirtualExperiment];
+
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::FirstOrder => "law of propagation",
+            Self::Propagation => "propagation of distributions",
+            Self::VirtualExperiment => "virtual experiment",
+        }
+    }
+
+    /// Returns the name in JSON.
+    pub(super) fn key(self) -> &'static str {
+        match self {
+            Self::FirstOrder => "first_order",
+            Self::Propagation => "propagation",
+            Self::VirtualExperiment => "virtual_experiment",
+        }
+    }
+}
+
 impl Measured {
     /// Returns `None` of a set-up that is known exactly.
     pub(super) fn new(
@@ -99,6 +121,12 @@ impl Measured {
                 .transpose()?,
             measurement,
         })
+    }
+
+    /// Returns the inputs, with what is known of them.
+    pub(super) fn inputs(&self) -> impl Iterator<Item = (MeasurementInput, &Input)> {
+        let sources = self.measurement.sources().iter().copied();
+        sources.zip(self.measurement.inputs().as_slice())
     }
 
     /// Returns the answer of a method; `None` of a virtual experiment that was left out, or whose lines cannot be

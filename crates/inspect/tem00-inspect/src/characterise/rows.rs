@@ -4,7 +4,7 @@ use tem00_report::report::{
     Unit,
     units::{MICROMETRES, NUMBER},
 };
-use tem00_topography::{Characteristics, Estimate, Extreme, Field, GrooveResult};
+use tem00_topography::{Characteristics, Estimate, Extreme, Field, GrooveResult, SphereResult};
 
 /// A characteristic.
 pub(super) struct Row {
@@ -19,238 +19,118 @@ pub(super) struct Row {
     pub(super) by_chance: Option<f64>,
 }
 
+/// Key, name, symbol and definition of each characteristic, in the order of a report.
+const NAMES: &str = include_str!("characteristics.txt");
+
 const NOT_SEEN: &str = "not measured: too little of the artefact was seen";
 
+/// What was found of a characteristic.
+struct Found {
+    unit: Unit,
+    estimate: Result<Estimate, String>,
+    by_chance: Option<f64>,
+}
+
 /// Returns all characteristics, in the order of a report.
-pub(super) fn rows(found: &Characteristics) -> Vec<Row> {
-    let mut rows = heights(found);
-    rows.extend(laterals(found));
-    rows.extend(probing(found));
-    rows
-}
-
-fn heights(found: &Characteristics) -> Vec<Row> {
-    let (response, flat) = (found.response.as_ref(), found.flat.as_ref());
-    vec![
+pub(super) fn rows(characteristics: &Characteristics) -> Vec<Row> {
+    let found = heights(characteristics).into_iter();
+    let found = found
+        .chain(laterals(characteristics))
+        .chain(probing(characteristics));
+    let rows = NAMES.lines().zip(found).map(|(line, found)| {
+        let mut texts = line.split(" | ");
+        let mut text = || texts.next().unwrap_or_default();
         Row {
+            key: text(),
+            name: text(),
+            symbol: text(),
+            definition: text(),
+            unit: found.unit,
+            found: found.estimate,
+            by_chance: found.by_chance,
+        }
+    });
+    rows.collect()
+}
+
+fn heights(found: &Characteristics) -> Vec<Found> {
+    let (response, flat) = (found.response.as_ref(), found.flat.as_ref());
+    let amplification = seen(response.map(|found| found.amplification));
+    vec![
+        Found {
             unit: NUMBER,
-            ..row(
-                [
-                    "amplification_coefficient",
-                    "amplification coefficient",
-                    "α_z",
-                ],
-                "Slope of the line of least squares of measured over true heights; a level flat at nine heights over nine \
-                 tenths of the measuring range, each the mean of all repetitions.",
-                response.map(|found| found.amplification),
-            )
+            ..amplification
         },
-        extreme(
-            ["linearity_deviation", "linearity deviation", "l_z"],
-            "Largest distance, in height, of a mean measured height of that flat from the line.",
-            response.map(|found| found.linearity),
-        ),
-        extreme(
-            ["flatness_deviation", "flatness deviation", "z_FLT"],
-            "Range of the mean heights at 64 places along the profile of a level flat, over all repetitions, less the line \
-             of least squares through them.",
-            flat.map(|found| found.flatness),
-        ),
-        row(
-            ["measurement_noise", "measurement noise", "N_M"],
-            "Standard deviation of a height of a level flat, each repetition on another piece of it: with speckle.",
-            flat.map(|found| found.measurement_noise),
-        ),
-        row(
-            ["instrument_noise", "instrument noise", "N_I"],
-            "Standard deviation of a height where nothing moves, from differences of two frames by √2: without speckle, \
-             which rests with the surface.",
-            flat.map(|found| found.instrument_noise),
-        ),
+        extreme(seen_at_all(response.map(|found| found.linearity))),
+        extreme(seen_at_all(flat.map(|found| found.flatness))),
+        seen(flat.map(|found| found.measurement_noise)),
+        seen(flat.map(|found| found.instrument_noise)),
     ]
 }
 
-fn laterals(found: &Characteristics) -> Vec<Row> {
+fn laterals(found: &Characteristics) -> Vec<Found> {
     let [across_profile, across_scan] = &found.grooves;
-    let x = &across_profile.as_ref().ok_or_else(|| unseen(&found.field));
-    let y = &across_scan.as_ref().ok_or_else(|| NOT_SEEN.to_owned());
-    let resolution = "Width of a groove with upright walls that is measured with half of its depth in its middle, from a comb \
-         of twelve widths in steps of √2.";
-    let fidelity = "Width of a groove down to which the depth in the middle is right within a tenth, of the same comb.";
+    let x = across_profile.as_ref().ok_or_else(|| unseen(&found.field));
+    let y = across_scan.as_ref().ok_or_else(|| NOT_SEEN.to_owned());
+    let limit = |grooves: &Result<&GrooveResult, String>,
+                 of: fn(&GrooveResult) -> Option<Estimate>| {
+        let found = grooves.clone();
+        estimate(found.and_then(|found| of(found).ok_or_else(|| beyond(found))))
+    };
+    let mapping = |grooves: &Result<&GrooveResult, String>| {
+        let shallow = "not measured: the widest grooves are not seen half as deep as they are";
+        let found = grooves.clone();
+        extreme(found.and_then(|found| found.mapping.ok_or_else(|| shallow.to_owned())))
+    };
     vec![
-        of_grooves(
-            [
-                "resolution_along_profile",
-                "topographic spatial resolution along the profile",
-                "W_R,x",
-            ],
-            resolution,
-            x,
-            |grooves| grooves.resolution,
-        ),
-        of_grooves(
-            [
-                "resolution_along_scan",
-                "topographic spatial resolution along the scan",
-                "W_R,y",
-            ],
-            resolution,
-            y,
-            |grooves| grooves.resolution,
-        ),
-        mapping(
-            [
-                "mapping_deviation_along_profile",
-                "x-y mapping deviation along the profile",
-                "Δ_x",
-            ],
-            "Largest error of the place of the widest grooves, which lie side by side over nine tenths of the profile: \
-             half-way between the places at which the mean profile is half as deep as they are.",
-            x,
-        ),
-        mapping(
-            [
-                "mapping_deviation_along_scan",
-                "x-y mapping deviation along the scan",
-                "Δ_y",
-            ],
-            "Error of the place of the widest groove across the scan, found in the same way.",
-            y,
-        ),
-        of_grooves(
-            [
-                "fidelity_limit_along_profile",
-                "topography fidelity limit along the profile",
-                "T_FI,x",
-            ],
-            fidelity,
-            x,
-            |grooves| grooves.fidelity_limit,
-        ),
-        of_grooves(
-            [
-                "fidelity_limit_along_scan",
-                "topography fidelity limit along the scan",
-                "T_FI,y",
-            ],
-            fidelity,
-            y,
-            |grooves| grooves.fidelity_limit,
-        ),
+        limit(&x, |found| found.resolution),
+        limit(&y, |found| found.resolution),
+        mapping(&x),
+        mapping(&y),
+        limit(&x, |found| found.fidelity_limit),
+        limit(&y, |found| found.fidelity_limit),
     ]
 }
 
-fn probing(found: &Characteristics) -> Vec<Row> {
+fn probing(found: &Characteristics) -> Vec<Found> {
     let (sphere, flat) = (found.sphere.as_ref(), found.flat.as_ref());
-    let form = "Distance of the planes, parallel to that of least squares, that enclose 95 % of the points of all repetitions.";
+    let sphere = |of: fn(&SphereResult) -> Estimate| seen(sphere.map(of));
+    let form = |pose: usize| seen(flat.map(|found| found.form[pose]));
     vec![
-        row(
-            ["probing_size_error", "probing size error", "P_Size.Sph.All"],
-            "Diameter of the sphere of least squares through all points of a cap of 45° half-angle, less the true one.",
-            sphere.map(|found| found.size),
-        ),
-        row(
-            [
-                "probing_form_error_25",
-                "probing form error of 25 places",
-                "P_Form.Sph.1x25",
-            ],
-            "Range of the distances of 25 places on the cap, each the mean of the points within 4.5° of it, from the sphere \
-             of least squares through them.",
-            sphere.map(|found| found.form_of_places),
-        ),
-        row(
-            [
-                "probing_form_error_95",
-                "probing form error of 95 % of the points",
-                "P_Form.Sph.D95%",
-            ],
-            "Least distance of two spheres, about the centre of that of least squares, that enclose 95 % of the points of the cap.",
-            sphere.map(|found| found.form),
-        ),
-        row(
-            ["flat_form_level", "flat form, level", "E_Form.Pla.D95%"],
-            form,
-            flat.map(|found| found.form[0]),
-        ),
-        row(
-            [
-                "flat_form_tilted_along_profile",
-                "flat form, tilted along the profile",
-                "E_Form.Pla.D95%",
-            ],
-            form,
-            flat.map(|found| found.form[1]),
-        ),
-        row(
-            [
-                "flat_form_tilted_along_scan",
-                "flat form, tilted along the scan",
-                "E_Form.Pla.D95%",
-            ],
-            form,
-            flat.map(|found| found.form[2]),
-        ),
+        sphere(|found| found.size),
+        sphere(|found| found.form_of_places),
+        sphere(|found| found.form),
+        form(0),
+        form(1),
+        form(2),
     ]
 }
 
-fn row(
-    [key, name, symbol]: [&'static str; 3],
-    definition: &'static str,
-    found: Option<Estimate>,
-) -> Row {
-    Row {
-        key,
-        name,
-        symbol,
-        definition,
+fn seen_at_all<T>(found: Option<T>) -> Result<T, String> {
+    found.ok_or_else(|| NOT_SEEN.to_owned())
+}
+
+fn seen(found: Option<Estimate>) -> Found {
+    estimate(seen_at_all(found))
+}
+
+const fn estimate(estimate: Result<Estimate, String>) -> Found {
+    Found {
         unit: MICROMETRES,
-        found: found.ok_or_else(|| NOT_SEEN.to_owned()),
+        estimate,
         by_chance: None,
     }
 }
 
-fn extreme(names: [&'static str; 3], definition: &'static str, found: Option<Extreme>) -> Row {
-    let estimate = found.map(|found| Estimate {
+fn extreme(found: Result<Extreme, String>) -> Found {
+    let by_chance = found.as_ref().ok().map(|found| found.by_chance);
+    let value = found.map(|found| Estimate {
         value: found.value,
         uncertainty: found.uncertainty,
     });
-    Row {
-        by_chance: found.map(|found| found.by_chance),
-        ..row(names, definition, estimate)
-    }
-}
-
-fn of_grooves(
-    names: [&'static str; 3],
-    definition: &'static str,
-    grooves: &Result<&GrooveResult, String>,
-    found: fn(&GrooveResult) -> Option<Estimate>,
-) -> Row {
-    let found = grooves
-        .clone()
-        .and_then(|grooves| found(grooves).ok_or_else(|| beyond(grooves)));
-    Row {
-        found,
-        ..row(names, definition, None)
-    }
-}
-
-fn mapping(
-    names: [&'static str; 3],
-    definition: &'static str,
-    grooves: &Result<&GrooveResult, String>,
-) -> Row {
-    let shallow = "not measured: the widest grooves are not seen half as deep as they are";
-    let found = grooves
-        .clone()
-        .and_then(|grooves| grooves.mapping.ok_or_else(|| shallow.to_owned()));
-    match found {
-        Ok(mapping) => extreme(names, definition, Some(mapping)),
-        Err(reason) => Row {
-            found: Err(reason),
-            ..row(names, definition, None)
-        },
+    Found {
+        by_chance,
+        ..estimate(value)
     }
 }
 

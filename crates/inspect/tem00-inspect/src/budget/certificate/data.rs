@@ -2,6 +2,8 @@
 
 use tem00_config::{Document, Problem, Section, Value, is_hazard};
 
+use crate::date::month_lengths;
+
 const CERTIFICATE: &[&str] = &[
     "identifier",
     "performed_from",
@@ -32,38 +34,29 @@ const ISSUERS: [&str; 5] = [
 
 /// What a calibration certificate says beside its numbers.
 pub(in crate::budget) struct CertificateData {
-    pub(super) identifier: String,
-    /// The first and last day of the work, as in `2026-11-23`.
-    pub(super) performed: [String; 2],
-    pub(super) place: &'static str,
-    pub(super) issued: String,
-    pub(super) responsible: String,
-    pub(super) laboratory: Contact,
-    /// The country of the laboratory, which is that of the certificate.
-    pub(super) country: String,
-    pub(super) customer: Contact,
-    pub(super) item: Item,
+    pub(super) own: Texts,
+    pub(super) laboratory: Texts,
+    pub(super) customer: Texts,
+    /// The set-up as an item.
+    pub(super) item: Texts,
 }
 
-/// A laboratory or a customer.
-pub(super) struct Contact {
-    pub(super) name: String,
-    pub(super) street: Option<String>,
-    pub(super) post_code: Option<String>,
-    pub(super) city: String,
-    pub(super) country: Option<String>,
-    pub(super) email: Option<String>,
-}
+/// The texts of a section, by their keys.
+pub(super) struct Texts(Vec<(&'static str, String)>);
 
-/// The set-up as an item.
-pub(super) struct Item {
-    pub(super) name: String,
-    pub(super) manufacturer: Option<String>,
-    pub(super) model: Option<String>,
-    pub(super) identification: String,
-    /// Who gave the identification.
-    pub(super) issuer: &'static str,
+/// What a text must be.
+#[derive(Clone, Copy)]
+enum Kind {
+    Words,
+    Country,
+    /// A day, not before another of the same section.
+    Date,
+    OneOf([&'static str; 5]),
 }
+use Kind::{Country, Date, OneOf, Words};
+
+/// A key with an example where it must be there; an empty one where it may be left out.
+type Key = (&'static str, Kind, &'static str);
 
 impl CertificateData {
     /// Reads the section; `None` without one.
@@ -96,54 +89,73 @@ impl CertificateData {
         let laboratory = part("laboratory", CONTACT, "name = \"Length laboratory\"")?;
         let customer = part("customer", CONTACT, "name = \"Rolling mill\"")?;
         let item = part("item", ITEM, "name = \"Line sensor\"")?;
-        let place = section.required("performed_at", "\"laboratory\"")?;
-        let [from, to, issued] = dates(&section)?;
+        let own = [
+            ("performed_at", OneOf(PLACES), "\"laboratory\""),
+            ("performed_from", Date, "2026-11-23"),
+            ("performed_to", Date, "2026-11-23"),
+            ("issued", Date, "2026-11-23"),
+            ("identifier", Words, "\"LS-2026-07\""),
+            ("responsible", Words, "\"A. Example\""),
+        ];
+        let of_item = [
+            ("issuer", OneOf(ISSUERS), "\"customer\""),
+            ("name", Words, "\"Line sensor\""),
+            ("manufacturer", Words, ""),
+            ("model", Words, ""),
+            ("identification", Words, "\"drawing 4711\""),
+        ];
         Ok(Some(Self {
-            identifier: required(&section, "identifier", "\"LS-2026-07\"")?,
-            performed: [from, to],
-            place: place.one_of(&PLACES.map(|place| (place, place)))?,
-            issued,
-            responsible: required(&section, "responsible", "\"A. Example\"")?,
-            country: country(&laboratory.required("country", "\"DE\"")?)?,
-            laboratory: Contact::read(&laboratory)?,
-            customer: Contact::read(&customer)?,
-            item: Item::read(&item)?,
+            own: Texts::read(&section, &own)?,
+            laboratory: Texts::read(&laboratory, &contact("\"DE\""))?,
+            customer: Texts::read(&customer, &contact(""))?,
+            item: Texts::read(&item, &of_item)?,
         }))
     }
 }
 
-impl Contact {
-    fn read(section: &Section<'_>) -> Result<Self, Problem> {
-        Ok(Self {
-            name: required(section, "name", "\"Length laboratory\"")?,
-            street: optional(section, "street")?,
-            post_code: optional(section, "post_code")?,
-            city: required(section, "city", "\"Braunschweig\"")?,
-            country: section.or("country", None, |value| country(value).map(Some))?,
-            email: optional(section, "email")?,
-        })
+/// The keys of a laboratory or a customer.
+const fn contact(country: &'static str) -> [Key; 6] {
+    [
+        ("country", Country, country),
+        ("name", Words, "\"Length laboratory\""),
+        ("street", Words, ""),
+        ("post_code", Words, ""),
+        ("city", Words, "\"Braunschweig\""),
+        ("email", Words, ""),
+    ]
+}
+
+impl Texts {
+    fn read(section: &Section<'_>, keys: &[Key]) -> Result<Self, Problem> {
+        let mut texts: Vec<(&str, String)> = Vec::new();
+        let mut day: Option<(&str, String)> = None;
+        for &(key, kind, example) in keys {
+            let value = match section.optional(key) {
+                None if example.is_empty() => continue,
+                None => section.required(key, example)?,
+                Some(value) => value,
+            };
+            let text = match kind {
+                Words => words(&value)?,
+                Country => country(&value)?,
+                Date => date(&value, day.as_ref())?,
+                OneOf(names) => value.one_of(&names.map(|name| (name, name)))?.to_owned(),
+            };
+            if matches!(kind, Date) {
+                day = Some((key, text.clone()));
+            }
+            texts.push((key, text));
+        }
+        Ok(Self(texts))
     }
-}
 
-impl Item {
-    fn read(section: &Section<'_>) -> Result<Self, Problem> {
-        let issuer = section.required("issuer", "\"customer\"")?;
-        Ok(Self {
-            name: required(section, "name", "\"Line sensor\"")?,
-            manufacturer: optional(section, "manufacturer")?,
-            model: optional(section, "model")?,
-            identification: required(section, "identification", "\"drawing 4711\"")?,
-            issuer: issuer.one_of(&ISSUERS.map(|issuer| (issuer, issuer)))?,
-        })
+    /// Returns the text of a key, if the section has it.
+    pub(super) fn get(&self, key: &str) -> Option<&str> {
+        let mut texts = self.0.iter();
+        texts
+            .find(|(name, _)| *name == key)
+            .map(|(_, text)| &**text)
     }
-}
-
-fn required(section: &Section<'_>, key: &'static str, example: &str) -> Result<String, Problem> {
-    words(&section.required(key, example)?)
-}
-
-fn optional(section: &Section<'_>, key: &'static str) -> Result<Option<String>, Problem> {
-    section.or(key, None, |value| words(value).map(Some))
 }
 
 /// Reads text that the schema calls not empty.
@@ -163,23 +175,16 @@ fn country(value: &Value<'_>) -> Result<String, Problem> {
     Err(value.must_be("a country code of two capital letters (ISO 3166-1)"))
 }
 
-/// Reads the first and last day of the work and that of issue, which follow each other.
-fn dates(section: &Section<'_>) -> Result<[String; 3], Problem> {
-    let keys = ["performed_from", "performed_to", "issued"];
-    let mut dates = [String::new(), String::new(), String::new()];
-    for (index, key) in keys.into_iter().enumerate() {
-        let value = section.required(key, "2026-11-23")?;
-        let date = value.text();
-        if !is_date(&date) {
-            return Err(value.must_be("a date such as 2026-11-23"));
-        }
-        if index > 0 && date < dates[index - 1] {
-            let before = keys[index - 1];
-            return Err(value.must_be(format_args!("`{before}` or later")));
-        }
-        dates[index] = date;
+/// Reads a day that is not before another.
+fn date(value: &Value<'_>, before: Option<&(&str, String)>) -> Result<String, Problem> {
+    let date = value.text();
+    if !is_date(&date) {
+        return Err(value.must_be("a date such as 2026-11-23"));
     }
-    Ok(dates)
+    match before {
+        Some((key, day)) if date < *day => Err(value.must_be(format_args!("`{key}` or later"))),
+        _ => Ok(date),
+    }
 }
 
 /// Returns whether text is a day of the calendar, as `2026-11-23`.
@@ -191,16 +196,10 @@ fn is_date(text: &str) -> bool {
     if text.len() != 10 || !text.bytes().enumerate().all(is_digit) {
         return false;
     }
-    let number = |range: core::ops::Range<usize>| text[range].parse::<u32>().unwrap_or(0);
+    let number = |range: core::ops::Range<usize>| text[range].parse::<u64>().unwrap_or(0);
     let (year, month, day) = (number(0..4), number(5..7), number(8..10));
-    let is_leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
-    let days = match month {
-        2 => 28 + u32::from(is_leap),
-        4 | 6 | 9 | 11 => 30,
-        1..=12 => 31,
-        _ => 0,
-    };
-    year > 0 && (1..=days).contains(&day)
+    let mut months = (1..).zip(month_lengths(year));
+    year > 0 && months.any(|(found, days)| found == month && (1..=days).contains(&day))
 }
 
 #[cfg(test)]

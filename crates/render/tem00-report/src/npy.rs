@@ -242,4 +242,4 @@ fn to_usize(n: u64) -> usize {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

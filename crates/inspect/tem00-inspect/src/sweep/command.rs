@@ -19,7 +19,7 @@ pub(super) const HELP: &str = "the grid names the options and the keys";
 /// A command with the options and the file that all tasks have in common.
 pub(super) enum SweptCommand {
     Budget(BudgetArgs),
-    Render(RenderArgs),
+    Render(Box<RenderArgs>),
     Triangulate(TriangulateArgs),
 }
 
@@ -28,7 +28,7 @@ impl SweptCommand {
     pub(super) fn of(grid: &Grid) -> Result<Self, Failure> {
         Ok(match grid.command {
             Swept::Budget => Self::Budget(parsed(grid)?),
-            Swept::Render => Self::Render(parsed(grid)?),
+            Swept::Render => Self::Render(Box::new(parsed(grid)?)),
             Swept::Triangulate => Self::Triangulate(parsed(grid)?),
         })
     }

@@ -80,11 +80,9 @@ mod tests {
     use approx::assert_abs_diff_eq;
     use png::Decoder;
 
-    use super::super::{
-        LoadedImage, RawFormat, Reading, Transfer,
-        raw_file::{decode, tests::hex},
-    };
+    use super::super::{LoadedImage, RawFormat, Reading, Transfer, raw_file::decode};
     use super::*;
+    use crate::npy::tests::hex;
 
     fn read(file: &[u8], reading: Reading<'_>) -> Result<LoadedImage, ImageError> {
         let samples = decode(Cursor::new(file), RawFormat::Png)?;

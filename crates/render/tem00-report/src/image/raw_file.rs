@@ -13,7 +13,7 @@ mod png_frame;
 mod pnm_frame;
 mod samples;
 #[cfg(test)]
-pub(super) mod tests;
+mod tests;
 mod tiff_frame;
 mod tiff_packed;
 mod tiff_pixels;

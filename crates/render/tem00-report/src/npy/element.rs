@@ -141,7 +141,7 @@ impl Element for f32 {
     const READABLE: &'static str = "float16, float32, float64, bool, or integers of 8 to 64 bits";
     const NUMBERS: usize = 1;
 
-    fn of(number: impl Fn(usize) -> f32) -> Self {
+    fn of(number: impl Fn(usize) -> Self) -> Self {
         number(0)
     }
 

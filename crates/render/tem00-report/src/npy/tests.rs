@@ -7,6 +7,13 @@ use super::*;
 
 const LIMIT: u64 = 1 << 20;
 
+/// Returns the bytes of pairs of hexadecimal digits.
+pub(crate) fn hex(text: &str) -> Vec<u8> {
+    let digits: String = text.split_whitespace().collect();
+    let byte = |at: usize| u8::from_str_radix(&digits[at..at + 2], 16).expect("two digits");
+    (0..digits.len()).step_by(2).map(byte).collect()
+}
+
 /// What stands before the values, byte by byte as the format says, without a line of the library.
 fn header(version: u8, text: &str) -> Vec<u8> {
     let length = u32::try_from(text.len()).unwrap().to_le_bytes();
@@ -92,9 +99,7 @@ fn every_type_and_order_of_bytes_is_understood() {
         <i4 => ffffffff 70110100 => -1 70000
         <i8 => ffffffffffffffff 0000000000010000 => -1 1099511627776";
     for [descr, bytes, numbers] in rows(table) {
-        let digits: Vec<u32> = bytes.chars().filter_map(|c| c.to_digit(16)).collect();
-        let pairs = digits.chunks_exact(2);
-        let bytes: Vec<u8> = pairs.map(|pair| (16 * pair[0] + pair[1]) as u8).collect();
+        let bytes = hex(&bytes);
         let numbers = numbers.split(' ').map(|word| word.parse().unwrap());
         let numbers: Vec<f32> = numbers.collect();
         for shape in ["(1, 2)", "(1, 2, 1)", "(1, 1, 2)"] {

@@ -8,17 +8,11 @@ use tem00_numerics::Grid;
 use tiff::encoder::{TiffEncoder, colortype};
 
 use super::{frame::BIT_DEPTHS, *};
+use crate::npy::tests::hex;
 
 fn raw(file: &[u8], format: RawFormat, channel: Option<&str>) -> Result<RawImage, ImageError> {
     let samples = decode(Cursor::new(file), format)?;
     samples.judged(None)?.image(channel)
-}
-
-/// Returns the bytes of pairs of hexadecimal digits.
-pub(in crate::image) fn hex(text: &str) -> Vec<u8> {
-    let digits: Vec<u32> = text.chars().filter_map(|c| c.to_digit(16)).collect();
-    let bytes = digits.chunks_exact(2);
-    bytes.map(|pair| (16 * pair[0] + pair[1]) as u8).collect()
 }
 
 /// Returns the numbers of a text.

@@ -7,9 +7,9 @@ pub use description::*;
 use tem00_coherence::{PatternSum, PolychromaticSpeckle, ResolutionCell, Rows, SpectralLine};
 
 use crate::{
-    numbers::{check_coordinates, check_length, check_variates},
-    pointers::{self, borrow, read, write},
-    status::{Status, call},
+    numbers::{check_length, check_variate, read_point},
+    pointers::{self, borrow},
+    status::Status,
 };
 
 /// The light of a laser with a linewidth in one resolution cell of a camera. It never changes: any number of threads may ask it
@@ -124,14 +124,10 @@ pub unsafe extern "C" fn tem00_bandwidth_create(
     description: *const BandwidthDescription,
     bandwidth: *mut *mut Bandwidth,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    call(|| unsafe {
-        pointers::create("bandwidth", bandwidth, || {
-            let description = borrow("description", description)?;
-            let line = description.line()?;
-            let cell = description.cell(line.wavelength())?;
-            Ok(Bandwidth::new(line, cell))
-        })
+    create!(description: borrow => bandwidth: {
+        let line = description.line()?;
+        let cell = description.cell(line.wavelength())?;
+        Ok(Bandwidth::new(line, cell))
     })
 }
 
@@ -156,12 +152,7 @@ pub unsafe extern "C" fn tem00_bandwidth_describe(
     bandwidth: *const Bandwidth,
     info: *mut BandwidthInfo,
 ) -> Status {
-    call(|| {
-        // SAFETY: by the contract of this function.
-        let result = unsafe { borrow("bandwidth", bandwidth) }?.info();
-        // SAFETY: by the contract of this function.
-        unsafe { write("info", info, result) }
-    })
+    answer!(bandwidth: borrow => info: bandwidth.info())
 }
 
 /// Draws a wave number with a random number from 0 to 1: stratified ones, among the samples of a pixel, leave the least noise.
@@ -175,13 +166,7 @@ pub unsafe extern "C" fn tem00_bandwidth_draw(
     uniform: f64,
     wave: *mut Wave,
 ) -> Status {
-    call(|| {
-        // SAFETY: by the contract of this function.
-        let bandwidth = unsafe { borrow("bandwidth", bandwidth) }?;
-        check_variates("uniform", &[uniform])?;
-        // SAFETY: by the contract of this function.
-        unsafe { write("wave", wave, bandwidth.wave(uniform)) }
-    })
+    answer!(bandwidth: borrow, uniform: check_variate => wave: bandwidth.wave(uniform))
 }
 
 /// Computes the covariance of two frames over the square of the mean intensity: what a motion leaves of the contrast squared.
@@ -197,16 +182,8 @@ pub unsafe extern "C" fn tem00_bandwidth_covariance(
     displacement: *const f64,
     covariance: *mut f64,
 ) -> Status {
-    call(|| {
-        // SAFETY: by the contract of this function.
-        let bandwidth = unsafe { borrow("bandwidth", bandwidth) }?;
-        // SAFETY: by the contract of this function.
-        let displacement: [f64; 2] = unsafe { read("displacement", displacement) }?;
-        check_coordinates("displacement", &displacement)?;
-        let result = bandwidth.speckle().covariance(displacement);
-        // SAFETY: by the contract of this function.
-        unsafe { write("covariance", covariance, result) }
-    })
+    answer!(bandwidth: borrow, displacement: read_point =>
+        covariance: bandwidth.speckle().covariance(displacement))
 }
 
 /// Computes the standard deviation of the position of a laser line over that in light of one wavelength: what counts for its
@@ -224,18 +201,10 @@ pub unsafe extern "C" fn tem00_bandwidth_line_noise_ratio(
     row_height: f64,
     ratio: *mut f64,
 ) -> Status {
-    call(|| {
-        // SAFETY: by the contract of this function.
-        let bandwidth = unsafe { borrow("bandwidth", bandwidth) }?;
-        check_length("row_height", row_height)?;
-        let rows = if row_height > 0.0 {
-            Rows::Height(row_height)
-        } else {
-            Rows::Thin
-        };
-        let result = bandwidth.speckle().line_noise_ratio(rows);
-        // SAFETY: by the contract of this function.
-        unsafe { write("ratio", ratio, result) }
+    answer!(bandwidth: borrow, row_height: check_length => ratio: {
+        let thin = row_height <= 0.0;
+        let rows = if thin { Rows::Thin } else { Rows::Height(row_height) };
+        bandwidth.speckle().line_noise_ratio(rows)
     })
 }
 

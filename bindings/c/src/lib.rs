@@ -18,8 +18,10 @@
 //! What a renderer calls per ray, per pixel or per frame. The physics face of the libraries,
 //! resonators, fits, sums of patterns and the rest, is for Rust and Python.
 
-mod numbers;
+#[macro_use]
 mod pointers;
+
+mod numbers;
 #[cfg(test)]
 mod testing;
 mod threads;

@@ -2,7 +2,7 @@
 
 use core::fmt::Display;
 
-use crate::status::Failure;
+use crate::{pointers::read, status::Failure};
 
 /// The largest coordinate, in metres: up to here no square leaves the range of a double. It is the
 /// number that 1e30 becomes in single precision.
@@ -22,9 +22,19 @@ pub(crate) fn check_coordinates<T: Into<f64> + Copy>(
     })
 }
 
-/// Checks that all numbers are finite.
-pub(crate) fn check_finite(name: &str, values: &[f64]) -> Result<(), Failure> {
-    check_all(name, values, "finite", f64::is_finite)
+/// Checks that a number is finite and within ±1e30.
+pub(crate) fn check_coordinate(name: &str, value: f64) -> Result<f64, Failure> {
+    check_coordinates(name, &[value]).map(|()| value)
+}
+
+/// Checks that a number is finite.
+pub(crate) fn check_number(name: &str, value: f64) -> Result<f64, Failure> {
+    check_all(name, &[value], "finite", f64::is_finite).map(|()| value)
+}
+
+/// Checks a random number.
+pub(crate) fn check_variate(name: &str, value: f64) -> Result<f64, Failure> {
+    check_variates(name, &[value]).map(|()| value)
 }
 
 /// Checks random numbers.
@@ -33,10 +43,9 @@ pub(crate) fn check_variates(name: &str, values: &[f64]) -> Result<(), Failure> 
 }
 
 /// Checks a length that may be zero.
-pub(crate) fn check_length(name: &str, value: f64) -> Result<(), Failure> {
-    check_all(name, &[value], "from 0 to 1e30", |x| {
-        (0.0..=LARGEST).contains(&x)
-    })
+pub(crate) fn check_length(name: &str, value: f64) -> Result<f64, Failure> {
+    let is_length = |x| (0.0..=LARGEST).contains(&x);
+    check_all(name, &[value], "from 0 to 1e30", is_length).map(|()| value)
 }
 
 /// Checks a length of a relief that is finer than a speckle.
@@ -47,9 +56,9 @@ pub(crate) fn check_relief(name: &str, value: f64) -> Result<(), Failure> {
 }
 
 /// Checks a size: a length that is not zero.
-pub(crate) fn check_size(name: &str, value: f64) -> Result<(), Failure> {
-    let allowed = "above 0 and at most 1e30";
-    check_all(name, &[value], allowed, |x| x > 0.0 && x <= LARGEST)
+pub(crate) fn check_size(name: &str, value: f64) -> Result<f64, Failure> {
+    let is_size = |x| x > 0.0 && x <= LARGEST;
+    check_all(name, &[value], "above 0 and at most 1e30", is_size).map(|()| value)
 }
 
 /// Checks that no result is NaN, as it may be where the numbers that lead to it overflow.
@@ -73,6 +82,44 @@ pub(crate) fn unit_vector(name: &str, vector: [f64; 3]) -> Result<[f64; 3], Fail
         return Ok(vector.map(|x| x / length));
     }
     Err(Failure::argument(name, format!("{name} must not be zero")))
+}
+
+/// Reads the coordinates of a point.
+///
+/// # Safety
+///
+/// The pointer is null or valid for `N` numbers.
+pub(crate) unsafe fn read_point<T: Into<f64> + Copy, const N: usize>(
+    name: &str,
+    pointer: *const T,
+) -> Result<[T; N], Failure> {
+    // SAFETY: by the contract of this function.
+    let point = unsafe { read(name, pointer) }?;
+    check_coordinates(name, &point).map(|()| point)
+}
+
+/// Reads a direction of any length as a unit vector.
+///
+/// # Safety
+///
+/// The pointer is null or valid for three numbers.
+pub(crate) unsafe fn read_direction(name: &str, pointer: *const f64) -> Result<[f64; 3], Failure> {
+    // SAFETY: by the contract of this function.
+    unit_vector(name, unsafe { read(name, pointer) }?)
+}
+
+/// Reads random numbers.
+///
+/// # Safety
+///
+/// The pointer is null or valid for `N` numbers.
+pub(crate) unsafe fn read_variates<const N: usize>(
+    name: &str,
+    pointer: *const f64,
+) -> Result<[f64; N], Failure> {
+    // SAFETY: by the contract of this function.
+    let u = unsafe { read(name, pointer) }?;
+    check_variates(name, &u).map(|()| u)
 }
 
 /// Takes no early exit where all is well, so that the loop fills the vector units.

@@ -25,6 +25,43 @@ fn check<T>(name: &str, pointer: *const T, count: usize) -> Result<(), Failure> 
     Ok(())
 }
 
+/// Body of a function that answers one question: reads each argument by the function after its
+/// colon, and writes the answer. What is refused is named by its variable.
+macro_rules! answer {
+    ($($argument:ident: $read:ident),* => $out:ident: $answer:expr) => {
+        // SAFETY: by the contract of the function whose body this is.
+        $crate::status::call(|| unsafe {
+            $(let $argument = $read(stringify!($argument), $argument)?;)*
+            $crate::pointers::write(stringify!($out), $out, $answer)
+        })
+    };
+}
+
+/// Body of a function that makes a handle: as `answer`, but that the last expression is a `Result`,
+/// and nothing is read or made where the handle has no place.
+macro_rules! create {
+    ($($argument:ident: $read:ident),* => $handle:ident: $made:expr) => {
+        // SAFETY: by the contract of the function whose body this is.
+        $crate::status::call(|| unsafe {
+            $crate::pointers::create(stringify!($handle), $handle, || {
+                $(let $argument = $read(stringify!($argument), $argument)?;)*
+                $made
+            })
+        })
+    };
+}
+
+/// Converts structs to others by the names of their fields.
+macro_rules! same_fields {
+    ($($from:ty => $to:ident { $($field:ident),* })*) => {$(
+        impl From<$from> for $to {
+            fn from(from: $from) -> Self {
+                Self { $($field: from.$field.into()),* }
+            }
+        }
+    )*};
+}
+
 /// Borrows what a pointer points to.
 ///
 /// # Safety

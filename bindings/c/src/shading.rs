@@ -14,7 +14,7 @@ pub use speckle::*;
 use tem00_shading::{DVec3, PreparedSpeckle};
 
 use crate::{
-    pointers::{self, Named, columns, records},
+    pointers::{self, Named, columns, read, records},
     status::Failure,
 };
 
@@ -41,6 +41,16 @@ const _: () = assert!(
     size_of::<DVec3>() == size_of::<[f64; 3]>() && align_of::<DVec3>() == align_of::<f64>(),
     "a vector is three numbers"
 );
+
+/// Reads a vector of any components.
+///
+/// # Safety
+///
+/// The pointer is null or valid for three numbers.
+unsafe fn read_vector(name: &str, pointer: *const f64) -> Result<DVec3, Failure> {
+    // SAFETY: by the contract of this function.
+    unsafe { read(name, pointer) }.map(DVec3::from_array)
+}
 
 /// Borrows columns of `count` vectors, each x, y, z one after the other.
 ///

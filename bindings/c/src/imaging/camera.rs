@@ -2,9 +2,9 @@ use tem00_decorrelation::{DVec2, ImagingGeometry, LensData, Refusal, ThickLensDa
 
 use super::Imaging;
 use crate::{
-    numbers::{check_coordinates, check_result, check_size, code},
-    pointers::{borrow, create, read, write},
-    status::{Failure, Status, call},
+    numbers::{check_result, check_size, code, read_point},
+    pointers::borrow,
+    status::{Failure, Status},
 };
 
 /// Meaning of `focus` of a description: the position of the surface in focus before a lens.
@@ -146,35 +146,26 @@ impl LensDescription {
 
 impl PupilDistances {
     fn geometry(&self) -> Result<ImagingGeometry, Failure> {
-        let distances = tem00_decorrelation::PupilDistances {
-            wavelength: self.wavelength,
-            surface_to_pupil: self.surface_to_pupil,
-            pupil_to_image: self.pupil_to_image,
-            pupil_diameter: self.pupil_diameter,
-            pixel_pitch: self.pixel_pitch,
-        };
-        Ok(ImagingGeometry::from_distances(distances)?)
+        Ok(ImagingGeometry::from_distances((*self).into())?)
     }
+}
+
+type Distances = tem00_decorrelation::PupilDistances;
+
+same_fields! {
+    PupilDistances =>
+        Distances { wavelength, surface_to_pupil, pupil_to_image, pupil_diameter, pixel_pitch }
 }
 
 impl ImagingInfo {
     pub(super) fn new(geometry: &ImagingGeometry) -> Self {
-        Self {
-            wavelength: geometry.wavelength(),
-            focal_length: geometry.focal_length(),
-            f_number: geometry.f_number(),
-            working_f_number: geometry.working_f_number(),
-            pupil_diameter: geometry.pupil_diameter(),
-            pupil_magnification: geometry.pupil_magnification(),
-            surface_to_pupil: geometry.surface_to_pupil(),
-            pupil_to_image: geometry.pupil_to_image(),
-            principal_distance: geometry.principal_distance(),
-            magnification: geometry.magnification(),
-            pixel_pitch: geometry.pixel_pitch(),
-            speckle_size: geometry.speckle_size(),
-            speckle_size_in_pixels: geometry.speckle_size_in_pixels(),
-            object_speckle_size: geometry.object_speckle_size(),
-            axial_decorrelation_length: geometry.axial_decorrelation_length(),
+        macro_rules! each {
+            ($($name:ident)*) => { Self { $($name: geometry.$name()),* } };
+        }
+        each! {
+            wavelength focal_length f_number working_f_number pupil_diameter pupil_magnification
+            surface_to_pupil pupil_to_image principal_distance magnification pixel_pitch
+            speckle_size speckle_size_in_pixels object_speckle_size axial_decorrelation_length
         }
     }
 }
@@ -191,12 +182,7 @@ pub unsafe extern "C" fn tem00_imaging_create_lens(
     description: *const LensDescription,
     imaging: *mut *mut Imaging,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    call(|| unsafe {
-        create("imaging", imaging, || {
-            borrow("description", description)?.geometry().map(Imaging)
-        })
-    })
+    create!(description: borrow => imaging: description.geometry().map(Imaging))
 }
 
 /// Creates a camera from its distances and its pupil.
@@ -211,12 +197,7 @@ pub unsafe extern "C" fn tem00_imaging_create_distances(
     distances: *const PupilDistances,
     imaging: *mut *mut Imaging,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    call(|| unsafe {
-        create("imaging", imaging, || {
-            borrow("distances", distances)?.geometry().map(Imaging)
-        })
-    })
+    create!(distances: borrow => imaging: distances.geometry().map(Imaging))
 }
 
 /// Tells what a camera is: among others, the size of its speckle.
@@ -229,12 +210,7 @@ pub unsafe extern "C" fn tem00_imaging_describe(
     imaging: *const Imaging,
     info: *mut ImagingInfo,
 ) -> Status {
-    call(|| {
-        // SAFETY: by the contract of this function.
-        let Imaging(geometry) = unsafe { borrow("imaging", imaging) }?;
-        // SAFETY: by the contract of this function.
-        unsafe { write("info", info, ImagingInfo::new(geometry)) }
-    })
+    answer!(imaging: borrow => info: ImagingInfo::new(&imaging.0))
 }
 
 /// Computes where in a speckle pattern a pixel lies, in pattern samples, not wrapped to its period.
@@ -254,20 +230,16 @@ pub unsafe extern "C" fn tem00_imaging_pattern_coordinate(
     pattern_speckle_size: f64,
     coordinate: *mut f64,
 ) -> Status {
-    call(|| {
-        // SAFETY: by the contract of this function.
-        let Imaging(geometry) = unsafe { borrow("imaging", imaging) }?;
-        // SAFETY: by the contract of this function.
-        let pixel: [f64; 2] = unsafe { read("pixel", pixel) }?;
-        // SAFETY: by the contract of this function.
-        let displacement: [f64; 2] = unsafe { read("displacement", displacement) }?;
-        check_coordinates("pixel", &pixel)?;
-        check_coordinates("displacement", &displacement)?;
-        check_size("pattern_speckle_size", pattern_speckle_size)?;
-        let [pixel, displacement] = [pixel, displacement].map(DVec2::from_array);
-        let result = geometry.pattern_coordinate(pixel, displacement, pattern_speckle_size);
-        check_result("coordinate", &result.to_array())?;
-        // SAFETY: by the contract of this function.
-        unsafe { write("coordinate", coordinate.cast(), result.to_array()) }
-    })
+    let coordinate = coordinate.cast::<[f64; 2]>();
+    answer!(
+        imaging: borrow, pixel: read_point, displacement: read_point,
+        pattern_speckle_size: check_size =>
+        coordinate: {
+            let [pixel, displacement] = [pixel, displacement].map(DVec2::from_array);
+            let imaging = &imaging.0;
+            let found = imaging.pattern_coordinate(pixel, displacement, pattern_speckle_size);
+            check_result("coordinate", &found.to_array())?;
+            found.to_array()
+        }
+    )
 }

@@ -1,10 +1,6 @@
 use tem00_decorrelation::CorrelationLaw;
 
-use crate::{
-    numbers::check_finite,
-    pointers::write,
-    status::{Status, call},
-};
+use crate::{numbers::check_number, status::Status};
 
 /// Computes the intensity correlation left after a pupil displacement, in pupil diameters, and an
 /// axial displacement, in axial decorrelation lengths, where it is largest: looked up at the
@@ -19,11 +15,6 @@ pub unsafe extern "C" fn tem00_correlation(
     axial_shift: f64,
     correlation: *mut f64,
 ) -> Status {
-    call(|| {
-        check_finite("pupil_shift", &[pupil_shift])?;
-        check_finite("axial_shift", &[axial_shift])?;
-        let result = CorrelationLaw::AtPeak.correlation(pupil_shift, axial_shift);
-        // SAFETY: by the contract of this function.
-        unsafe { write("correlation", correlation, result) }
-    })
+    answer!(pupil_shift: check_number, axial_shift: check_number =>
+        correlation: CorrelationLaw::AtPeak.correlation(pupil_shift, axial_shift))
 }

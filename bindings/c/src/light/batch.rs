@@ -1,9 +1,9 @@
-use tem00_beam::NextEventSlices;
+use tem00_beam::{Emitter, NextEventSlices};
 
 use super::{Light, RaySample, SampledEvent};
 use crate::{
     numbers::{check_coordinates, check_variates},
-    pointers::{Borrowed, borrow, columns, records, rows},
+    pointers::{Named, borrow, columns, records, rows},
     status::{Failure, Status, call},
 };
 
@@ -62,110 +62,78 @@ impl Precision for f32 {
 /// Points that are converted at a time.
 const BLOCK: usize = 256;
 
-/// Asks for `M` numbers at each point, in `f64`.
-fn in_blocks<T: Precision, const M: usize>(
-    points: [&[T]; 3],
-    mut answers: [&mut [T]; M],
-    ask: impl Fn([&[f64]; 3], [&mut [f64]; M]),
-) {
-    let mut wide = [[0.0; BLOCK]; 3];
-    let mut out = [[0.0; BLOCK]; M];
-    let count = points[0].len();
+/// Asks a light for `M` numbers at each of `count` points, in `f64` whatever the columns are in.
+///
+/// # Safety
+///
+/// The light is null or valid; each column is null, or points to `count` numbers that nobody else
+/// touches meanwhile.
+unsafe fn ask_columns<T: Precision, const M: usize>(
+    light: *const Light,
+    [x, y, z]: [*const T; 3],
+    count: usize,
+    answers: [Named<*mut T>; M],
+    ask: impl Fn(&dyn Emitter, [&[f64]; 3], [&mut [f64]; M]),
+) -> Result<(), Failure> {
+    let points = [("x", x), ("y", y), ("z", z)];
+    // SAFETY: by the contract of this function.
+    let (light, (read, mut write)) =
+        unsafe { (borrow("light", light)?, columns(count, points, answers)?) };
+    for ((name, _), coordinates) in points.iter().zip(read) {
+        check_coordinates(name, coordinates)?;
+    }
+    let (mut wide, mut out) = ([[0.0; BLOCK]; 3], [[0.0; BLOCK]; M]);
     for start in (0..count).step_by(BLOCK) {
         let length = BLOCK.min(count - start);
-        for (wide, points) in wide.iter_mut().zip(points) {
+        for (wide, points) in wide.iter_mut().zip(read) {
             for (wide, &x) in wide.iter_mut().zip(&points[start..]) {
                 *wide = x.into();
             }
         }
         let block = wide.each_ref().map(|column| &column[..length]);
-        ask(block, out.each_mut().map(|column| &mut column[..length]));
-        for (answers, out) in answers.iter_mut().zip(&out) {
+        let room = out.each_mut().map(|column| &mut column[..length]);
+        light.ask(|light| ask(light, block, room));
+        for (answers, out) in write.iter_mut().zip(&out) {
             for (answer, &x) in answers[start..].iter_mut().zip(&out[..length]) {
                 *answer = T::rounded(x);
             }
         }
     }
-}
-
-const POINT: [&str; 3] = ["x", "y", "z"];
-
-/// Borrows the coordinates of `count` points and `M` columns for the answers.
-///
-/// # Safety
-///
-/// Each pointer is null, or points to `count` numbers that nobody else touches during `'a`.
-unsafe fn points_and_answers<'a, T: Precision, const M: usize>(
-    points: [*const T; 3],
-    count: usize,
-    answers: [(&'static str, *mut T); M],
-) -> Result<Borrowed<'a, T, 3, M>, Failure> {
-    let points = core::array::from_fn(|i| (POINT[i], points[i]));
-    // SAFETY: by the contract of this function.
-    let (points, answers) = unsafe { columns(count, points, answers) }?;
-    for (name, coordinates) in POINT.iter().zip(points) {
-        check_coordinates(name, coordinates)?;
-    }
-    Ok((points, answers))
-}
-
-/// # Safety
-///
-/// As [`points_and_answers`]; the light is null or valid.
-unsafe fn irradiance<T: Precision>(
-    light: *const Light,
-    points: [*const T; 3],
-    count: usize,
-    irradiance: *mut T,
-) -> Status {
-    call(|| {
-        let answers = [("irradiance", irradiance)];
-        // SAFETY: by the contract of this function.
-        let light = unsafe { borrow("light", light) }?;
-        // SAFETY: by the contract of this function.
-        let (points, answers) = unsafe { points_and_answers(points, count, answers) }?;
-        light.ask(|light| {
-            in_blocks(points, answers, |[x, y, z], [out]| {
-                light.irradiance_batch(x, y, z, out);
-            });
-        });
-        Ok(())
-    })
-}
-
-/// # Safety
-///
-/// As [`points_and_answers`]; the light is null or valid.
-unsafe fn next_event<T: Precision>(
-    light: *const Light,
-    points: [*const T; 3],
-    count: usize,
-    [wi_x, wi_y, wi_z, distance, e_perp]: [*mut T; 5],
-) -> Result<(), Failure> {
-    let answers = [
-        ("wi_x", wi_x),
-        ("wi_y", wi_y),
-        ("wi_z", wi_z),
-        ("distance", distance),
-        ("e_perp", e_perp),
-    ];
-    // SAFETY: by the contract of this function.
-    let light = unsafe { borrow("light", light) }?;
-    // SAFETY: by the contract of this function.
-    let (points, answers) = unsafe { points_and_answers(points, count, answers) }?;
-    light.ask(|light| {
-        in_blocks(points, answers, |[x, y, z], answers| {
-            let [wi_x, wi_y, wi_z, distance, e_perp] = answers;
-            let wi = [wi_x, wi_y, wi_z];
-            let out = NextEventSlices {
-                wi,
-                distance,
-                e_perp,
-            };
-            light.next_event_batch(x, y, z, out);
-        });
-    });
     Ok(())
+}
+
+fn irradiances(light: &dyn Emitter, [x, y, z]: [&[f64]; 3], [out]: [&mut [f64]; 1]) {
+    light.irradiance_batch(x, y, z, out);
+}
+
+fn next_events(light: &dyn Emitter, [x, y, z]: [&[f64]; 3], answers: [&mut [f64]; 5]) {
+    let [wi_x, wi_y, wi_z, distance, e_perp] = answers;
+    let wi = [wi_x, wi_y, wi_z];
+    let out = NextEventSlices {
+        wi,
+        distance,
+        e_perp,
+    };
+    light.next_event_batch(x, y, z, out);
+}
+
+/// Body of a function that computes next events into columns.
+macro_rules! next_events {
+    ($light:ident, $points:expr, $count:ident, $events:ident) => {
+        // SAFETY: by the contract of the function whose body this is.
+        call(|| unsafe {
+            let to = borrow(stringify!($events), $events)?;
+            let wi = [("wi_x", to.wi_x), ("wi_y", to.wi_y), ("wi_z", to.wi_z)];
+            let answers = [
+                wi[0],
+                wi[1],
+                wi[2],
+                ("distance", to.distance),
+                ("e_perp", to.e_perp),
+            ];
+            ask_columns($light, $points, $count, answers, next_events)
+        })
+    };
 }
 
 /// Computes the irradiances, in W/m², of planes through `count` points at right angles to the axis:
@@ -186,7 +154,15 @@ pub unsafe extern "C" fn tem00_light_irradiance_batch(
     irradiance: *mut f64,
 ) -> Status {
     // SAFETY: by the contract of this function.
-    unsafe { self::irradiance(light, [x, y, z], count, irradiance) }
+    call(|| unsafe {
+        ask_columns(
+            light,
+            [x, y, z],
+            count,
+            [("irradiance", irradiance)],
+            irradiances,
+        )
+    })
 }
 
 /// As `tem00_light_irradiance_batch`, in single precision.
@@ -204,7 +180,15 @@ pub unsafe extern "C" fn tem00_light_irradiance_batch_f32(
     irradiance: *mut f32,
 ) -> Status {
     // SAFETY: by the contract of this function.
-    unsafe { self::irradiance(light, [x, y, z], count, irradiance) }
+    call(|| unsafe {
+        ask_columns(
+            light,
+            [x, y, z],
+            count,
+            [("irradiance", irradiance)],
+            irradiances,
+        )
+    })
 }
 
 /// Computes the next events at `count` points: the bits of `tem00_light_next_event`.
@@ -224,13 +208,7 @@ pub unsafe extern "C" fn tem00_light_next_event_batch(
     count: usize,
     events: *const NextEventColumns,
 ) -> Status {
-    call(|| {
-        // SAFETY: by the contract of this function.
-        let out = unsafe { borrow("events", events) }?;
-        let out = [out.wi_x, out.wi_y, out.wi_z, out.distance, out.e_perp];
-        // SAFETY: by the contract of this function.
-        unsafe { next_event(light, [x, y, z], count, out) }
-    })
+    next_events!(light, [x, y, z], count, events)
 }
 
 /// As `tem00_light_next_event_batch`, in single precision.
@@ -247,13 +225,7 @@ pub unsafe extern "C" fn tem00_light_next_event_batch_f32(
     count: usize,
     events: *const NextEventColumnsF32,
 ) -> Status {
-    call(|| {
-        // SAFETY: by the contract of this function.
-        let out = unsafe { borrow("events", events) }?;
-        let out = [out.wi_x, out.wi_y, out.wi_z, out.distance, out.e_perp];
-        // SAFETY: by the contract of this function.
-        unsafe { next_event(light, [x, y, z], count, out) }
-    })
+    next_events!(light, [x, y, z], count, events)
 }
 
 /// Draws a direction from the light that arrives at each of `count` points: the bits of
@@ -273,16 +245,13 @@ pub unsafe extern "C" fn tem00_light_next_event_sampled_batch(
     count: usize,
     events: *mut SampledEvent,
 ) -> Status {
-    call(|| {
-        // SAFETY: by the contract of this function.
-        let light = unsafe { borrow("light", light) }?;
-        // SAFETY: by the contract of this function.
-        let points = unsafe { rows::<3>(count, ("points", points)) }?;
-        // SAFETY: by the contract of this function.
-        let u = unsafe { rows::<2>(count, ("u", u)) }?;
+    // SAFETY: by the contract of this function.
+    call(|| unsafe {
+        let light = borrow("light", light)?;
+        let points = rows::<3>(count, ("points", points))?;
+        let u = rows::<2>(count, ("u", u))?;
         let read = [("points", points.as_flattened()), ("u", u.as_flattened())];
-        // SAFETY: by the contract of this function.
-        let events = unsafe { records(count, ("events", events), read) }?;
+        let events = records(count, ("events", events), read)?;
         check_coordinates("points", points.as_flattened())?;
         check_variates("u", u.as_flattened())?;
         light.ask(|light| {
@@ -309,13 +278,11 @@ pub unsafe extern "C" fn tem00_light_sample_ray_batch(
     count: usize,
     rays: *mut RaySample,
 ) -> Status {
-    call(|| {
-        // SAFETY: by the contract of this function.
-        let light = unsafe { borrow("light", light) }?;
-        // SAFETY: by the contract of this function.
-        let u = unsafe { rows::<4>(count, ("u", u)) }?;
-        // SAFETY: by the contract of this function.
-        let rays = unsafe { records(count, ("rays", rays), [("u", u.as_flattened())]) }?;
+    // SAFETY: by the contract of this function.
+    call(|| unsafe {
+        let light = borrow("light", light)?;
+        let u = rows::<4>(count, ("u", u))?;
+        let rays = records(count, ("rays", rays), [("u", u.as_flattened())])?;
         check_variates("u", u.as_flattened())?;
         light.ask(|light| {
             for (&u, ray) in u.iter().zip(rays) {

@@ -7,8 +7,8 @@ use tem00_shading::BeamShape;
 use super::Light;
 use crate::{
     numbers::code,
-    pointers::{borrow, columns, create},
-    status::{Failure, Status, call},
+    pointers::{borrow, columns},
+    status::{Failure, Status},
 };
 
 /// Position and directions of a light, in world coordinates.
@@ -264,12 +264,7 @@ pub unsafe extern "C" fn tem00_light_create_spot(
     description: *const SpotDescription,
     light: *mut *mut Light,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    call(|| unsafe {
-        create("light", light, || {
-            borrow("description", description)?.light()
-        })
-    })
+    create!(description: borrow => light: description.light())
 }
 
 /// Creates an elliptic Gaussian beam.
@@ -284,12 +279,7 @@ pub unsafe extern "C" fn tem00_light_create_elliptic(
     description: *const EllipticDescription,
     light: *mut *mut Light,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    call(|| unsafe {
-        create("light", light, || {
-            borrow("description", description)?.light()
-        })
-    })
+    create!(description: borrow => light: description.light())
 }
 
 /// Creates a laser line.
@@ -304,10 +294,5 @@ pub unsafe extern "C" fn tem00_light_create_line(
     description: *const LineDescription,
     light: *mut *mut Light,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    call(|| unsafe {
-        create("light", light, || {
-            borrow("description", description)?.light()
-        })
-    })
+    create!(description: borrow => light: description.light())
 }

@@ -1,8 +1,5 @@
 use super::{Light, Placed};
-use crate::{
-    pointers::{borrow, write},
-    status::{Status, call},
-};
+use crate::{pointers::borrow, status::Status};
 
 /// The kinds of lights, and the structs of `tem00_beam.h` whose fields they are.
 #[repr(C)]
@@ -64,10 +61,5 @@ pub unsafe extern "C" fn tem00_light_plain_data(
     light: *const Light,
     data: *mut LightData,
 ) -> Status {
-    call(|| {
-        // SAFETY: by the contract of this function.
-        let result = LightData::new(unsafe { borrow("light", light) }?);
-        // SAFETY: by the contract of this function.
-        unsafe { write("data", data, result) }
-    })
+    answer!(light: borrow => data: LightData::new(light))
 }

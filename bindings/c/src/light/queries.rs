@@ -1,10 +1,8 @@
-use tem00_beam::Emitter;
-
 use super::{Light, batch::Precision};
 use crate::{
-    numbers::{check_coordinates, check_length, check_variates, unit_vector},
-    pointers::{borrow, read, write},
-    status::{Failure, Status, call},
+    numbers::{check_length, read_direction, read_point, read_variates},
+    pointers::borrow,
+    status::Status,
 };
 
 /// The light at a point, as one direction and one irradiance; all 0 where it is dark.
@@ -97,49 +95,6 @@ pub struct Bounds {
     pub half_angle: f64,
 }
 
-/// Asks a light a question about a place, and writes the answer.
-///
-/// # Safety
-///
-/// The pointers are null or valid, `point` for three numbers.
-pub(super) unsafe fn ask_at<R>(
-    light: *const Light,
-    point: (&'static str, *const f64),
-    answer: (&'static str, *mut R),
-    question: impl FnOnce(&dyn Emitter, [f64; 3]) -> Result<R, Failure>,
-) -> Status {
-    call(|| {
-        // SAFETY: by the contract of this function.
-        let (light, place) = unsafe { (borrow("light", light)?, read(point.0, point.1)?) };
-        check_coordinates(point.0, &place)?;
-        let result = light.ask(|light| question(light, place))?;
-        // SAFETY: by the contract of this function.
-        unsafe { write(answer.0, answer.1, result) }
-    })
-}
-
-/// Reads a direction of any length as a unit vector.
-///
-/// # Safety
-///
-/// The pointer is null or valid for three numbers.
-pub(super) unsafe fn read_direction(name: &str, pointer: *const f64) -> Result<[f64; 3], Failure> {
-    // SAFETY: by the contract of this function.
-    unit_vector(name, unsafe { read(name, pointer) }?)
-}
-
-/// Reads random numbers.
-///
-/// # Safety
-///
-/// The pointer is null or valid for `N` numbers.
-unsafe fn variates<const N: usize>(pointer: *const f64) -> Result<[f64; N], Failure> {
-    // SAFETY: by the contract of this function.
-    let u = unsafe { read("u", pointer) }?;
-    check_variates("u", &u)?;
-    Ok(u)
-}
-
 /// Computes the irradiance, in W/m², of a plane through `point` at right angles to the axis.
 ///
 /// `point` holds x, y, z in metres.
@@ -153,13 +108,7 @@ pub unsafe extern "C" fn tem00_light_irradiance(
     point: *const f64,
     irradiance: *mut f64,
 ) -> Status {
-    let answer = ("irradiance", irradiance);
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask_at(light, ("point", point), answer, |light, p| {
-            Ok(light.irradiance(p))
-        })
-    }
+    answer!(light: borrow, point: read_point => irradiance: light.ask(|light| light.irradiance(point)))
 }
 
 /// Computes the energy-flow vector at `point`, in W/m²: a surface whose normal n lies on the lit side
@@ -176,16 +125,8 @@ pub unsafe extern "C" fn tem00_light_flux(
     point: *const f64,
     flux: *mut f64,
 ) -> Status {
-    let answer = ("flux", flux.cast::<[f64; 3]>());
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask_at(
-            light,
-            ("point", point),
-            answer,
-            |light, p| Ok(light.flux(p)),
-        )
-    }
+    let flux = flux.cast::<[f64; 3]>();
+    answer!(light: borrow, point: read_point => flux: light.ask(|light| light.flux(point)))
 }
 
 /// Computes the light at `point` as one direction, that of the mean energy flow: a delta light.
@@ -202,12 +143,10 @@ pub unsafe extern "C" fn tem00_light_next_event(
     point: *const f64,
     event: *mut NextEvent,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask_at(light, ("point", point), ("event", event), |light, p| {
-            Ok(light.next_event(p).map(NextEvent::from).unwrap_or_default())
-        })
-    }
+    answer!(light: borrow, point: read_point => event: {
+        let found = light.ask(|light| light.next_event(point));
+        found.map(NextEvent::from).unwrap_or_default()
+    })
 }
 
 /// As `tem00_light_next_event`, in single precision.
@@ -221,15 +160,10 @@ pub unsafe extern "C" fn tem00_light_next_event_f32(
     point: *const f32,
     event: *mut NextEventF32,
 ) -> Status {
-    call(|| {
-        // SAFETY: by the contract of this function.
-        let (light, place) = unsafe { (borrow("light", light)?, read("point", point)?) };
-        let place: [f32; 3] = place;
-        check_coordinates("point", &place)?;
-        let result = light.ask(|light| light.next_event(place.map(f64::from)));
-        let result = result.map(NextEventF32::from).unwrap_or_default();
-        // SAFETY: by the contract of this function.
-        unsafe { write("event", event, result) }
+    answer!(light: borrow, point: read_point => event: {
+        let point: [f32; 3] = point;
+        let found = light.ask(|light| light.next_event(point.map(f64::from)));
+        found.map(NextEventF32::from).unwrap_or_default()
     })
 }
 
@@ -248,13 +182,10 @@ pub unsafe extern "C" fn tem00_light_next_event_sampled(
     u: *const f64,
     event: *mut SampledEvent,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask_at(light, ("point", point), ("event", event), |light, p| {
-            let event = light.next_event_sampled(p, variates(u)?);
-            Ok(event.map(SampledEvent::from).unwrap_or_default())
-        })
-    }
+    answer!(light: borrow, point: read_point, u: read_variates => event: {
+        let drawn = light.ask(|light| light.next_event_sampled(point, u));
+        drawn.map(SampledEvent::from).unwrap_or_default()
+    })
 }
 
 /// Computes the density, per steradian, with which `tem00_light_next_event_sampled` draws the
@@ -272,12 +203,8 @@ pub unsafe extern "C" fn tem00_light_next_event_pdf(
     wi: *const f64,
     pdf: *mut f64,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask_at(light, ("point", point), ("pdf", pdf), |light, p| {
-            Ok(light.next_event_pdf(p, read_direction("wi", wi)?))
-        })
-    }
+    answer!(light: borrow, point: read_point, wi: read_direction =>
+        pdf: light.ask(|light| light.next_event_pdf(point, wi)))
 }
 
 /// Draws a ray that leaves the aperture, with four random numbers `u` in [0, 1).
@@ -293,13 +220,7 @@ pub unsafe extern "C" fn tem00_light_sample_ray(
     u: *const f64,
     ray: *mut RaySample,
 ) -> Status {
-    call(|| {
-        // SAFETY: by the contract of this function.
-        let (light, u) = unsafe { (borrow("light", light)?, variates(u)?) };
-        let drawn = light.ask(|light| light.sample_ray(u));
-        // SAFETY: by the contract of this function.
-        unsafe { write("ray", ray, drawn.into()) }
-    })
+    answer!(light: borrow, u: read_variates => ray: light.ask(|light| light.sample_ray(u)).into())
 }
 
 /// Computes the densities with which `tem00_light_sample_ray` draws the ray through `origin` along
@@ -317,14 +238,8 @@ pub unsafe extern "C" fn tem00_light_ray_pdf(
     direction: *const f64,
     pdf: *mut RayPdf,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask_at(light, ("origin", origin), ("pdf", pdf), |light, o| {
-            Ok(light
-                .ray_pdf(o, read_direction("direction", direction)?)
-                .into())
-        })
-    }
+    answer!(light: borrow, origin: read_point, direction: read_direction =>
+        pdf: light.ask(|light| light.ray_pdf(origin, direction)).into())
 }
 
 /// Computes the radiance, in W/(m² sr), of the ray through `origin` along the direction of travel
@@ -342,15 +257,8 @@ pub unsafe extern "C" fn tem00_light_radiance(
     direction: *const f64,
     radiance: *mut f64,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask_at(
-            light,
-            ("origin", origin),
-            ("radiance", radiance),
-            |light, o| Ok(light.radiance(o, read_direction("direction", direction)?)),
-        )
-    }
+    answer!(light: borrow, origin: read_point, direction: read_direction =>
+        radiance: light.ask(|light| light.radiance(origin, direction)))
 }
 
 /// Computes bounds of the light from the aperture to `distance`, in metres, along its axis.
@@ -364,25 +272,17 @@ pub unsafe extern "C" fn tem00_light_bounds(
     distance: f64,
     bounds: *mut Bounds,
 ) -> Status {
-    call(|| {
-        check_length("distance", distance)?;
-        // SAFETY: by the contract of this function.
-        let light = unsafe { borrow("light", light) }?;
-        let result = light.ask(|light| light.bounds(distance));
-        // SAFETY: by the contract of this function.
-        unsafe { write("bounds", bounds, result.into()) }
-    })
+    answer!(light: borrow, distance: check_length =>
+        bounds: light.ask(|light| light.bounds(distance)).into())
 }
 
-impl From<tem00_beam::NextEvent> for NextEvent {
-    fn from(event: tem00_beam::NextEvent) -> Self {
-        Self {
-            point: event.point,
-            distance: event.distance,
-            wi: event.wi,
-            e_perp: event.e_perp,
-        }
-    }
+same_fields! {
+    tem00_beam::NextEvent => NextEvent { point, distance, wi, e_perp }
+    tem00_beam::SampledEvent => SampledEvent { point, distance, wi, value, pdf }
+    tem00_beam::RaySample => RaySample { origin, flux, direction, cos, pdf }
+    tem00_beam::RayPdf =>
+        RayPdf { position, direction_given_position, direction, position_given_direction }
+    tem00_beam::Bounds => Bounds { min, max, axis, half_angle }
 }
 
 impl From<tem00_beam::NextEvent> for NextEventF32 {
@@ -392,52 +292,6 @@ impl From<tem00_beam::NextEvent> for NextEventF32 {
             distance: f32::rounded(event.distance),
             wi: event.wi.map(f32::rounded),
             e_perp: f32::rounded(event.e_perp),
-        }
-    }
-}
-
-impl From<tem00_beam::SampledEvent> for SampledEvent {
-    fn from(event: tem00_beam::SampledEvent) -> Self {
-        Self {
-            point: event.point,
-            distance: event.distance,
-            wi: event.wi,
-            value: event.value,
-            pdf: event.pdf,
-        }
-    }
-}
-
-impl From<tem00_beam::RaySample> for RaySample {
-    fn from(ray: tem00_beam::RaySample) -> Self {
-        Self {
-            origin: ray.origin,
-            flux: ray.flux,
-            direction: ray.direction,
-            cos: ray.cos,
-            pdf: ray.pdf.into(),
-        }
-    }
-}
-
-impl From<tem00_beam::RayPdf> for RayPdf {
-    fn from(pdf: tem00_beam::RayPdf) -> Self {
-        Self {
-            position: pdf.position,
-            direction_given_position: pdf.direction_given_position,
-            direction: pdf.direction,
-            position_given_direction: pdf.position_given_direction,
-        }
-    }
-}
-
-impl From<tem00_beam::Bounds> for Bounds {
-    fn from(bounds: tem00_beam::Bounds) -> Self {
-        Self {
-            min: bounds.min,
-            max: bounds.max,
-            axis: bounds.axis,
-            half_angle: bounds.half_angle,
         }
     }
 }

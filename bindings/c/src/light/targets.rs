@@ -1,11 +1,8 @@
-use super::{
-    Light,
-    queries::{ask_at, read_direction},
-};
+use super::Light;
 use crate::{
-    numbers::check_coordinates,
-    pointers::{borrow, read, write},
-    status::{Status, call},
+    numbers::{read_direction, read_point},
+    pointers::borrow,
+    status::Status,
 };
 
 /// What a light was made with.
@@ -43,18 +40,12 @@ pub struct ApertureHit {
 /// The pointers are null or valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tem00_light_describe(light: *const Light, info: *mut LightInfo) -> Status {
-    call(|| {
-        // SAFETY: by the contract of this function.
-        let light = unsafe { borrow("light", light) }?;
-        let result = light.ask(|light| LightInfo {
-            origin: light.origin(),
-            power: light.power(),
-            axis: light.axis(),
-            wavelength: light.wavelength(),
-        });
-        // SAFETY: by the contract of this function.
-        unsafe { write("info", info, result) }
-    })
+    answer!(light: borrow => info: light.ask(|light| LightInfo {
+        origin: light.origin(),
+        power: light.power(),
+        axis: light.axis(),
+        wavelength: light.wavelength(),
+    }))
 }
 
 /// Finds the light that a ray from `point` along `wi` meets, for a direction that a material has drawn:
@@ -74,13 +65,10 @@ pub unsafe extern "C" fn tem00_light_hit(
     wi: *const f64,
     hit: *mut ApertureHit,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask_at(light, ("point", point), ("hit", hit), |light, p| {
-            let hit = light.hit(p, read_direction("wi", wi)?);
-            Ok(hit.map(ApertureHit::from).unwrap_or_default())
-        })
-    }
+    answer!(light: borrow, point: read_point, wi: read_direction => hit: {
+        let found = light.ask(|light| light.hit(point, wi));
+        found.map(ApertureHit::from).unwrap_or_default()
+    })
 }
 
 /// Computes a bound of the power, in watts, that reaches the box from `min` to `max`, for a hierarchy
@@ -98,23 +86,10 @@ pub unsafe extern "C" fn tem00_light_power_bound(
     max: *const f64,
     bound: *mut f64,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask_at(light, ("min", min), ("bound", bound), |light, min| {
-            let max: [f64; 3] = read("max", max)?;
-            check_coordinates("max", &max)?;
-            Ok(light.power_bound(min, max))
-        })
-    }
+    answer!(light: borrow, min: read_point, max: read_point =>
+        bound: light.ask(|light| light.power_bound(min, max)))
 }
 
-impl From<tem00_beam::ApertureHit> for ApertureHit {
-    fn from(hit: tem00_beam::ApertureHit) -> Self {
-        Self {
-            point: hit.point,
-            distance: hit.distance,
-            radiance: hit.radiance,
-            pdf: hit.pdf,
-        }
-    }
+same_fields! {
+    tem00_beam::ApertureHit => ApertureHit { point, distance, radiance, pdf }
 }

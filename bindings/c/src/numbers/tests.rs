@@ -4,78 +4,77 @@ const NOT_FINITE: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
 #[test]
 fn numbers_are_refused_exactly_outside_what_is_allowed() {
-    let accepts = |check: &dyn Fn(f64) -> Result<(), Failure>, allowed: &[f64], refused: &[f64]| {
+    type Check = fn(f64) -> Result<(), Failure>;
+    let checks: [(Check, &[f64], &[f64]); 6] = [
+        (
+            |x| check_coordinates("x", &[x]),
+            &[0.0, -1e30, 1e30],
+            &[1.000_001e30, -1.000_001e30],
+        ),
+        (
+            |x| check_number("x", x).map(drop),
+            &[0.0, f64::MAX, -f64::MAX],
+            &[],
+        ),
+        (
+            |x| check_variate("x", x).map(drop),
+            &[0.0, 1.0 - f64::EPSILON],
+            &[1.0, -1e-300],
+        ),
+        (
+            |x| check_length("x", x).map(drop),
+            &[0.0, 1e30],
+            &[-1e-300, 1.000_001e30],
+        ),
+        (
+            |x| check_size("x", x).map(drop),
+            &[1e-300, 1e30],
+            &[0.0, -1e-300, 1.000_001e30],
+        ),
+        (
+            |x| unit_vector("x", [0.0, 0.6 * x, 0.8 * x]).map(drop),
+            &[1.0, -1e-300, 1e-300, 1e30],
+            &[0.0, 2e30],
+        ),
+    ];
+    for (i, (check, allowed, refused)) in checks.into_iter().enumerate() {
         for &x in allowed {
-            assert_eq!(check(x), Ok(()), "{x:e} is allowed");
+            assert_eq!(check(x), Ok(()), "check {i} allows {x:e}");
         }
         for &x in refused.iter().chain(&NOT_FINITE) {
-            assert!(check(x).is_err(), "{x:e} is not allowed");
+            assert!(check(x).is_err(), "check {i} refuses {x:e}");
         }
-    };
-    accepts(
-        &|x| check_coordinates("x", &[x]),
-        &[0.0, -1e30, 1e30],
-        &[1.000_001e30, -1.000_001e30],
-    );
-    accepts(
-        &|x| check_finite("x", &[x]),
-        &[0.0, f64::MAX, -f64::MAX],
-        &[],
-    );
-    accepts(
-        &|x| check_variates("x", &[x]),
-        &[0.0, 1.0 - f64::EPSILON],
-        &[1.0, -1e-300],
-    );
-    accepts(
-        &|x| check_length("x", x),
-        &[0.0, 1e30],
-        &[-1e-300, 1.000_001e30],
-    );
-    accepts(
-        &|x| check_size("x", x),
-        &[1e-300, 1e30],
-        &[0.0, -1e-300, 1.000_001e30],
-    );
-    accepts(
-        &|x| unit_vector("x", [0.0, 0.6 * x, 0.8 * x]).map(|_| ()),
-        &[1.0, -1e-300, 1e-300, 1e30],
-        &[0.0, 2e30],
-    );
+    }
 }
 
 #[test]
 fn a_refusal_names_the_parameter_the_place_the_value_and_what_is_allowed() {
-    let message = |result: Result<(), Failure>| result.unwrap_err().message;
-    assert_eq!(
-        message(check_coordinates("x", &[1.0, 2.0, f32::NAN])),
-        "x[2] must be finite and within ±1e30, got NaN",
-        "of a column"
-    );
-    assert_eq!(
-        message(check_length("distance", -2.5)),
-        "distance must be from 0 to 1e30, got -2.5e0",
-        "of a number"
-    );
-    assert_eq!(
-        message(unit_vector("wi", [0.0; 3]).map(|_| ())),
-        "wi must not be zero",
-        "of a vector"
-    );
-}
-
-#[test]
-fn codes_without_a_meaning_are_refused() {
-    assert_eq!(code("path", 1, &['a', 'b']), Ok('b'), "a code");
-    for number in [2, u32::MAX] {
-        let failure = code("path", number, &['a', 'b']).unwrap_err();
-        assert_eq!(failure.parameter, "path", "of {number}");
-        assert_eq!(
-            failure.message,
-            format!("path must be 0 to 1, got {number}"),
-            "of {number}"
-        );
+    let cases = [
+        (
+            check_coordinates("x", &[1.0, 2.0, f32::NAN]),
+            "x[2] must be finite and within ±1e30, got NaN",
+        ),
+        (
+            check_length("distance", -2.5).map(drop),
+            "distance must be from 0 to 1e30, got -2.5e0",
+        ),
+        (unit_vector("wi", [0.0; 3]).map(drop), "wi must not be zero"),
+        (
+            code("path", 2, &['a', 'b']).map(drop),
+            "path must be 0 to 1, got 2",
+        ),
+        (
+            code("path", u32::MAX, &['a', 'b']).map(drop),
+            "path must be 0 to 1, got 4294967295",
+        ),
+    ];
+    for (result, message) in cases {
+        let failure = result.unwrap_err();
+        assert_eq!(failure.message, message);
+        let name = message.split(['[', ' ']).next().unwrap();
+        assert_eq!(failure.parameter, name, "{message}");
     }
+    assert_eq!(code("path", 1, &['a', 'b']), Ok('b'), "a code");
 }
 
 #[test]

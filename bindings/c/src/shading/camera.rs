@@ -2,9 +2,9 @@ use tem00_shading::{DVec2, DVec3, ShadingError};
 
 use super::Camera;
 use crate::{
-    numbers::check_coordinates,
-    pointers::{borrow, create, read, write},
-    status::{Failure, Status, call},
+    numbers::read_point,
+    pointers::borrow,
+    status::{Failure, Status},
 };
 
 /// Parameters of a camera: a thin lens, and a sensor behind it. With 0 in the last three fields the
@@ -83,12 +83,7 @@ pub unsafe extern "C" fn tem00_camera_create(
     description: *const CameraDescription,
     camera: *mut *mut Camera,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    call(|| unsafe {
-        create("camera", camera, || {
-            borrow("description", description)?.camera()
-        })
-    })
+    create!(description: borrow => camera: description.camera())
 }
 
 /// Computes where in the image a point is seen, to be compared with where the renderer's own camera
@@ -106,17 +101,10 @@ pub unsafe extern "C" fn tem00_camera_project(
     point: *const f64,
     pixel: *mut f64,
 ) -> Status {
-    call(|| {
-        // SAFETY: by the contract of this function.
-        let Camera(camera) = unsafe { borrow("camera", camera) }?;
-        // SAFETY: by the contract of this function.
-        let point: [f64; 3] = unsafe { read("point", point) }?;
-        check_coordinates("point", &point)?;
-        let result = camera.project(DVec3::from_array(point)).ok_or_else(|| {
-            let message = format!("point must be in sight of the camera, got {point:?}");
-            Failure::argument("point", message)
-        })?;
-        // SAFETY: by the contract of this function.
-        unsafe { write("pixel", pixel.cast(), result.to_array()) }
+    let pixel = pixel.cast::<[f64; 2]>();
+    answer!(camera: borrow, point: read_point => pixel: {
+        let seen = camera.0.project(DVec3::from_array(point));
+        let message = format!("point must be in sight of the camera, got {point:?}");
+        seen.ok_or_else(|| Failure::argument("point", message))?.to_array()
     })
 }

@@ -1,10 +1,10 @@
 use tem00_decorrelation::pupil_overlap_correlation;
-use tem00_shading::{DVec2, DVec3};
+use tem00_shading::DVec2;
 
-use super::{Speckle, SpeckleFrame, speckle::BodyMotion, vectors_and_factors};
+use super::{Speckle, SpeckleFrame, read_vector, speckle::BodyMotion, vectors_and_factors};
 use crate::{
-    pointers::{borrow, create, read, write},
-    status::{Failure, Status, call},
+    pointers::{borrow, read},
+    status::{Status, call},
 };
 
 /// What has become of the speckle at a point since the reference state.
@@ -49,38 +49,8 @@ pub unsafe extern "C" fn tem00_speckle_frame_create(
     motion: *const BodyMotion,
     frame: *mut *mut SpeckleFrame,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    call(|| unsafe {
-        create("frame", frame, || {
-            let Speckle { prepared, .. } = borrow("speckle", speckle)?;
-            let motion = borrow("motion", motion)?.motion("motion")?;
-            Ok(SpeckleFrame(prepared.frame(&motion)?))
-        })
-    })
-}
-
-/// Asks a frame about a point of a surface, and writes the answer.
-///
-/// # Safety
-///
-/// The pointers are null or valid, `point` and `normal` for three numbers.
-unsafe fn ask_at<R>(
-    frame: *const SpeckleFrame,
-    point: *const f64,
-    normal: *const f64,
-    answer: (&'static str, *mut R),
-    question: impl FnOnce(&tem00_shading::SpeckleFrame, DVec3, DVec3) -> Result<R, Failure>,
-) -> Status {
-    call(|| {
-        // SAFETY: by the contract of this function.
-        let SpeckleFrame(frame) = unsafe { borrow("frame", frame) }?;
-        // SAFETY: by the contract of this function.
-        let point = DVec3::from_array(unsafe { read("point", point) }?);
-        // SAFETY: by the contract of this function.
-        let normal = DVec3::from_array(unsafe { read("normal", normal) }?);
-        // SAFETY: by the contract of this function.
-        unsafe { write(answer.0, answer.1, question(frame, point, normal)?) }
-    })
+    create!(speckle: borrow, motion: borrow =>
+        frame: Ok(SpeckleFrame(speckle.prepared.frame(&motion.motion("motion")?)?)))
 }
 
 /// Computes the factor, with mean 1, by which speckle multiplies the radiance that a point of a
@@ -100,13 +70,7 @@ pub unsafe extern "C" fn tem00_speckle_frame_factor(
     normal: *const f64,
     factor: *mut f64,
 ) -> Status {
-    let answer = ("factor", factor);
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask_at(frame, point, normal, answer, |frame, point, normal| {
-            Ok(frame.factor(point, normal))
-        })
-    }
+    answer!(frame: borrow, point: read_vector, normal: read_vector => factor: frame.0.factor(point, normal))
 }
 
 /// Computes the factor at a point that a camera sample sees at an image point: out of focus it lies
@@ -126,14 +90,8 @@ pub unsafe extern "C" fn tem00_speckle_frame_factor_at(
     normal: *const f64,
     factor: *mut f64,
 ) -> Status {
-    let answer = ("factor", factor);
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask_at(frame, point, normal, answer, |frame, point, normal| {
-            let pixel = DVec2::from_array(read("pixel", pixel)?);
-            Ok(frame.factor_at(pixel, point, normal))
-        })
-    }
+    answer!(frame: borrow, pixel: read, point: read_vector, normal: read_vector =>
+        factor: frame.0.factor_at(DVec2::from_array(pixel), point, normal))
 }
 
 /// Computes the factors at `count` points: the bits of `tem00_speckle_frame_factor`. Neighbours in
@@ -177,13 +135,8 @@ pub unsafe extern "C" fn tem00_speckle_frame_average(
     normal: *const f64,
     average: *mut f64,
 ) -> Status {
-    let answer = ("average", average);
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask_at(frame, point, normal, answer, |frame, point, normal| {
-            Ok(frame.average(point, normal))
-        })
-    }
+    answer!(frame: borrow, point: read_vector, normal: read_vector =>
+        average: frame.0.average(point, normal))
 }
 
 /// Tells what has become of the speckle at a point since the reference state; it is new where the
@@ -199,11 +152,6 @@ pub unsafe extern "C" fn tem00_speckle_frame_shift(
     normal: *const f64,
     shift: *mut SpeckleShift,
 ) -> Status {
-    let answer = ("shift", shift);
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask_at(frame, point, normal, answer, |frame, point, normal| {
-            Ok(frame.shift(point, normal).into())
-        })
-    }
+    answer!(frame: borrow, point: read_vector, normal: read_vector =>
+        shift: frame.0.shift(point, normal).into())
 }

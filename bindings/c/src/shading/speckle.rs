@@ -6,7 +6,7 @@ use tem00_shading::{DMat3, DVec3, Motion, PreparedSpeckle};
 use super::{Camera, Speckle, vectors, vectors_and_factors};
 use crate::{
     light::Light,
-    pointers::{borrow, columns, create, write},
+    pointers::{borrow, columns},
     status::{Failure, Status, call},
     threads::on_threads,
 };
@@ -163,14 +163,8 @@ pub unsafe extern "C" fn tem00_speckle_create(
     description: *const SpeckleDescription,
     speckle: *mut *mut Speckle,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    call(|| unsafe {
-        create("speckle", speckle, || {
-            let (camera, light) = (borrow("camera", camera)?, borrow("light", light)?);
-            let prepared = borrow("description", description)?.prepare(camera, light)?;
-            Ok(Speckle::from(prepared))
-        })
-    })
+    create!(camera: borrow, light: borrow, description: borrow =>
+        speckle: description.prepare(camera, light).map(Speckle::from))
 }
 
 /// Tells what was chosen for speckle.
@@ -183,16 +177,10 @@ pub unsafe extern "C" fn tem00_speckle_describe(
     speckle: *const Speckle,
     info: *mut SpeckleInfo,
 ) -> Status {
-    call(|| {
-        // SAFETY: by the contract of this function.
-        let Speckle { prepared, summary } = unsafe { borrow("speckle", speckle) }?;
-        let result = SpeckleInfo {
-            summary: summary.as_ptr(),
-            speckle_size: prepared.geometry().speckle_size_in_pixels(),
-            memory_bytes: prepared.memory_bytes(),
-        };
-        // SAFETY: by the contract of this function.
-        unsafe { write("info", info, result) }
+    answer!(speckle: borrow => info: SpeckleInfo {
+        summary: speckle.summary.as_ptr(),
+        speckle_size: speckle.prepared.geometry().speckle_size_in_pixels(),
+        memory_bytes: speckle.prepared.memory_bytes(),
     })
 }
 

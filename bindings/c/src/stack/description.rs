@@ -3,8 +3,8 @@ use tem00_speckle::{PupilField, SpeckleError, SpeckleStack, StackOptions, StackP
 use super::Stack;
 use crate::{
     numbers::code,
-    pointers::{borrow, create, write},
-    status::{Failure, Status, call},
+    pointers::borrow,
+    status::{Failure, Status},
     threads::on_threads,
 };
 
@@ -177,12 +177,7 @@ pub unsafe extern "C" fn tem00_stack_create(
     description: *const StackDescription,
     stack: *mut *mut Stack,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    call(|| unsafe {
-        create("stack", stack, || {
-            borrow("description", description)?.stack()
-        })
-    })
+    create!(description: borrow => stack: description.stack())
 }
 
 /// Chooses a stack that repeats nothing in the region and takes no more memory than allowed: writes
@@ -196,10 +191,5 @@ pub unsafe extern "C" fn tem00_stack_plan(
     needs: *const StackNeeds,
     description: *mut StackDescription,
 ) -> Status {
-    call(|| {
-        // SAFETY: by the contract of this function.
-        let plan = unsafe { borrow("needs", needs) }?.plan()?;
-        // SAFETY: by the contract of this function.
-        unsafe { write("description", description, plan) }
-    })
+    answer!(needs: borrow => description: needs.plan()?)
 }

@@ -1,12 +1,10 @@
-use tem00_speckle::SpeckleStack;
-
 use super::{
     Stack,
     description::{SlicePath, path_numbers},
 };
 use crate::{
-    numbers::{check_coordinates, check_finite, check_length},
-    pointers::{borrow, columns, read, write},
+    numbers::{check_coordinate, check_coordinates, check_length, check_number, read_point},
+    pointers::{Named, borrow, columns, read},
     status::{Failure, Status, call},
 };
 
@@ -49,56 +47,16 @@ impl StackInfo {
     }
 }
 
-/// Asks a stack a question, and writes the answer.
-///
-/// # Safety
-///
-/// The pointers are null or valid.
-unsafe fn ask<R>(
-    stack: *const Stack,
-    answer: (&'static str, *mut R),
-    question: impl FnOnce(&Stack) -> Result<R, Failure>,
-) -> Status {
-    call(|| {
-        // SAFETY: by the contract of this function.
-        let result = question(unsafe { borrow("stack", stack) }?)?;
-        // SAFETY: by the contract of this function.
-        unsafe { write(answer.0, answer.1, result) }
-    })
-}
-
-/// Asks a stack about a place.
-///
-/// # Safety
-///
-/// The pointers are null or valid.
-unsafe fn ask_at<R>(
-    stack: *const Stack,
-    place: [f64; 3],
-    answer: (&'static str, *mut R),
-    question: impl FnOnce(&SpeckleStack) -> R,
-) -> Status {
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask(stack, answer, |Stack(stack)| {
-            for (name, value) in ["x", "y", "u"].iter().zip(place) {
-                check_coordinates(name, &[value])?;
-            }
-            Ok(question(stack))
-        })
+impl Stack {
+    /// The index of a slice, checked.
+    fn slice(&self, slice: usize) -> Result<usize, Failure> {
+        let last = self.0.slice_count() - 1;
+        if slice <= last {
+            return Ok(slice);
+        }
+        let message = format!("slice must be 0 to {last}, got {slice}");
+        Err(Failure::argument("slice", message))
     }
-}
-
-fn check_slice(name: &str, Stack(stack): &Stack, index: usize) -> Result<usize, Failure> {
-    let count = stack.slice_count();
-    if index < count {
-        return Ok(index);
-    }
-    let last = count - 1;
-    Err(Failure::argument(
-        name,
-        format!("{name} must be 0 to {last}, got {index}"),
-    ))
 }
 
 /// Tells what a stack is.
@@ -108,8 +66,7 @@ fn check_slice(name: &str, Stack(stack): &Stack, index: usize) -> Result<usize, 
 /// The pointers are null or valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tem00_stack_describe(stack: *const Stack, info: *mut StackInfo) -> Status {
-    // SAFETY: by the contract of this function.
-    unsafe { ask(stack, ("info", info), |stack| Ok(StackInfo::new(stack))) }
+    answer!(stack: borrow => info: StackInfo::new(stack))
 }
 
 /// Looks up the intensity, with mean 1, at (`x`, `y`) in samples and `u` in slices.
@@ -125,13 +82,8 @@ pub unsafe extern "C" fn tem00_stack_intensity(
     u: f64,
     intensity: *mut f64,
 ) -> Status {
-    let answer = ("intensity", intensity);
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask_at(stack, [x, y, u], answer, |stack| {
-            stack.intensity_at(x, y, u)
-        })
-    }
+    answer!(stack: borrow, x: check_coordinate, y: check_coordinate, u: check_coordinate =>
+        intensity: stack.0.intensity_at(x, y, u))
 }
 
 /// Looks up the amplitude whose squared magnitude is the intensity, for light whose fields add: `amplitude` holds its
@@ -150,14 +102,11 @@ pub unsafe extern "C" fn tem00_stack_amplitude(
     u: f64,
     amplitude: *mut f64,
 ) -> Status {
-    let answer = ("amplitude", amplitude.cast::<[f64; 2]>());
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask_at(stack, [x, y, u], answer, |stack| {
-            let amplitude = stack.amplitude_at(x, y, u);
-            [amplitude.re, amplitude.im]
-        })
-    }
+    let amplitude = amplitude.cast::<[f64; 2]>();
+    answer!(stack: borrow, x: check_coordinate, y: check_coordinate, u: check_coordinate => amplitude: {
+        let found = stack.0.amplitude_at(x, y, u);
+        [found.re, found.im]
+    })
 }
 
 /// Looks up the intensities at `count` points: the bits of `tem00_stack_intensity`. Points close to
@@ -179,15 +128,11 @@ pub unsafe extern "C" fn tem00_stack_intensity_batch(
 ) -> Status {
     call(|| {
         // SAFETY: by the contract of this function.
-        let Stack(stack) = unsafe { borrow("stack", stack) }?;
-        let coordinates = [("x", x), ("y", y), ("u", u)];
-        // SAFETY: by the contract of this function.
-        let ([x, y, u], [out]) =
-            unsafe { columns(count, coordinates, [("intensity", intensity)]) }?;
-        for ((name, _), values) in coordinates.iter().zip([x, y, u]) {
-            check_coordinates(name, values)?;
+        unsafe {
+            let stack = &borrow("stack", stack)?.0;
+            let ([x, y, u], out) = places([x, y, u], count, ("intensity", intensity))?;
+            stack.intensity_batch(x, y, u, out);
         }
-        stack.intensity_batch(x, y, u, out);
         Ok(())
     })
 }
@@ -209,19 +154,15 @@ pub unsafe extern "C" fn tem00_stack_intensity_batch_f32(
     count: usize,
     intensity: *mut f32,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    unsafe {
-        single(
-            stack,
-            [x, y, u],
-            count,
-            ("intensity", intensity),
-            |stack, [x, y, u], out| {
-                stack.intensity_batch_f32(x, y, u, out);
-                Ok(())
-            },
-        )
-    }
+    call(|| {
+        // SAFETY: by the contract of this function.
+        unsafe {
+            let stack = &borrow("stack", stack)?.0;
+            let ([x, y, u], out) = places([x, y, u], count, ("intensity", intensity))?;
+            stack.intensity_batch_f32(x, y, u, out);
+        }
+        Ok(())
+    })
 }
 
 /// Computes the means of the intensity over boxes about `count` points, in single precision: those of
@@ -242,44 +183,14 @@ pub unsafe extern "C" fn tem00_stack_average_batch_f32(
     count: usize,
     average: *mut f32,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    unsafe {
-        single(
-            stack,
-            [x, y, u],
-            count,
-            ("average", average),
-            |stack, [x, y, u], out| {
-                let size = read_size(size)?;
-                stack.average_batch_f32([x, y], size, u, out);
-                Ok(())
-            },
-        )
-    }
-}
-
-/// Asks a stack about `count` places in single precision.
-///
-/// # Safety
-///
-/// The pointers are null or valid for `count` numbers.
-unsafe fn single(
-    stack: *const Stack,
-    [x, y, u]: [*const f32; 3],
-    count: usize,
-    answer: (&'static str, *mut f32),
-    question: impl FnOnce(&SpeckleStack, [&[f32]; 3], &mut [f32]) -> Result<(), Failure>,
-) -> Status {
     call(|| {
         // SAFETY: by the contract of this function.
-        let Stack(stack) = unsafe { borrow("stack", stack) }?;
-        let names = [("x", x), ("y", y), ("u", u)];
-        // SAFETY: by the contract of this function.
-        let (coordinates, [out]) = unsafe { columns(count, names, [answer]) }?;
-        for ((name, _), values) in names.iter().zip(coordinates) {
-            check_coordinates(name, values)?;
+        unsafe {
+            let stack = &borrow("stack", stack)?.0;
+            let ([x, y, u], out) = places([x, y, u], count, ("average", average))?;
+            stack.average_batch_f32([x, y], read_size("size", size)?, u, out);
         }
-        question(stack, coordinates, out)
+        Ok(())
     })
 }
 
@@ -288,12 +199,29 @@ unsafe fn single(
 /// # Safety
 ///
 /// The pointer is null or valid for two numbers.
-unsafe fn read_size(size: *const f64) -> Result<[f64; 2], Failure> {
+unsafe fn read_size(name: &str, size: *const f64) -> Result<[f64; 2], Failure> {
     // SAFETY: by the contract of this function.
-    let size: [f64; 2] = unsafe { read("size", size) }?;
-    size.iter()
-        .try_for_each(|side| check_length("size", *side))?;
-    Ok(size)
+    let [width, height] = unsafe { read(name, size) }?;
+    Ok([check_length(name, width)?, check_length(name, height)?])
+}
+
+/// Borrows `count` places and room for as many answers.
+///
+/// # Safety
+///
+/// The pointers are null or valid for `count` numbers that nobody else touches during `'a`.
+unsafe fn places<'a, T: Copy + Into<f64>>(
+    places: [*const T; 3],
+    count: usize,
+    answer: Named<*mut T>,
+) -> Result<([&'a [T]; 3], &'a mut [T]), Failure> {
+    let [x, y, u] = places;
+    // SAFETY: by the contract of this function.
+    let (read, [answers]) = unsafe { columns(count, [("x", x), ("y", y), ("u", u)], [answer]) }?;
+    for (name, values) in ["x", "y", "u"].iter().zip(read) {
+        check_coordinates(name, values)?;
+    }
+    Ok((read, answers))
 }
 
 /// Computes the mean of the intensity over a box about `centre`, at `u`: what a pixel sees whose whole
@@ -313,16 +241,8 @@ pub unsafe extern "C" fn tem00_stack_average(
     u: f64,
     average: *mut f64,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask(stack, ("average", average), |Stack(stack)| {
-            let centre: [f64; 2] = read("centre", centre)?;
-            check_coordinates("centre", &centre)?;
-            let size = read_size(size)?;
-            check_coordinates("u", &[u])?;
-            Ok(stack.average_over(centre, size, u))
-        })
-    }
+    answer!(stack: borrow, centre: read_point, size: read_size, u: check_coordinate =>
+        average: stack.0.average_over(centre, size, u))
 }
 
 /// Computes the coordinate u, in slices, at which the intensity has a given `correlation` to that at
@@ -337,13 +257,7 @@ pub unsafe extern "C" fn tem00_stack_coordinate_of(
     correlation: f64,
     u: *mut f64,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask(stack, ("u", u), |Stack(stack)| {
-            check_finite("correlation", &[correlation])?;
-            Ok(stack.coordinate_of(correlation))
-        })
-    }
+    answer!(stack: borrow, correlation: check_number => u: stack.0.coordinate_of(correlation))
 }
 
 /// Computes the correlation of the intensities at u = 0 and u = `distance`, in slices: the inverse of
@@ -358,13 +272,8 @@ pub unsafe extern "C" fn tem00_stack_correlation_at(
     distance: f64,
     correlation: *mut f64,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask(stack, ("correlation", correlation), |Stack(stack)| {
-            check_coordinates("distance", &[distance])?;
-            Ok(stack.correlation_at(distance))
-        })
-    }
+    answer!(stack: borrow, distance: check_coordinate =>
+        correlation: stack.0.correlation_at(distance))
 }
 
 /// Computes the correlation of the intensities at two coordinates u and v, on slices or between, exactly.
@@ -379,14 +288,8 @@ pub unsafe extern "C" fn tem00_stack_correlation_between(
     v: f64,
     correlation: *mut f64,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask(stack, ("correlation", correlation), |Stack(stack)| {
-            check_coordinates("u", &[u])?;
-            check_coordinates("v", &[v])?;
-            Ok(stack.correlation_between(u, v))
-        })
-    }
+    answer!(stack: borrow, u: check_coordinate, v: check_coordinate =>
+        correlation: stack.0.correlation_between(u, v))
 }
 
 /// Gives the coefficients of a slice, for upload to a GPU: width * height complex numbers row by row,
@@ -404,14 +307,9 @@ pub unsafe extern "C" fn tem00_stack_coefficients(
     slice: usize,
     coefficients: *mut *const f32,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask(stack, ("coefficients", coefficients), |stack| {
-            let slice = check_slice("slice", stack, slice)?;
-            // A complex number is its two parts, one after the other.
-            Ok(stack.0.coefficients(slice).values().as_ptr().cast())
-        })
-    }
+    // A complex number is its two parts, one after the other.
+    answer!(stack: borrow =>
+        coefficients: stack.0.coefficients(stack.slice(slice)?).values().as_ptr().cast())
 }
 
 /// Gives the place of the pupil of a slice, in its diameters: `offset` holds x, y.
@@ -425,10 +323,6 @@ pub unsafe extern "C" fn tem00_stack_offset(
     slice: usize,
     offset: *mut f64,
 ) -> Status {
-    // SAFETY: by the contract of this function.
-    unsafe {
-        ask(stack, ("offset", offset.cast::<[f64; 2]>()), |stack| {
-            Ok(stack.0.offset(check_slice("slice", stack, slice)?))
-        })
-    }
+    let offset = offset.cast::<[f64; 2]>();
+    answer!(stack: borrow => offset: stack.0.offset(stack.slice(slice)?))
 }

@@ -20,10 +20,11 @@
 
 #[macro_use]
 mod pointers;
+#[cfg(test)]
+#[macro_use]
+mod testing;
 
 mod numbers;
-#[cfg(test)]
-mod testing;
 mod threads;
 
 // The order of the header.

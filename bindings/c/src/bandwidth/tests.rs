@@ -1,7 +1,11 @@
 //! The functions against the library that they call.
 #![expect(clippy::float_cmp, reason = "the same bits are asked for")]
 
-use core::{f64::consts::TAU, ptr, slice};
+use core::{
+    f64::consts::TAU,
+    ptr::{null, null_mut},
+    slice,
+};
 
 use tem00_decorrelation::{
     CameraFrame, Configuration, ConfigurationData, DVec3, Illumination, ImagingGeometry,
@@ -9,17 +13,14 @@ use tem00_decorrelation::{
 };
 
 use super::*;
-use crate::{
-    status::Status,
-    testing::{each_is_refused, last_parameter, number_is_refused, pointer_is_refused},
-};
+use crate::testing::{Owned, each_is_refused};
 
 /// Head-on under 30°.
 const DESCRIPTION: BandwidthDescription = BandwidthDescription {
     wavelength: 450e-9,
     linewidth: 20e-9,
     shape: LineShape::Gaussian as u32,
-    peaks: ptr::null(),
+    peaks: null(),
     peak_count: 0,
     to_source: [0.0, 0.0, 1.0],
     source_half_angle: 0.0,
@@ -30,71 +31,13 @@ const DESCRIPTION: BandwidthDescription = BandwidthDescription {
     correlation_length: 0.0,
 };
 
-/// A handle that frees itself.
-struct Owned(*mut Bandwidth);
-
-impl Drop for Owned {
-    fn drop(&mut self) {
-        // SAFETY: it was created by the interface and is not used again.
-        unsafe { tem00_bandwidth_destroy(self.0) };
-    }
+fn made(description: &BandwidthDescription) -> Owned<Bandwidth> {
+    Owned::new(tem00_bandwidth_create, description, tem00_bandwidth_destroy)
 }
 
-fn create(description: &BandwidthDescription) -> (Status, Owned) {
-    let mut handle = ptr::null_mut();
-    // SAFETY: the pointers are valid.
-    let status = unsafe { tem00_bandwidth_create(description, &raw mut handle) };
-    (status, Owned(handle))
-}
-
-fn made(description: &BandwidthDescription) -> Owned {
-    let (status, owned) = create(description);
-    assert_eq!(status, Status::Ok, "{}", last_parameter());
-    owned
-}
-
-/// Asks the interface, which must succeed.
-fn answer<R>(mut result: R, question: impl FnOnce(*mut R) -> Status) -> R {
-    let status = question(&raw mut result);
-    assert_eq!(status, Status::Ok, "{}", last_parameter());
-    result
-}
-
-const NO_WAVE: Wave = Wave {
-    wave_number: f64::NAN,
-    pupil_shift: f64::NAN,
-    phase_per_height: f64::NAN,
-};
-
-impl Owned {
+impl Owned<Bandwidth> {
     fn info(&self) -> BandwidthInfo {
-        // SAFETY: the handle is valid.
-        let unknown = unsafe { &*self.0 }.info();
-        // SAFETY: the handle is valid.
-        answer(unknown, |info| unsafe {
-            tem00_bandwidth_describe(self.0, info)
-        })
-    }
-
-    fn draw(&self, uniform: f64) -> Wave {
-        // SAFETY: the handle is valid.
-        answer(NO_WAVE, |wave| unsafe {
-            tem00_bandwidth_draw(self.0, uniform, wave)
-        })
-    }
-
-    fn covariance(&self, displacement: [f64; 2]) -> f64 {
-        // SAFETY: the pointers are valid.
-        answer(f64::NAN, |covariance| unsafe {
-            tem00_bandwidth_covariance(self.0, displacement.as_ptr(), covariance)
-        })
-    }
-
-    fn line_noise_ratio(&self, row_height: f64) -> f64 {
-        // SAFETY: the handle is valid.
-        answer(f64::NAN, |ratio| unsafe {
-            tem00_bandwidth_line_noise_ratio(self.0, row_height, ratio)
-        })
+        ask!(tem00_bandwidth_describe(self.handle))
     }
 
     fn patterns(&self) -> &[f64] {
@@ -119,21 +62,24 @@ fn answers_are_those_of_the_library() {
         line: &line,
         cell: &cell,
     };
-    let info = owned.info();
+    let (handle, info, draw) = (owned.handle, owned.info(), line.draw(0.2));
     assert_eq!(info.contrast, speckle.contrast());
     assert_eq!(info.coherence_length, line.coherence_length());
     assert_eq!(info.tilt_wave_number, cell.tilt_wave_number());
-    assert_eq!(owned.covariance([0.3, 0.1]), speckle.covariance([0.3, 0.1]));
-    assert_eq!(
-        owned.line_noise_ratio(0.0),
-        speckle.line_noise_ratio(Rows::Thin)
-    );
-    let tall = speckle.line_noise_ratio(Rows::Height(3.0));
-    assert_eq!(owned.line_noise_ratio(3.0), tall);
-    let wave = owned.draw(0.2);
-    assert_eq!(wave.wave_number, line.draw(0.2));
-    assert_eq!(wave.pupil_shift, line.draw(0.2) / cell.tilt_wave_number());
-    assert_eq!(wave.phase_per_height, line.draw(0.2) * cell.height_factor());
+    let wave = Wave {
+        wave_number: draw,
+        pupil_shift: draw / cell.tilt_wave_number(),
+        phase_per_height: draw * cell.height_factor(),
+    };
+    let moved = [0.3, 0.1];
+    agree! {
+        DESCRIPTION;
+        tem00_bandwidth_covariance(handle, moved.as_ptr()) = speckle.covariance(moved);
+        tem00_bandwidth_line_noise_ratio(handle, 0.0) = speckle.line_noise_ratio(Rows::Thin);
+        tem00_bandwidth_line_noise_ratio(handle, 3.0) =
+            speckle.line_noise_ratio(Rows::Height(3.0));
+        tem00_bandwidth_draw(handle, 0.2) = wave;
+    }
     assert_eq!(owned.patterns(), [1.0], "the tilt and few heights");
     let fractions: f64 = owned.heights().iter().map(|height| height[1].powi(2)).sum();
     assert!((fractions - 1.0).abs() < 1e-12, "{fractions}");
@@ -165,7 +111,7 @@ fn the_field_moves_over_the_pupil_as_a_change_of_wavelength_says() {
         to_source: [-0.3, 0.4, 1.0],
         ..DESCRIPTION
     });
-    let (info, wave) = (owned.info(), owned.draw(0.9));
+    let (info, wave): (_, Wave) = (owned.info(), ask!(tem00_bandwidth_draw(owned.handle, 0.9)));
     let [to_pupil, to_source, normal] =
         [DESCRIPTION.to_pupil, [-0.3, 0.4, 1.0], DESCRIPTION.normal].map(DVec3::from_array);
     let pupil = DISTANCE * to_pupil.normalize();
@@ -209,7 +155,8 @@ fn the_extent_of_a_source_is_patterns() {
         source_half_angle: 0.025,
         ..DESCRIPTION
     });
-    let squares = |owned: &Owned| owned.patterns().iter().map(|part| part * part).sum::<f64>();
+    let squares =
+        |owned: &Owned<Bandwidth>| owned.patterns().iter().map(|part| part * part).sum::<f64>();
     let point = made(&DESCRIPTION);
     assert_eq!(wide.heights(), point.heights());
     let ratio = (wide.info().contrast / point.info().contrast).powi(2);
@@ -225,7 +172,7 @@ fn one_wavelength_is_one_height_without_a_phase() {
         linewidth: 0.0,
         ..DESCRIPTION
     });
-    let wave = owned.draw(0.9);
+    let wave: Wave = ask!(tem00_bandwidth_draw(owned.handle, 0.9));
     assert_eq!([wave.pupil_shift, wave.phase_per_height], [0.0; 2]);
     assert_eq!(owned.patterns(), [1.0]);
     assert_eq!(owned.heights().len(), 1);
@@ -280,40 +227,30 @@ fn senseless_numbers_are_refused_by_name() {
             ("rms_height", |d| d.rms_height = 0.1),
             ("correlation_length", |d| d.correlation_length = -1.0),
         ],
-        |wrong| {
-            let (status, owned) = create(wrong);
-            assert!(owned.0.is_null(), "{wrong:?} made a bandwidth");
-            status
-        },
+        // SAFETY: the pointers are valid.
+        |wrong, handle| unsafe { tem00_bandwidth_create(wrong, handle) },
     );
-    let null = BandwidthDescription {
+    let null_peaks = BandwidthDescription {
         peak_count: 1,
         ..DESCRIPTION
     };
-    pointer_is_refused("peaks", create(&null).0);
-    let owned = made(&DESCRIPTION);
-    // SAFETY: the handle is valid, and null is allowed.
-    unsafe {
-        let mut wave = NO_WAVE;
-        for uniform in [-0.1, 1.0, f64::NAN] {
-            let status = tem00_bandwidth_draw(owned.0, uniform, &raw mut wave);
-            number_is_refused("uniform", status);
+    let (bandwidth, bad) = (made(&DESCRIPTION), [f64::INFINITY, 0.0]);
+    let (handle, mut room, mut made) = (bandwidth.handle, [7.0; 3], null_mut());
+    let out = room.as_mut_ptr();
+    refused! {
+        InvalidArgument {
+            "uniform" tem00_bandwidth_draw(handle, -0.1, out.cast());
+            "uniform" tem00_bandwidth_draw(handle, 1.0, out.cast());
+            "uniform" tem00_bandwidth_draw(handle, f64::NAN, out.cast());
+            "row_height" tem00_bandwidth_line_noise_ratio(handle, -1.0, out);
+            "displacement" tem00_bandwidth_covariance(handle, bad.as_ptr(), out);
         }
-        let status = tem00_bandwidth_line_noise_ratio(owned.0, -1.0, &raw mut wave.pupil_shift);
-        number_is_refused("row_height", status);
-        let bad = [f64::INFINITY, 0.0];
-        let status = tem00_bandwidth_covariance(owned.0, bad.as_ptr(), &raw mut wave.pupil_shift);
-        number_is_refused("displacement", status);
-        assert!(wave.pupil_shift.is_nan(), "nothing is written");
-        pointer_is_refused("info", tem00_bandwidth_describe(owned.0, ptr::null_mut()));
-        let bandwidth = tem00_bandwidth_draw(ptr::null(), 0.5, &raw mut wave);
-        pointer_is_refused("bandwidth", bandwidth);
-        tem00_bandwidth_destroy(ptr::null_mut());
+        InvalidPointer {
+            "peaks" tem00_bandwidth_create(&raw const null_peaks, &raw mut made);
+            "info" tem00_bandwidth_describe(handle, null_mut());
+            "bandwidth" tem00_bandwidth_draw(null(), 0.5, out.cast());
+        }
     }
-}
-
-#[test]
-fn threads_may_share_a_bandwidth() {
-    fn is_shared<T: Send + Sync>() {}
-    is_shared::<Bandwidth>();
+    assert_eq!(room, [7.0; 3], "nothing is written");
+    assert!(made.is_null(), "a bandwidth was made");
 }

@@ -14,40 +14,46 @@ fn pointer_refused(name: &str) -> Option<(Status, String)> {
 }
 
 #[test]
-fn null_and_misaligned_pointers_are_refused() {
+fn pointers_that_cannot_be_used_are_refused() {
     let values = [1.0, 2.0];
-    let misaligned = values.as_ptr().wrapping_byte_add(4);
-    for pointer in [ptr::null(), misaligned] {
+    let start = values.as_ptr();
+    let too_many = isize::MAX.unsigned_abs() / size_of::<f64>() + 1;
+    for (pointer, count) in [
+        (ptr::null(), 1),
+        (start.wrapping_byte_add(4), 1),
+        (start, too_many),
+    ] {
+        let room = pointer.cast_mut();
         // SAFETY: what is wrong with the pointers is refused before they are used.
         unsafe {
+            if count == 1 {
+                assert_eq!(
+                    refusal(borrow("p", pointer)),
+                    pointer_refused("p"),
+                    "borrow"
+                );
+                assert_eq!(
+                    refusal(read::<_, 2>("p", pointer)),
+                    pointer_refused("p"),
+                    "read"
+                );
+                assert_eq!(
+                    refusal(write("p", room, 3.0)),
+                    pointer_refused("p"),
+                    "write"
+                );
+            }
+            let read = columns::<f64, 1, 0>(count, [("p", pointer)], []);
+            assert_eq!(refusal(read), pointer_refused("p"), "input");
+            let written = columns::<f64, 0, 1>(count, [], [("p", room)]);
+            assert_eq!(refusal(written), pointer_refused("p"), "output");
             assert_eq!(
-                refusal(borrow("p", pointer)),
+                refusal(rows::<1>(count, ("p", pointer))),
                 pointer_refused("p"),
-                "borrow"
+                "rows"
             );
-            assert_eq!(
-                refusal(read::<f64, 2>("p", pointer)),
-                pointer_refused("p"),
-                "read"
-            );
-            let mutable = pointer.cast_mut();
-            assert_eq!(
-                refusal(write("p", mutable, 3.0)),
-                pointer_refused("p"),
-                "write"
-            );
-            let inputs = columns(1, [("p", pointer)], []);
-            assert_eq!(
-                refusal::<Borrowed<'_, f64, 1, 0>>(inputs),
-                pointer_refused("p"),
-                "input"
-            );
-            let outputs = columns(1, [], [("p", mutable)]);
-            assert_eq!(
-                refusal::<Borrowed<'_, f64, 0, 1>>(outputs),
-                pointer_refused("p"),
-                "output"
-            );
+            let records = records::<f64, f64, 0>(count, ("p", room), []);
+            assert_eq!(refusal(records), pointer_refused("p"), "records");
         }
     }
 }
@@ -55,30 +61,18 @@ fn null_and_misaligned_pointers_are_refused() {
 #[test]
 fn what_is_read_and_written_is_what_lies_there() {
     let mut values = [1.0, 2.0, 3.0];
-    let pointer = values.as_mut_ptr();
-    // SAFETY: the pointer is to three numbers.
+    let (pointer, null) = (values.as_mut_ptr(), ptr::null_mut());
+    // SAFETY: the pointer is to three numbers, and of none no number is used.
     unsafe {
         assert_eq!(read("p", pointer), Ok([1.0, 2.0, 3.0]), "read");
         write("p", pointer.add(1), 5.0).unwrap();
         assert_eq!(borrow("p", pointer.add(1)), Ok(&5.0), "borrowed");
+        let (read, write) = columns::<f64, 1, 1>(0, [("x", null)], [("y", null)]).unwrap();
+        assert!(
+            read[0].is_empty() && write[0].is_empty(),
+            "columns of no numbers"
+        );
     }
-}
-
-#[test]
-fn columns_of_no_numbers_may_be_null() {
-    let null = ptr::null_mut();
-    // SAFETY: no number is read or written.
-    let (read, write) = unsafe { columns::<f64, 1, 1>(0, [("x", null)], [("y", null)]) }.unwrap();
-    assert!(read[0].is_empty() && write[0].is_empty(), "of no numbers");
-}
-
-#[test]
-fn more_numbers_than_fit_into_memory_are_refused() {
-    let value = 1.0;
-    let count = isize::MAX.unsigned_abs() / size_of::<f64>() + 1;
-    // SAFETY: the count is refused before the pointer is used.
-    let result = unsafe { columns::<f64, 1, 0>(count, [("x", &raw const value)], []) };
-    assert_eq!(refusal(result), pointer_refused("x"), "{count} numbers");
 }
 
 #[test]
@@ -123,33 +117,24 @@ fn records_that_overlap_with_what_is_read_are_refused_and_neighbours_are_not() {
 }
 
 #[test]
-fn a_handle_that_cannot_be_made_is_null() {
-    let mut here = 7;
+fn a_handle_that_cannot_be_made_is_null_and_without_a_place_none_is_made() {
+    let (mut here, made) = (7, Cell::new(false));
     let mut handle = &raw mut here;
-    // SAFETY: the pointer is to a pointer.
-    let result = unsafe {
-        create("handle", &raw mut handle, || {
-            Err(Failure::argument("size", "no"))
-        })
-    };
-    assert_eq!(
-        refusal(result),
-        Some((Status::InvalidArgument, "size".to_owned())),
-        "the reason"
-    );
-    assert!(handle.is_null(), "and not what was there: {handle:?}");
-}
-
-#[test]
-fn nothing_is_made_where_the_handle_has_no_place() {
-    let made = Cell::new(false);
+    let fail = || Err(Failure::argument("size", "no"));
     let make = || {
         made.set(true);
         Ok(1)
     };
-    // SAFETY: null is refused.
-    let result = unsafe { create("handle", ptr::null_mut(), make) };
-    assert_eq!(refusal(result), pointer_refused("handle"), "null");
+    // SAFETY: the pointer is to a pointer, or null, which is refused.
+    let results = unsafe {
+        [
+            create("handle", &raw mut handle, fail),
+            create("handle", ptr::null_mut(), make),
+        ]
+    };
+    let size = Some((Status::InvalidArgument, "size".to_owned()));
+    assert_eq!(results.map(refusal), [size, pointer_refused("handle")]);
+    assert!(handle.is_null(), "and not what was there: {handle:?}");
     assert!(!made.get(), "it would have no owner");
 }
 

@@ -1,19 +1,20 @@
 //! Speckle by one call per hit against the library that is called.
 #![expect(clippy::float_cmp, reason = "the same bits are asked for")]
 
-use core::{f64::consts::FRAC_PI_4, ffi::CStr, ptr};
-
-use tem00_decorrelation::{
-    CameraFrame, Configuration, ConfigurationData, Illumination, ImagingGeometry, LensData,
-    RigidMotions, SpeckleMotion, pupil_overlap_correlation,
+use core::{
+    f64::consts::FRAC_PI_4,
+    ffi::CStr,
+    ptr::{dangling_mut, null, null_mut},
 };
+
+use tem00_decorrelation::pupil_overlap_correlation;
 use tem00_shading::{BeamShape, DMat3, DVec2, Laser, LaserDescription, Motion};
 
 use super::*;
 use crate::{
     light::*,
-    status::{Status, tem00_last_error},
-    testing::{answer, each_is_refused, number_is_refused, pointer_is_refused, refusal},
+    status::Status,
+    testing::{Owned, each_is_refused, last, refuses},
 };
 
 /// Looks straight down at the origin, through a lens that distorts, at a sensor that is tilted.
@@ -83,10 +84,10 @@ const LINE: LineDescription = LineDescription {
 /// Two looks of light that is half polarised.
 const DESCRIPTION: SpeckleDescription = SpeckleDescription {
     seed: 11,
-    motions: ptr::null(),
+    motions: null(),
     motion_count: 0,
-    points: ptr::null(),
-    normals: ptr::null(),
+    points: null(),
+    normals: null(),
     point_count: 0,
     memory_limit: 64 << 20,
     looks: 2,
@@ -97,83 +98,45 @@ const DESCRIPTION: SpeckleDescription = SpeckleDescription {
 const ORIGIN: [f64; 3] = [0.0; 3];
 const NORMAL: [f64; 3] = [0.0, 0.0, 1.0];
 
-/// Handles that free themselves.
-struct Owned<T>(*mut T, unsafe extern "C" fn(*mut T));
-
-impl<T> Drop for Owned<T> {
-    fn drop(&mut self) {
-        // SAFETY: it was created by the interface and is not used again.
-        unsafe { (self.1)(self.0) };
-    }
-}
-
-fn message() -> String {
-    // SAFETY: the text is that of this thread, and no call fails meanwhile.
-    let text = unsafe { CStr::from_ptr(tem00_last_error()) };
-    text.to_str().unwrap().to_owned()
-}
-
-/// Makes a handle by one of the functions that take a description.
-fn made<D, T>(
-    create: unsafe extern "C" fn(*const D, *mut *mut T) -> Status,
-    description: &D,
-    destroy: unsafe extern "C" fn(*mut T),
-) -> Owned<T> {
-    // SAFETY: the pointers are valid.
-    let handle = answer(ptr::null_mut(), |out| unsafe { create(description, out) });
-    Owned(handle, destroy)
-}
-
 fn camera(description: &CameraDescription) -> Owned<Camera> {
-    made(tem00_camera_create, description, tem00_camera_destroy)
+    Owned::new(tem00_camera_create, description, tem00_camera_destroy)
 }
 
 fn spot() -> Owned<Light> {
-    made(tem00_light_create_spot, &SPOT, tem00_light_destroy)
+    Owned::new(tem00_light_create_spot, &SPOT, tem00_light_destroy)
 }
 
 fn elliptic() -> Owned<Light> {
-    made(tem00_light_create_elliptic, &ELLIPTIC, tem00_light_destroy)
+    Owned::new(tem00_light_create_elliptic, &ELLIPTIC, tem00_light_destroy)
 }
 
 fn line(description: &LineDescription) -> Owned<Light> {
-    made(tem00_light_create_line, description, tem00_light_destroy)
+    Owned::new(tem00_light_create_line, description, tem00_light_destroy)
 }
 
 /// Speckle of a light for these motions.
 fn speckle(light: &Owned<Light>, motions: &[BodyMotion]) -> Owned<Speckle> {
-    seen_by(&CAMERA, light, motions)
-}
-
-/// The same by another camera.
-fn seen_by(
-    lens: &CameraDescription,
-    light: &Owned<Light>,
-    motions: &[BodyMotion],
-) -> Owned<Speckle> {
     let description = &SpeckleDescription {
         motions: motions.as_ptr(),
         motion_count: motions.len(),
         ..DESCRIPTION
     };
-    let camera = camera(lens);
-    // SAFETY: the pointers are valid.
-    let create = |out| unsafe { tem00_speckle_create(camera.0, light.0, description, out) };
-    Owned(answer(ptr::null_mut(), create), tem00_speckle_destroy)
+    let camera = camera(&CAMERA);
+    Owned {
+        handle: ask!(tem00_speckle_create(
+            camera.handle,
+            light.handle,
+            description
+        )),
+        destroy: tem00_speckle_destroy,
+    }
 }
 
 fn frame(speckle: &Owned<Speckle>, motion: &BodyMotion) -> Owned<SpeckleFrame> {
-    // SAFETY: the pointers are valid.
-    let create = |out| unsafe { tem00_speckle_frame_create(speckle.0, motion, out) };
-    Owned(answer(ptr::null_mut(), create), tem00_speckle_frame_destroy)
-}
-
-fn shift(frame: &Owned<SpeckleFrame>, point: &[f64; 3], normal: &[f64; 3]) -> SpeckleShift {
-    let (point, normal) = (point.as_ptr(), normal.as_ptr());
-    // SAFETY: the pointers are valid.
-    answer(SpeckleShift::default(), |out| unsafe {
-        tem00_speckle_frame_shift(frame.0, point, normal, out)
-    })
+    Owned {
+        handle: ask!(tem00_speckle_frame_create(speckle.handle, motion)),
+        destroy: tem00_speckle_frame_destroy,
+    }
 }
 
 /// A body that slides, beside a camera and a light that stand still.
@@ -325,23 +288,15 @@ fn answers_are_those_of_the_library_to_the_last_bit() {
         // SAFETY: the handles and the columns are valid.
         let statuses = unsafe {
             [
-                tem00_speckle_frame_factors(frame.0, p, n, count, batch.as_mut_ptr()),
-                tem00_speckle_factors_since(speckle.0, w, p, n, count, since.as_mut_ptr()),
+                tem00_speckle_frame_factors(frame.handle, p, n, count, batch.as_mut_ptr()),
+                tem00_speckle_factors_since(speckle.handle, w, p, n, count, since.as_mut_ptr()),
             ]
         };
-        assert_eq!(statuses, [Status::Ok; 2], "{}", message());
+        assert_eq!(statuses, [Status::Ok; 2], "{}", last()[0]);
         library.factors_since(&was, &is, &normal, &mut expected);
         assert_eq!(since, expected);
 
-        let info = SpeckleInfo {
-            summary: ptr::null(),
-            speckle_size: 0.0,
-            memory_bytes: 0,
-        };
-        // SAFETY: the pointers are valid.
-        let info = answer(info, |out| unsafe {
-            tem00_speckle_describe(speckle.0, out)
-        });
+        let info: SpeckleInfo = ask!(tem00_speckle_describe(speckle.handle));
         // SAFETY: the text belongs to the speckle.
         let summary = unsafe { CStr::from_ptr(info.summary) };
         assert_eq!(summary.to_str().unwrap(), library.to_string());
@@ -352,144 +307,32 @@ fn answers_are_those_of_the_library_to_the_last_bit() {
         drop((speckle, light));
         let beside = DVec2::new(40.0, 30.5);
         for (i, (point, in_batch)) in is.iter().zip(batch).enumerate() {
-            let (p, n) = (points[i].as_ptr(), normals[i].as_ptr());
-            let (frame, pixel) = (frame.0, beside.as_ref().as_ptr());
-            // SAFETY: the handle and the pointers are valid.
-            let found = unsafe {
-                [
-                    answer(0.0, |out| tem00_speckle_frame_factor(frame, p, n, out)),
-                    answer(0.0, |out| {
-                        tem00_speckle_frame_factor_at(frame, pixel, p, n, out)
-                    }),
-                    answer(0.0, |out| tem00_speckle_frame_average(frame, p, n, out)),
-                ]
-            };
-            let factor = of_library.factor(*point, normal[i]);
-            let at = of_library.factor_at(beside, *point, normal[i]);
-            let average = of_library.average(*point, normal[i]);
-            assert_eq!(found, [factor, at, average], "at {point:?}");
-            assert_eq!(in_batch, factor, "at {point:?}");
-            // SAFETY: the handle and the pointers are valid.
-            let shift = answer(SpeckleShift::default(), |out| unsafe {
-                tem00_speckle_frame_shift(frame, p, n, out)
-            });
-            let expected = of_library.shift(*point, normal[i]);
-            assert_eq!(shift, expected.into(), "at {point:?}");
-            let left = expected.map_or(0.0, |shift| pupil_overlap_correlation(shift.pupil));
-            assert_eq!(shift.correlation, left, "at {point:?}");
+            let (frame, n) = (frame.handle, normals[i].as_ptr());
+            let (p, pixel, normal) = (points[i].as_ptr(), beside.as_ref().as_ptr(), normal[i]);
+            let shift = of_library.shift(*point, normal);
+            agree! {
+                point;
+                tem00_speckle_frame_factor(frame, p, n) = of_library.factor(*point, normal);
+                tem00_speckle_frame_factor_at(frame, pixel, p, n) =
+                    of_library.factor_at(beside, *point, normal);
+                tem00_speckle_frame_average(frame, p, n) = of_library.average(*point, normal);
+                tem00_speckle_frame_shift(frame, p, n) = SpeckleShift {
+                    displacement: shift.map_or([0.0; 2], |shift| shift.displacement.to_array()),
+                    pupil_shift: shift.map_or(f64::INFINITY, |shift| shift.pupil),
+                    correlation: shift.map_or(0.0, |shift| pupil_overlap_correlation(shift.pupil)),
+                };
+            }
+            assert_eq!(in_batch, of_library.factor(*point, normal), "at {point:?}");
         }
     }
 }
 
 #[test]
-fn shifts_are_those_of_the_law_between_two_states() {
-    // At f/2 one axial decorrelation length is 3 mm; the light diverges, and the focus lies behind.
-    let description = CameraDescription {
-        f_number: 2.0,
-        focus_distance: 0.31,
-        resolution: [16, 12],
-        principal_offset: [0.0; 2],
-        tilt: [0.0; 2],
-        distortion: [0.0; 3],
-        ..CAMERA
-    };
-    let spot = SpotDescription {
-        waist_radius: 30e-6,
-        waist_distance: 0.0,
-        ..SPOT
-    };
-    let light = made(tem00_light_create_spot, &spot, tem00_light_destroy);
-    let laser = Laser::spot(650e-9, 30e-6)
-        .focused_at(0.0)
-        .placed(spot.placement.origin.into(), DVec3::ZERO, DVec3::X)
-        .unwrap();
-    let geometry = ImagingGeometry::from_lens(LensData {
-        wavelength: 650e-9,
-        focal_length: 25e-3,
-        f_number: 2.0,
-        surface_to_pupil: 0.31,
-        pixel_pitch: 3.45e-6,
-    });
-    let geometry = geometry.unwrap();
-    let mut k = 0.0;
-    // Squares times the golden ratio: even, and independent of each other.
-    let mut draw = |limit: f64| {
-        k += 1.0;
-        limit * (2.0 * f64::fract(k * k * 0.618_033_988_749_894_9) - 1.0)
-    };
-    let mut pose = |slide: f64, turn: f64| {
-        let axis = DVec3::new(draw(1.0), draw(1.0), 1.0);
-        let turned = tem00_shading::Pose::about(DVec3::ZERO, axis, draw(turn)).unwrap();
-        let along = DVec3::new(draw(slide), draw(slide), draw(slide));
-        turned.then(&tem00_shading::Pose::along(along).unwrap())
-    };
-    let of_c = |pose: &tem00_shading::Pose| Pose {
-        rotation: pose.rotation().transpose().to_cols_array_2d(),
-        translation: pose.translation().to_array(),
-    };
-    let mut told = 0;
-    for _ in 0..24 {
-        let [surface, camera, source] = [pose(2e-3, 5e-3), pose(2e-4, 1e-3), pose(1e-3, 1e-3)];
-        let motion = BodyMotion {
-            body: 0,
-            surface: of_c(&surface),
-            camera: of_c(&camera),
-            light: of_c(&source),
-        };
-        let place = 0.1 * pose(0.03, 0.0).translation();
-        let normal = (pose(0.5, 0.0).translation() + DVec3::Z).normalize();
-        let seen = surface.point(place);
-        let lit = |laser: &Laser, point| {
-            Illumination::collimated(laser.wave_direction_at(point)).unwrap()
-        };
-        let before = Configuration::new(ConfigurationData {
-            wavelength: 650e-9,
-            point: place,
-            normal,
-            illumination: lit(&laser, place),
-            camera: CameraFrame::look_at(CAMERA.position.into(), DVec3::ZERO, DVec3::Y).unwrap(),
-            pupil: CAMERA.position.into(),
-        });
-        let before = before.unwrap();
-        let motions = RigidMotions {
-            surface,
-            camera,
-            ..RigidMotions::default()
-        };
-        let after = before
-            .moved_into(&motions, lit(&laser.moved(&source), seen))
-            .unwrap();
-        let law = SpeckleMotion::between(&geometry, &before, &after);
-        let normal = surface.direction(normal).to_array();
-        let speckle = seen_by(&description, &light, &[motion]);
-        let found = shift(&frame(&speckle, &motion), &seen.to_array(), &normal);
-        let [x, y] = (law.speckle_displacement() / 3.45e-6).to_array();
-        let error = (found.displacement[0] - x).hypot(found.displacement[1] + y);
-        assert!(error < 1e-8, "{error} pixels off: {found:?}, {law:?}");
-        // The polynomial of what a motion along the axis takes.
-        let error = found.correlation - law.correlation;
-        assert!(error.abs() < 1e-5, "off by {error}: {found:?}, {law:?}");
-        told += i32::from((0.1..0.9).contains(&law.correlation));
-    }
-    assert!(told > 12, "only {told} tell anything");
-}
-
-#[test]
 fn points_are_seen_where_the_library_sees_them() {
     let camera = camera(&CAMERA);
-    let project = |point: &[f64; 3], out: *mut [f64; 2]| {
-        // SAFETY: the pointers are valid.
-        unsafe { tem00_camera_project(camera.0, point.as_ptr(), out.cast()) }
-    };
     let point = [2e-3, -1e-3, 3e-4];
-    let seen = answer([0.0; 2], |out| project(&point, out));
     let expected = library_camera().project(point.into()).unwrap();
-    assert_eq!(seen, expected.to_array());
-    for unseen in [[0.0, 0.0, 1.0], [f64::NAN; 3]] {
-        let mut out = [7.0; 2];
-        number_is_refused("point", project(&unseen, &raw mut out));
-        assert_eq!(out, [7.0; 2], "nothing is written");
-    }
+    agree! { point; tem00_camera_project(camera.handle, point.as_ptr()) = expected.to_array(); }
 }
 
 #[test]
@@ -509,28 +352,19 @@ fn cameras_are_refused_by_the_name_of_what_is_wrong() {
             ("tilt", |d| d.tilt[0] = 1.6),
             ("distortion", |d| d.distortion[2] = f64::INFINITY),
         ],
-        |description| {
-            let mut camera = ptr::dangling_mut();
-            // SAFETY: the pointers are valid.
-            let status = unsafe { tem00_camera_create(description, &raw mut camera) };
-            assert!(camera.is_null(), "{description:?} made a camera");
-            status
-        },
+        // SAFETY: the pointers are valid.
+        |description, camera| unsafe { tem00_camera_create(description, camera) },
     );
 }
 
 #[test]
 fn speckle_is_refused_by_the_name_of_what_is_wrong() {
     let camera = camera(&CAMERA);
-    let create = |light: &Owned<Light>, description: &SpeckleDescription| {
-        let mut speckle = ptr::dangling_mut();
-        // SAFETY: the pointers are valid, or null, which is refused.
-        let status =
-            unsafe { tem00_speckle_create(camera.0, light.0, description, &raw mut speckle) };
-        assert!(speckle.is_null(), "{description:?} made speckle");
-        status
-    };
     let light = spot();
+    let create = |description: *const SpeckleDescription, speckle: *mut _| {
+        // SAFETY: the pointers are valid, or null, which is refused.
+        unsafe { tem00_speckle_create(camera.handle, light.handle, description, speckle) }
+    };
     each_is_refused(
         DESCRIPTION,
         [
@@ -539,7 +373,7 @@ fn speckle_is_refused_by_the_name_of_what_is_wrong() {
             ("polarisation", |d| d.polarisation = f64::NAN),
             ("threads", |d| d.threads = 2000),
         ],
-        |description| create(&light, description),
+        create,
     );
     each_is_refused(
         [motion().0; 3],
@@ -554,108 +388,100 @@ fn speckle_is_refused_by_the_name_of_what_is_wrong() {
                 d.light.rotation[0][0] = f64::NAN;
             }),
         ],
-        |motions| {
-            let (motions, motion_count) = (motions.as_ptr(), motions.len());
+        |motions, speckle| {
             let description = SpeckleDescription {
-                motions,
-                motion_count,
+                motions: motions.cast(),
+                motion_count: 3,
                 ..DESCRIPTION
             };
-            create(&light, &description)
+            create(&raw const description, speckle)
         },
     );
     let mut wrong = [DESCRIPTION; 4];
     wrong[0].motion_count = 1;
     wrong[1].point_count = 1;
     (wrong[2].point_count, wrong[2].points) = (1, ORIGIN.as_ptr());
-    for (name, description) in ["motions", "points", "normals"].iter().zip(&wrong) {
-        pointer_is_refused(name, create(&light, description));
-    }
     wrong[3].memory_limit = 1000;
-    let memory = (Status::Memory, "memory_limit".to_owned());
-    assert_eq!(refusal(create(&light, &wrong[3])), memory, "{}", message());
+    let pointer = Status::InvalidPointer;
+    let expected = [
+        ("motions", pointer),
+        ("points", pointer),
+        ("normals", pointer),
+        ("memory_limit", Status::Memory),
+    ];
+    for (description, (name, status)) in wrong.iter().zip(expected) {
+        let mut speckle = dangling_mut();
+        refuses(name, status, create(description, &raw mut speckle));
+        assert!(speckle.is_null(), "{description:?} made speckle");
+    }
 }
 
 #[test]
 fn frames_that_the_speckle_does_not_hold_are_refused() {
     let speckle = speckle(&spot(), &[sliding(1e-4, 0.0); 3]);
-    let mut mirrored = BodyMotion::default();
-    mirrored.camera.rotation = DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0)).to_cols_array_2d();
-    let far = sliding(5e-3, 0.0);
-    for (name, motion) in [("motion", far), ("motion.camera.rotation", mirrored)] {
-        let mut frame = ptr::dangling_mut();
-        // SAFETY: the pointers are valid.
-        let status =
-            unsafe { tem00_speckle_frame_create(speckle.0, &raw const motion, &raw mut frame) };
-        number_is_refused(name, status);
-        assert!(
-            message().starts_with(name) && frame.is_null(),
-            "{}",
-            message()
-        );
-    }
+    each_is_refused(
+        sliding(1e-4, 0.0),
+        [
+            ("motion", |motion| *motion = sliding(5e-3, 0.0)),
+            ("motion.camera.rotation", |motion| {
+                let mirror = DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0));
+                motion.camera.rotation = mirror.to_cols_array_2d();
+            }),
+        ],
+        |motion, frame| {
+            // SAFETY: the pointers are valid.
+            let status = unsafe { tem00_speckle_frame_create(speckle.handle, motion, frame) };
+            let [message, parameter] = last();
+            assert!(message.starts_with(&parameter), "{message}");
+            status
+        },
+    );
 }
 
 #[test]
-fn null_and_overlap_are_refused_by_name() {
+fn null_overlap_and_points_out_of_sight_are_refused_by_name() {
     let (camera, light) = (camera(&CAMERA), spot());
     let speckle = speckle(&light, &[]);
-    let frame = frame(&speckle, &BodyMotion::default());
     let still = BodyMotion::default();
-    let mut column = [0.25; 12];
-    let (mut made, mut framed) = (ptr::null_mut(), ptr::null_mut());
-    let (p, null) = (ORIGIN.as_ptr(), ptr::null());
-    let (c, l, s, f) = (camera.0, light.0, speckle.0, frame.0);
-    let (no_camera, no_light, no_speckle, no_frame) =
-        (ptr::null(), ptr::null(), ptr::null(), ptr::null());
+    let frame = frame(&speckle, &still);
+    let mut room = [0.25; 12];
+    let (mut made, mut framed, still) = (null_mut(), null_mut(), &raw const still);
+    let (p, above, nan) = (ORIGIN.as_ptr(), NORMAL.as_ptr(), [f64::NAN; 3].as_ptr());
+    let (c, l, s, f) = (camera.handle, light.handle, speckle.handle, frame.handle);
     let d: *const SpeckleDescription = &DESCRIPTION;
-    // SAFETY: the pointers are valid, or null or overlap, which is refused.
-    unsafe {
-        let (column, out) = (column.as_mut_ptr(), &raw mut column[9]);
-        let project = tem00_camera_project;
-        pointer_is_refused("camera", tem00_camera_create(&CAMERA, ptr::null_mut()));
-        pointer_is_refused("camera", project(no_camera, p, out));
-        pointer_is_refused("point", project(c, null, out));
-        pointer_is_refused("pixel", project(c, p, ptr::null_mut()));
-        let create = tem00_speckle_create;
-        pointer_is_refused("camera", create(no_camera, l, d, &raw mut made));
-        pointer_is_refused("light", create(c, no_light, d, &raw mut made));
-        pointer_is_refused("description", create(c, l, ptr::null(), &raw mut made));
-        pointer_is_refused("info", tem00_speckle_describe(s, ptr::null_mut()));
-        let create = tem00_speckle_frame_create;
-        pointer_is_refused(
-            "speckle",
-            create(no_speckle, &raw const still, &raw mut framed),
-        );
-        pointer_is_refused("motion", create(s, ptr::null(), &raw mut framed));
-        let factor = tem00_speckle_frame_factor;
-        pointer_is_refused("frame", factor(no_frame, p, p, out));
-        pointer_is_refused("point", factor(f, null, p, out));
-        pointer_is_refused("normal", factor(f, p, null, out));
-        pointer_is_refused("factor", factor(f, p, p, ptr::null_mut()));
-        pointer_is_refused(
-            "average",
-            tem00_speckle_frame_average(f, p, p, ptr::null_mut()),
-        );
-        pointer_is_refused("shift", tem00_speckle_frame_shift(f, p, p, ptr::null_mut()));
-        let factors = tem00_speckle_frame_factors;
-        pointer_is_refused("points", factors(f, null, p, 1, out));
-        pointer_is_refused("factors", factors(f, column, p, 4, out));
-        let since = tem00_speckle_factors_since;
-        pointer_is_refused("previous", since(s, null, p, p, 1, out));
-        pointer_is_refused("factors", since(s, p, p, column, 1, column.add(2)));
-        assert_eq!(
-            factors(f, null, null, 0, ptr::null_mut()),
-            Status::Ok,
-            "no points"
-        );
+    let (column, out) = (room.as_mut_ptr(), room.as_mut_ptr().wrapping_add(9));
+    refused! {
+        InvalidArgument {
+            "point" tem00_camera_project(c, above, out);
+            "point" tem00_camera_project(c, nan, out);
+        }
+        InvalidPointer {
+            "camera" tem00_camera_create(&CAMERA, null_mut());
+            "camera" tem00_camera_project(null(), p, out);
+            "point" tem00_camera_project(c, null(), out);
+            "pixel" tem00_camera_project(c, p, null_mut());
+            "camera" tem00_speckle_create(null(), l, d, &raw mut made);
+            "light" tem00_speckle_create(c, null(), d, &raw mut made);
+            "description" tem00_speckle_create(c, l, null(), &raw mut made);
+            "info" tem00_speckle_describe(s, null_mut());
+            "speckle" tem00_speckle_frame_create(null(), still, &raw mut framed);
+            "motion" tem00_speckle_frame_create(s, null(), &raw mut framed);
+            "frame" tem00_speckle_frame_factor(null(), p, p, out);
+            "point" tem00_speckle_frame_factor(f, null(), p, out);
+            "normal" tem00_speckle_frame_factor(f, p, null(), out);
+            "factor" tem00_speckle_frame_factor(f, p, p, null_mut());
+            "pixel" tem00_speckle_frame_factor_at(f, null(), p, p, out);
+            "average" tem00_speckle_frame_average(f, p, p, null_mut());
+            "shift" tem00_speckle_frame_shift(f, p, p, null_mut());
+            "points" tem00_speckle_frame_factors(f, null(), p, 1, out);
+            "factors" tem00_speckle_frame_factors(f, column, p, 4, out);
+            "previous" tem00_speckle_factors_since(s, null(), p, p, 1, out);
+            "factors" tem00_speckle_factors_since(s, p, p, column, 1, column.wrapping_add(2));
+        }
     }
-    assert_eq!(column, [0.25; 12], "nothing is written");
+    // SAFETY: no number is read or written.
+    let none = unsafe { tem00_speckle_frame_factors(f, null(), null(), 0, null_mut()) };
+    assert_eq!(none, Status::Ok, "no points");
+    assert_eq!(room, [0.25; 12], "nothing is written");
     assert!(made.is_null() && framed.is_null(), "nothing is made");
-}
-
-#[test]
-fn threads_may_share_them() {
-    fn is_shared<T: Send + Sync>() {}
-    is_shared::<(Camera, Speckle, SpeckleFrame)>();
 }

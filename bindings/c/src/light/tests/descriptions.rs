@@ -1,15 +1,11 @@
 use super::*;
-
-/// Tries to create a light, and returns the status: no light is made.
-fn refused(create: impl FnOnce(*mut *mut Light) -> Status) -> Status {
-    let mut handle = ptr::dangling_mut();
-    let status = create(&raw mut handle);
-    assert!(handle.is_null(), "a light was made");
-    status
-}
+use crate::{
+    status::Status,
+    testing::{each_is_refused, refuses},
+};
 
 #[test]
-fn a_spot_refuses_each_number_that_is_wrong() {
+fn each_number_of_a_light_that_is_wrong_is_refused_by_its_name() {
     each_is_refused(
         SPOT,
         [
@@ -24,13 +20,9 @@ fn a_spot_refuses_each_number_that_is_wrong() {
                 spot.placement.fan_axis = PLACEMENT.direction;
             }),
         ],
-        // SAFETY: the description is valid.
-        |spot| refused(|handle| unsafe { tem00_light_create_spot(spot, handle) }),
+        // SAFETY: the pointers are valid.
+        |spot, handle| unsafe { tem00_light_create_spot(spot, handle) },
     );
-}
-
-#[test]
-fn an_elliptic_beam_refuses_the_numbers_of_either_axis_and_says_which() {
     each_is_refused(
         ELLIPTIC,
         [
@@ -43,16 +35,11 @@ fn an_elliptic_beam_refuses_the_numbers_of_either_axis_and_says_which() {
             ("wavelength", |beam| beam.wavelength = 0.0),
             ("rotation", |beam| beam.rotation = f64::NAN),
         ],
-        // SAFETY: the description is valid.
-        |beam| refused(|handle| unsafe { tem00_light_create_elliptic(beam, handle) }),
+        // SAFETY: the pointers are valid.
+        |beam, handle| unsafe { tem00_light_create_elliptic(beam, handle) },
     );
-}
-
-#[test]
-fn a_line_refuses_each_number_that_is_wrong() {
-    // SAFETY: the description is valid, or its table is refused.
-    let create =
-        |line: &LineDescription| refused(|handle| unsafe { tem00_light_create_line(line, handle) });
+    // SAFETY: the pointers are valid, or those of the table null, which is refused.
+    let create = |line, handle: *mut _| unsafe { tem00_light_create_line(line, handle) };
     each_is_refused(
         LINE,
         [
@@ -65,38 +52,18 @@ fn a_line_refuses_each_number_that_is_wrong() {
         ],
         create,
     );
-    let without_table = LineDescription {
-        angles: ptr::null(),
-        ..tabulated()
-    };
-    pointer_is_refused("angles", create(&without_table));
-    let short = LineDescription {
-        knot_count: 1,
-        ..tabulated()
-    };
-    assert_eq!(create(&short), Status::InvalidArgument, "one knot");
-}
-
-const ALONG_Z: Placement = Placement {
-    origin: [0.0; 3],
-    direction: [0.0, 0.0, 1.0],
-    fan_axis: [1.0, 0.0, 0.0],
-};
-
-/// The irradiance of a line at the fan angle `theta`, 0.3 m from its apex.
-fn irradiance_at(description: &LineDescription, theta: f64) -> f64 {
-    let mut handle = ptr::null_mut();
-    let mut irradiance = 0.0;
-    let point = [0.3 * theta.sin(), 0.0, 0.3 * theta.cos() - LINE.apex_offset];
-    // SAFETY: the description is valid, and the light destroyed once.
-    unsafe {
-        let status = tem00_light_create_line(&raw const *description, &raw mut handle);
-        assert_eq!(status, Status::Ok, "{description:?}");
-        let status = tem00_light_irradiance(handle, point.as_ptr(), &raw mut irradiance);
-        assert_eq!(status, Status::Ok, "{description:?}");
-        tem00_light_destroy(handle);
-    }
-    irradiance
+    let mut handle = core::ptr::dangling_mut();
+    let (mut null_table, mut short) = (TABULATED, TABULATED);
+    null_table.angles = null();
+    short.knot_count = 1;
+    refuses(
+        "angles",
+        Status::InvalidPointer,
+        create(&raw const null_table, &raw mut handle),
+    );
+    let short = create(&raw const short, &raw mut handle);
+    assert_eq!(short, Status::InvalidArgument, "one knot");
+    assert!(handle.is_null(), "a light was made");
 }
 
 #[test]
@@ -114,35 +81,21 @@ fn each_profile_and_each_focus_curve_is_the_one_of_its_name() {
         (FocusCurve::EqualDistance, F::EqualDistance),
         (FocusCurve::EqualPlane, F::EqualPlane),
     ];
-    let placed = tem00_beam::Placement {
-        origin: DVec3::ZERO,
-        direction: DVec3::Z,
-        fan_axis: DVec3::X,
-    };
     for (profile, of_library) in &profiles {
         for (curve, curve_of_library) in curves {
-            let description = LineDescription {
-                placement: ALONG_Z,
+            let light = line(&LineDescription {
                 profile: *profile as u32,
                 focus_curve: curve as u32,
                 ..LINE
-            };
-            let fan = FanGeometry {
-                fan_angle: 0.5,
-                apex_offset: 2e-3,
-                focus_distance: 0.25,
-                focus_curve: curve_of_library,
-            };
-            let line = LaserLine::new(beam(80e-6, 1.2), fan, of_library.clone()).unwrap();
-            let light = LineLight::place(&line, &placed, 2e-3).unwrap();
-            for theta in [-0.2_f64, 0.0, 0.11] {
-                let point = [0.3 * theta.sin(), 0.0, 0.3 * theta.cos() - 2e-3];
-                let got = irradiance_at(&description, theta);
-                assert_eq!(
-                    got,
-                    light.irradiance(point),
-                    "{profile:?} {curve:?} at {theta}"
-                );
+            });
+            let peer = laser_line(of_library.clone(), curve_of_library);
+            let peer = LineLight::place(&peer, &placement(), 2e-3).unwrap();
+            for p in points(&peer) {
+                let context = (profile, curve);
+                agree! {
+                    context;
+                    tem00_light_irradiance(light.handle, p.as_ptr()) = peer.irradiance(p);
+                }
             }
         }
     }
@@ -151,25 +104,14 @@ fn each_profile_and_each_focus_curve_is_the_one_of_its_name() {
 #[test]
 fn a_light_keeps_a_copy_of_its_table() {
     let mut angles = ANGLES.to_vec();
-    let mut handle = ptr::null_mut();
-    let description = LineDescription {
-        placement: ALONG_Z,
+    let light = line(&LineDescription {
         angles: angles.as_ptr(),
-        ..tabulated()
-    };
-    let point = [0.0, 0.0, 0.2];
-    let mut irradiance = [0.0; 2];
-    // SAFETY: the description is valid, and the light destroyed once.
-    unsafe {
-        tem00_light_create_line(&raw const description, &raw mut handle);
-        tem00_light_irradiance(handle, point.as_ptr(), &raw mut irradiance[0]);
-        angles.fill(0.0);
-        tem00_light_irradiance(handle, point.as_ptr(), &raw mut irradiance[1]);
-        tem00_light_destroy(handle);
-    }
-    assert!(irradiance[0] > 0.0, "on the axis");
-    assert_eq!(
-        irradiance[0], irradiance[1],
-        "before and after the table has changed"
-    );
+        ..TABULATED
+    });
+    let on_axis = core::array::from_fn(|i| PLACEMENT.origin[i] + 0.2 * PLACEMENT.direction[i]);
+    let on_axis: [f64; 3] = on_axis;
+    let before: f64 = ask!(tem00_light_irradiance(light.handle, on_axis.as_ptr()));
+    angles.fill(0.0);
+    agree! { "after it has changed"; tem00_light_irradiance(light.handle, on_axis.as_ptr()) = before; }
+    assert!(before > 0.0, "on the axis");
 }

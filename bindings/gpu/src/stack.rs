@@ -56,12 +56,6 @@ pub struct GpuStack {
     look_up: ComputePipeline,
 }
 
-/// What look-ups know of a stack beside its coefficients.
-struct Laws {
-    size: [usize; 2],
-    slices: Vec<SliceLaw>,
-}
-
 impl fmt::Debug for GpuStack {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("GpuStack")
@@ -105,11 +99,7 @@ impl GpuStack {
                 let finish = Finish::Amplitude { slice };
                 transform.run(gpu, &source.slice(slice), finish, &coefficients);
             }
-            let laws = Laws {
-                size: field.size(),
-                slices: source.laws(),
-            };
-            Self::assemble(gpu, &coefficients, &laws)
+            Self::assemble(gpu, &coefficients, field.size(), &source.laws())
         })
     }
 
@@ -128,30 +118,29 @@ impl GpuStack {
                 gpu.queue()
                     .write_buffer(&coefficients, first, bytemuck::cast_slice(values));
             }
-            let laws = Laws {
-                size: stack.size(),
-                slices: (0..stack.slice_count())
-                    .map(|slice| stack.slice_law(slice))
-                    .collect(),
-            };
-            Self::assemble(gpu, &coefficients, &laws)
+            let laws = (0..stack.slice_count()).map(|slice| stack.slice_law(slice));
+            Self::assemble(gpu, &coefficients, stack.size(), &laws.collect::<Vec<_>>())
         })
     }
 
-    fn assemble(gpu: &Gpu, coefficients: &Buffer, laws: &Laws) -> Result<Self, GpuError> {
-        let rows: Vec<_> = laws.slices.iter().map(|law| law.rows(laws.size)).collect();
+    fn assemble(
+        gpu: &Gpu,
+        coefficients: &Buffer,
+        size: [usize; 2],
+        laws: &[SliceLaw],
+    ) -> Result<Self, GpuError> {
+        let rows: Vec<_> = laws.iter().map(|law| law.rows(size)).collect();
         let rows = uploaded(gpu, "the laws of the slices", rows.as_flattened())?;
-        let [width, height] = laws.size.map(to_u32);
-        let slices = laws.slices.len();
-        let stack = uniform(gpu, &[width, height, to_u32(slices), 0]);
+        let [width, height, slices] = [size[0], size[1], laws.len()].map(to_u32);
+        let stack = uniform(gpu, &[width, height, slices, 0]);
         let layout = Self::bind_group_layout(gpu);
         let group = bind(gpu, &layout, &[&stack, coefficients, &rows]);
         Ok(Self {
             gpu: gpu.clone(),
-            size: laws.size,
-            slices,
+            size,
+            slices: laws.len(),
             group,
-            look_up: look_up(gpu),
+            look_up: gpu.pipeline("look-up", || look_up_source(gpu)),
         })
     }
 
@@ -227,10 +216,6 @@ impl GpuStack {
 }
 
 /// The kernel of batches.
-fn look_up(gpu: &Gpu) -> ComputePipeline {
-    gpu.pipeline("look-up", || look_up_source(gpu))
-}
-
 fn look_up_source(gpu: &Gpu) -> (String, Option<PipelineLayout>) {
     let text = GpuStack::wgsl(0) + include_str!("../shaders/look_up.wgsl");
     let points = gpu

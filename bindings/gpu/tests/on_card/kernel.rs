@@ -3,8 +3,9 @@
 use tem00_gpu::{
     Gpu,
     wgpu::{
-        self, BindGroupDescriptor, BindGroupEntry, BufferDescriptor, BufferUsages,
-        ComputePassDescriptor, ComputePipelineDescriptor, ShaderModuleDescriptor, ShaderSource,
+        self, BindGroupDescriptor, BindGroupEntry, BufferUsages, ComputePipelineDescriptor,
+        ShaderModuleDescriptor, ShaderSource,
+        util::{BufferInitDescriptor, DeviceExt as _},
     },
 };
 
@@ -51,48 +52,41 @@ fn run(gpu: &Gpu, text: &str, inputs: &[f32], count: usize, each: usize) -> Vec<
         layout: None,
         module: &module,
         entry_point: None,
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        compilation_options: <_>::default(),
         cache: None,
     });
-    let buffer = |values: usize, usage| {
-        device.create_buffer(&BufferDescriptor {
+    let buffer = |values: &[f32], usage| {
+        device.create_buffer_init(&BufferInitDescriptor {
             label: None,
-            size: 4 * values.max(1) as u64,
+            contents: bytemuck::cast_slice(values),
             usage,
-            mapped_at_creation: false,
         })
     };
-    let arguments = buffer(inputs.len(), BufferUsages::STORAGE | BufferUsages::COPY_DST);
-    gpu.queue()
-        .write_buffer(&arguments, 0, bytemuck::cast_slice(inputs));
-    let results = buffer(count * each, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
-    let read = buffer(
-        count * each,
-        BufferUsages::MAP_READ | BufferUsages::COPY_DST,
-    );
+    let room = vec![0.0; count * each];
+    let arguments = buffer(inputs, BufferUsages::STORAGE);
+    let results = buffer(&room, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
+    let read = buffer(&room, BufferUsages::MAP_READ | BufferUsages::COPY_DST);
+    let entries = [&arguments, &results].map(wgpu::Buffer::as_entire_binding);
+    let entries = [0, 1].map(|i| BindGroupEntry {
+        binding: i,
+        resource: entries[i as usize].clone(),
+    });
     let bindings = device.create_bind_group(&BindGroupDescriptor {
         label: None,
         layout: &pipeline.get_bind_group_layout(0),
-        entries: &[entry(0, &arguments), entry(1, &results)],
+        entries: &entries,
     });
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
+    let mut encoder = device.create_command_encoder(&<_>::default());
+    let mut pass = encoder.begin_compute_pass(&<_>::default());
     pass.set_pipeline(&pipeline);
     pass.set_bind_group(0, &bindings, &[]);
     let groups = u32::try_from(count.div_ceil(GROUP)).expect("a count below 2³²");
     let wide = groups.min(1 << 12);
     pass.dispatch_workgroups(wide, groups.div_ceil(wide), 1);
     drop(pass);
-    encoder.copy_buffer_to_buffer(&results, 0, &read, 0, 4 * (count * each) as u64);
+    encoder.copy_buffer_to_buffer(&results, 0, &read, 0, read.size());
     gpu.queue().submit([encoder.finish()]);
     gpu.read(&read).expect("results")
-}
-
-fn entry(binding: u32, buffer: &wgpu::Buffer) -> BindGroupEntry<'_> {
-    BindGroupEntry {
-        binding,
-        resource: buffer.as_entire_binding(),
-    }
 }
 
 #[test]

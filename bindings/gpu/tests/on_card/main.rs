@@ -13,7 +13,5 @@ mod kernel;
 mod lights;
 mod look_up;
 mod motion;
-mod passes;
 mod patterns;
 mod phasors;
-mod stacks;

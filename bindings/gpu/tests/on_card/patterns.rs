@@ -1,8 +1,10 @@
-//! Patterns from one seed, of the library and of the card.
+//! Patterns from one seed, of the library and of the card, and what is refused.
 
-use tem00_gpu::{Gpu, GpuError, GpuPattern};
+use tem00_gpu::{Gpu, GpuError, GpuPattern, GpuStack};
 use tem00_numerics::Grid;
-use tem00_speckle::{Complex, Phasors, Pupil, PupilField, Transmission};
+use tem00_speckle::{
+    Complex, Phasors, Pupil, PupilField, SlicePath, SpeckleError, StackOptions, Transmission,
+};
 
 /// The rms and the largest deviation of one pattern from the other, of the mean.
 fn deviations(card: &[f32], library: &[f32]) -> [f64; 2] {
@@ -101,15 +103,15 @@ fn patterns_of_external_samples_agree() {
 #[test]
 fn what_does_not_fit_is_refused_with_what_would() {
     let gpu = Gpu::new().expect("an adapter");
-    let odd = PupilField::new(2 * 77, 64, 1).expect("a field");
-    let refused = GpuPattern::generate(&gpu, &odd, [0.0; 2], 0.0).expect_err("a size");
+    let field = |size, diameter| PupilField::new(size, diameter, 1).expect("a field");
+    let pattern = |field| GpuPattern::generate(&gpu, &field, [0.0; 2], 0.0).expect_err("a pattern");
+    let refused = pattern(field(2 * 77, 64));
     assert_eq!(refused, GpuError::Size(154));
     assert_eq!(
         refused.to_string(),
         "size must have no prime factor above 5 on a graphics card and be at most 32768, got 154: 160 is the next"
     );
-    let large = PupilField::new(PupilField::MAX_SIZE, 8, 1).expect("a field");
-    let refused = GpuPattern::generate(&gpu, &large, [0.0; 2], 0.0).expect_err("memory");
+    let refused = pattern(field(PupilField::MAX_SIZE, 8));
     let GpuError::TooLarge {
         needed, allowed, ..
     } = refused
@@ -117,4 +119,28 @@ fn what_does_not_fit_is_refused_with_what_would() {
         panic!("{refused}");
     };
     assert!(needed > allowed && allowed >= 1 << 27, "{refused}");
+
+    let circle = |half_period| SlicePath::Circle { half_period };
+    let frugal = StackOptions {
+        memory_limit: 65_535,
+    };
+    let stack = |field, path, options| {
+        GpuStack::generate_with(&gpu, &field, path, options).expect_err("a stack")
+    };
+    let [needed, limit] = [65_536, 65_535];
+    let expected = GpuError::from(SpeckleError::MemoryLimit { needed, limit });
+    assert_eq!(stack(field(64, 32), circle(1), frugal), expected);
+    let refused = stack(field(64, 32), circle(0), StackOptions::default());
+    assert!(
+        refused.to_string().starts_with("half_period must be"),
+        "{refused}"
+    );
+    // More than any device has: 4 TiB.
+    let path = circle(1 << 14);
+    let refused = stack(field(4096, 1024), path, StackOptions::default());
+    let bytes = path.memory_bytes([4096; 2]);
+    assert!(
+        matches!(refused, GpuError::TooLarge { what: "the stack", needed, .. } if needed == bytes),
+        "{refused}"
+    );
 }

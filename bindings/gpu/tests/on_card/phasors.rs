@@ -97,28 +97,20 @@ fn words_are_those_of_chacha8() {
 }
 
 #[test]
-fn phasors_have_the_angle_of_their_word() {
+fn phasors_have_the_angle_and_the_logarithm_of_their_word() {
     let words: Vec<_> = words().into_iter().map(|word| [word]).collect();
-    let body = "let z = tem00_unit_phasor(word(0)); output(0, z.x); output(1, z.y);";
-    let phasors: Vec<[f32; 2]> = on_card(body, &words);
+    let body = "let z = tem00_unit_phasor(word(0)); output(0, z.x); output(1, z.y);
+        output(2, tem00_rayleigh_magnitude(word(0)));";
+    let phasors: Vec<[f32; 3]> = on_card(body, &words);
     for ([word], got) in words.into_iter().zip(phasors) {
+        let [x, y, magnitude] = got.map(f64::from);
         let (sin, cos) = (TAU * f64::from(word) / 4_294_967_296.0).sin_cos();
-        let error = (f64::from(got[0]) - cos).hypot(f64::from(got[1]) - sin);
+        let error = (x - cos).hypot(y - sin);
         assert!(error < 1.2e-7, "{error:e} at {word:#x}");
-    }
-}
-
-#[test]
-fn magnitudes_have_the_logarithm_of_their_word() {
-    let words: Vec<_> = words().into_iter().map(|word| [word]).collect();
-    let body = "output(0, tem00_rayleigh_magnitude(word(0)));";
-    let magnitudes: Vec<[f32; 1]> = on_card(body, &words);
-    for ([word], [got]) in words.into_iter().zip(magnitudes) {
         // −ln(1 − x) from the distance to 1, which 1 − x would round.
         let above = (f64::from(!word) + 0.5) / 4_294_967_296.0;
-        let expected = (-(-above).ln_1p()).sqrt();
-        let error = (f64::from(got) / expected - 1.0).abs();
-        assert!(error < 2e-7, "{error:e} at {word:#x}");
+        let error = (magnitude / (-(-above).ln_1p()).sqrt() - 1.0).abs();
+        assert!(error < 2e-7, "magnitude: {error:e} at {word:#x}");
     }
 }
 

@@ -7,6 +7,7 @@ use core::{
     slice,
 };
 
+use tem00_coherence::{CellGeometry, Relief, SourceExtent};
 use tem00_decorrelation::{
     CameraFrame, Configuration, ConfigurationData, DVec3, Illumination, ImagingGeometry,
     PupilDistances, SpeckleMotion,
@@ -39,68 +40,97 @@ impl Owned<Bandwidth> {
     fn info(&self) -> BandwidthInfo {
         ask!(tem00_bandwidth_describe(self.handle))
     }
-
-    fn patterns(&self) -> &[f64] {
-        let info = self.info();
-        // SAFETY: they belong to the handle.
-        unsafe { slice::from_raw_parts(info.patterns, info.pattern_count) }
-    }
-
-    fn heights(&self) -> &[[f64; 2]] {
-        let info = self.info();
-        // SAFETY: they belong to the handle.
-        unsafe { slice::from_raw_parts(info.heights.cast(), info.height_count) }
-    }
 }
 
 #[test]
 fn answers_are_those_of_the_library() {
-    let owned = made(&DESCRIPTION);
-    let line = SpectralLine::new(450e-9, 20e-9, tem00_coherence::LineShape::Gaussian).unwrap();
-    let cell = DESCRIPTION.cell(450e-9).unwrap();
-    let speckle = PolychromaticSpeckle {
-        line: &line,
-        cell: &cell,
-    };
-    let (handle, info, draw) = (owned.handle, owned.info(), line.draw(0.2));
-    assert_eq!(info.contrast, speckle.contrast());
-    assert_eq!(info.coherence_length, line.coherence_length());
-    assert_eq!(info.tilt_wave_number, cell.tilt_wave_number());
-    let wave = Wave {
-        wave_number: draw,
-        pupil_shift: draw / cell.tilt_wave_number(),
-        phase_per_height: draw * cell.height_factor(),
-    };
-    let moved = [0.3, 0.1];
-    agree! {
-        DESCRIPTION;
-        tem00_bandwidth_covariance(handle, moved.as_ptr()) = speckle.covariance(moved);
-        tem00_bandwidth_line_noise_ratio(handle, 0.0) = speckle.line_noise_ratio(Rows::Thin);
-        tem00_bandwidth_line_noise_ratio(handle, 3.0) =
-            speckle.line_noise_ratio(Rows::Height(3.0));
-        tem00_bandwidth_draw(handle, 0.2) = wave;
-    }
-    assert_eq!(owned.patterns(), [1.0], "the tilt and few heights");
-    let fractions: f64 = owned.heights().iter().map(|height| height[1].powi(2)).sum();
-    assert!((fractions - 1.0).abs() < 1e-12, "{fractions}");
-}
-
-#[test]
-fn heights_that_dominate_are_modes() {
-    let rough = BandwidthDescription {
+    use tem00_coherence::LineShape as S;
+    let peaks = [[448e-9, 1.0], [453e-9, 3.0]];
+    let line = |linewidth, shape| SpectralLine::new(450e-9, linewidth, shape);
+    let two = SpectralLine::from_peaks(&peaks);
+    let two = two.and_then(|line| line.with_linewidth(1e-9, S::Gaussian));
+    let tall_heights = BandwidthDescription {
+        shape: LineShape::Lorentzian as u32,
+        to_source: [-0.3, 0.4, 1.0],
         rms_height: 6e-6,
+        correlation_length: 5e-6,
         ..DESCRIPTION
     };
-    let owned = made(&rough);
-    assert!(owned.heights().is_empty(), "{:?}", owned.heights());
-    let squares: f64 = owned
-        .patterns()
-        .iter()
-        .map(|fraction| fraction.powi(2))
-        .sum();
-    let ratio = squares.sqrt() / owned.info().contrast;
-    // Modes of together 1e−4 of the light are left out.
-    assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
+    let one_wavelength_of_a_lamp_along_the_normal = BandwidthDescription {
+        linewidth: 0.0,
+        shape: LineShape::Rectangular as u32,
+        source_half_angle: 0.025,
+        to_pupil: [0.0, 0.0, 1.0],
+        ..DESCRIPTION
+    };
+    let two_peaks = BandwidthDescription {
+        wavelength: f64::NAN,
+        linewidth: 1e-9,
+        peaks: peaks.as_ptr().cast(),
+        peak_count: 2,
+        ..DESCRIPTION
+    };
+    for (description, line) in [
+        (DESCRIPTION, line(20e-9, S::Gaussian)),
+        (tall_heights, line(20e-9, S::Lorentzian)),
+        (
+            one_wavelength_of_a_lamp_along_the_normal,
+            line(0.0, S::Rectangular),
+        ),
+        (two_peaks, two),
+    ] {
+        let (owned, line, moved) = (made(&description), line.unwrap(), [0.3, 0.1]);
+        let cell = cell(&description, line.wavelength());
+        let speckle = PolychromaticSpeckle {
+            line: &line,
+            cell: &cell,
+        };
+        let (handle, info, draw) = (owned.handle, owned.info(), line.draw(0.2));
+        let wave = Wave {
+            wave_number: draw,
+            pupil_shift: draw / cell.tilt_wave_number(),
+            phase_per_height: draw * cell.height_factor(),
+        };
+        agree! {
+            description;
+            tem00_bandwidth_covariance(handle, moved.as_ptr()) = speckle.covariance(moved);
+            tem00_bandwidth_line_noise_ratio(handle, 0.0) = speckle.line_noise_ratio(Rows::Thin);
+            tem00_bandwidth_line_noise_ratio(handle, 3.0) =
+                speckle.line_noise_ratio(Rows::Height(3.0));
+            tem00_bandwidth_draw(handle, 0.2) = wave;
+        }
+        let sum = speckle.patterns(|speckle| speckle.contrast().powi(2));
+        // SAFETY: they belong to the handle.
+        let (patterns, heights) = unsafe {
+            (
+                slice::from_raw_parts(info.patterns, info.pattern_count),
+                slice::from_raw_parts(info.heights.cast::<[f64; 2]>(), info.height_count),
+            )
+        };
+        assert_eq!((patterns, heights), (&*sum.fractions, &*sum.heights));
+        assert_eq!(info.contrast, speckle.contrast());
+        assert_eq!(info.coherence_length, line.coherence_length());
+        assert_eq!(info.tilt_wave_number, cell.tilt_wave_number());
+        let tilt = (-cell.tilt()).normalize_or_zero();
+        assert_eq!(info.tilt, tilt.to_array());
+    }
+}
+
+fn cell(description: &BandwidthDescription, wavelength: f64) -> ResolutionCell {
+    let cell = ResolutionCell::new(CellGeometry {
+        to_source: description.to_source.into(),
+        to_pupil: description.to_pupil.into(),
+        normal: description.normal.into(),
+        sin_aperture: description.sin_aperture,
+        wavelength,
+    });
+    let relief = Relief {
+        rms_height: description.rms_height,
+        correlation_length: description.correlation_length,
+    };
+    let extent = SourceExtent::disc(description.source_half_angle).unwrap();
+    let cell = cell.unwrap().with_relief(relief).unwrap();
+    cell.with_source_extent(extent)
 }
 
 #[test]
@@ -147,65 +177,6 @@ fn the_field_moves_over_the_pupil_as_a_change_of_wavelength_says() {
         (wave.phase_per_height.abs() / phase.abs() - 1.0).abs() < 1e-6,
         "{phase}"
     );
-}
-
-#[test]
-fn the_extent_of_a_source_is_patterns() {
-    let wide = made(&BandwidthDescription {
-        source_half_angle: 0.025,
-        ..DESCRIPTION
-    });
-    let squares =
-        |owned: &Owned<Bandwidth>| owned.patterns().iter().map(|part| part * part).sum::<f64>();
-    let point = made(&DESCRIPTION);
-    assert_eq!(wide.heights(), point.heights());
-    let ratio = (wide.info().contrast / point.info().contrast).powi(2);
-    assert!(
-        ratio < 0.5 && (squares(&wide) / ratio - 1.0).abs() < 1e-3,
-        "{ratio}"
-    );
-}
-
-#[test]
-fn one_wavelength_is_one_height_without_a_phase() {
-    let owned = made(&BandwidthDescription {
-        linewidth: 0.0,
-        ..DESCRIPTION
-    });
-    let wave: Wave = ask!(tem00_bandwidth_draw(owned.handle, 0.9));
-    assert_eq!([wave.pupil_shift, wave.phase_per_height], [0.0; 2]);
-    assert_eq!(owned.patterns(), [1.0]);
-    assert_eq!(owned.heights().len(), 1);
-    assert!(
-        (owned.info().contrast - 1.0).abs() < 1e-12,
-        "{:?}",
-        owned.info()
-    );
-    let along_normal = BandwidthDescription {
-        to_pupil: [0.0, 0.0, 1.0],
-        ..DESCRIPTION
-    };
-    let info = made(&along_normal).info();
-    assert_eq!(
-        (info.tilt, info.tilt_wave_number),
-        ([0.0; 3], f64::INFINITY)
-    );
-}
-
-#[test]
-fn peaks_are_a_line() {
-    let peaks = [[448e-9, 1.0], [453e-9, 3.0]];
-    let description = BandwidthDescription {
-        wavelength: f64::NAN,
-        linewidth: 1e-9,
-        peaks: peaks.as_ptr().cast(),
-        peak_count: 2,
-        ..DESCRIPTION
-    };
-    let line = SpectralLine::from_peaks(&peaks).unwrap();
-    let line = line.with_linewidth(1e-9, tem00_coherence::LineShape::Gaussian);
-    let info = made(&description).info();
-    assert_eq!(info.coherence_length, line.unwrap().coherence_length());
 }
 
 #[test]

@@ -90,7 +90,7 @@ impl Page {
     ///
     /// Returns an error if there is no such setting, or the value is not in its range.
     pub fn set(&mut self, name: &str, value: f64) -> Result<(), JsError> {
-        let changes = self.values.set(name, value)?;
+        let changes = self.values.set(name, value).map_err(refused)?;
         self.changed = self.changed.max(changes);
         Ok(())
     }

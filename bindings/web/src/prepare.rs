@@ -4,7 +4,7 @@ use glam::DVec3;
 use tem00_camera::{Camera, CameraDescription};
 use tem00_coherence::SpectralLine;
 use tem00_numerics::cast::to_usize;
-use tem00_shading::{BeamShape, KernelFrame, Laser, LaserDescription, PlacedLight, Pose};
+use tem00_shading::{BeamShape, Laser, LaserDescription, PlacedLight, Pose};
 use tem00_speckle::{SpeckleStack, StackOptions, StackPlan};
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
 
@@ -108,14 +108,9 @@ impl SpotSpeckle {
     ///
     /// Returns an error unless `step` is three finite numbers.
     pub fn frame(&self, step: &[f64]) -> Result<Vec<f32>, JsError> {
-        let frame = KernelFrame {
-            camera: &self.camera,
-            laser: &self.laser,
-            motion: &Pose::along(vector("step", step)?)?.into(),
-            plan: &self.plan,
-            reach: self.plan.reach(),
-        };
-        Ok(frame.to_rows()?.as_flattened().to_vec())
+        let pose = Pose::along(vector("step", step)?)?;
+        let rows = speckle::frame(&self.camera, &self.laser, pose, &self.plan)?;
+        Ok(rows.as_flattened().to_vec())
     }
 
     /// Returns the coefficients of all slices, row by row: real and imaginary parts.

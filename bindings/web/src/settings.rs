@@ -1,6 +1,6 @@
 //! What can be set, in the units that a person thinks in.
 
-use core::fmt;
+use crate::AnyError;
 
 /// A number that can be set.
 #[derive(Clone, Copy, Debug)]
@@ -109,58 +109,22 @@ settings! {
     seed "Seed" Allowed::Between(0.0, 4_294_967_295.0), 1.0 Stack;
 }
 
-/// A value that cannot be set.
-#[derive(Clone, Debug, PartialEq)]
-pub enum SettingError {
-    /// There is no setting of that name.
-    Unknown(String),
-    /// The value is beyond what is allowed.
-    OutOfRange {
-        /// The name of the setting.
-        name: &'static str,
-        /// The value.
-        value: f64,
-        /// What is allowed.
-        range: [f64; 2],
-    },
-}
-
-impl fmt::Display for SettingError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Unknown(name) => write!(f, "there is no setting `{name}`"),
-            Self::OutOfRange {
-                name,
-                value,
-                range: [min, max],
-            } => write!(f, "`{name}` is {value}: it must be from {min} to {max}"),
-        }
-    }
-}
-
-impl core::error::Error for SettingError {}
-
 impl Values {
     /// Sets the value of that name, and says what has to be made again.
     ///
     /// # Errors
     ///
     /// Returns an error if there is no such setting, or the value is not in its range.
-    pub fn set(&mut self, name: &str, value: f64) -> Result<Changes, SettingError> {
-        let unknown = || SettingError::Unknown(name.to_owned());
+    pub fn set(&mut self, name: &str, value: f64) -> Result<Changes, AnyError> {
+        let unknown = || format!("there is no setting `{name}`");
         let setting = SETTINGS.iter().find(|setting| setting.name == name);
-        let Setting {
-            name,
-            allowed,
-            changes,
-            ..
-        } = *setting.ok_or_else(unknown)?;
-        let range = allowed.range();
-        if !(range[0]..=range[1]).contains(&value) {
-            return Err(SettingError::OutOfRange { name, value, range });
+        let setting = setting.ok_or_else(unknown)?;
+        let [min, max] = setting.allowed.range();
+        if !(min..=max).contains(&value) {
+            return Err(format!("`{name}` is {value}: it must be from {min} to {max}").into());
         }
         *self.slot(name).ok_or_else(unknown)? = value;
-        Ok(changes)
+        Ok(setting.changes)
     }
 }
 

@@ -3,7 +3,7 @@
 use tem00_decorrelation::ImagingGeometry;
 use tem00_gpu::{Gpu, GpuStack};
 use tem00_numerics::cast::to_usize;
-use tem00_shading::KernelFrame;
+use tem00_shading::{Camera, KernelFrame, Laser, Pose, ShadingError};
 use tem00_speckle::{PupilField, SlicePath, SpeckleError, SpeckleStack, StackNeeds, StackPlan};
 
 use crate::{
@@ -43,6 +43,28 @@ pub fn plan(
         frames: 2,
         memory_limit,
     })
+}
+
+/// The struct `Tem00SpeckleFrame` of a part in a pose, for the stack of a plan.
+///
+/// # Errors
+///
+/// Returns an error if a number overflows in single precision.
+pub fn frame(
+    camera: &Camera,
+    laser: &Laser,
+    pose: Pose,
+    plan: &StackPlan,
+) -> Result<[[f32; 4]; 14], ShadingError> {
+    let (motion, reach) = (&pose.into(), plan.reach());
+    KernelFrame {
+        camera,
+        laser,
+        motion,
+        plan,
+        reach,
+    }
+    .to_rows()
 }
 
 /// A part at rest needs one slice.
@@ -104,13 +126,7 @@ impl Speckle {
     ///
     /// Returns an error if the settings make no camera, no laser or no pose.
     pub fn rows(&self, values: &Values) -> Result<[[f32; 4]; 14], AnyError> {
-        let frame = KernelFrame {
-            camera: &optics::camera(values)?,
-            laser: &optics::laser(values)?,
-            motion: &optics::pose(values)?.into(),
-            plan: &self.plan,
-            reach: self.plan.reach(),
-        };
-        Ok(frame.to_rows()?)
+        let (camera, laser) = (optics::camera(values)?, optics::laser(values)?);
+        Ok(frame(&camera, &laser, optics::pose(values)?, &self.plan)?)
     }
 }

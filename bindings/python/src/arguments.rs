@@ -1,12 +1,11 @@
 //! Arguments of Python as values of the library.
 
-use numpy::Complex32;
 use pyo3::{exceptions::PyTypeError, prelude::*};
 use tem00_decorrelation::{DMat3, DVec2, DVec3};
 use tem00_numerics::Grid;
 
 use crate::{
-    arrays::{ComplexImage, Image, Numbers, Whole},
+    arrays::{Numbers, Pixel, Whole, image},
     error::refused,
 };
 
@@ -29,7 +28,7 @@ pub(crate) fn object<'a, 'py, T: pyo3::PyClass>(
 }
 
 /// Names the argument in a `TypeError`, as PyO3 does.
-fn kind(name: &str, error: PyErr) -> PyErr {
+pub(crate) fn kind(name: &str, error: PyErr) -> PyErr {
     Python::attach(|py| match error.is_instance_of::<PyTypeError>(py) {
         true => PyTypeError::new_err(format!("argument '{name}': {}", error.value(py))),
         false => error,
@@ -137,16 +136,10 @@ impl<'py> Take<'py> for Samples {
     }
 }
 
-/// Images as arrays [row, column].
-impl<'py> Take<'py> for Grid<f32> {
+/// An image as an array [row, column].
+impl<'py, S: Pixel> Take<'py> for Grid<S> {
     fn take(given: &Bound<'py, PyAny>, name: &'static str) -> PyResult<Self> {
-        extracted::<Image<'_>>(given, name)?.grid(name)
-    }
-}
-
-impl<'py> Take<'py> for Grid<Complex32> {
-    fn take(given: &Bound<'py, PyAny>, name: &'static str) -> PyResult<Self> {
-        extracted::<ComplexImage<'_>>(given, name)?.grid(name)
+        image(given, name)
     }
 }
 

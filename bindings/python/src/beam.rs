@@ -9,12 +9,14 @@ mod gaussian;
 mod light;
 mod line;
 mod map;
+mod placed;
 mod profile;
 
 use pyo3::prelude::*;
 
 pub(crate) use self::{
-    light::{Light, named},
+    light::Light,
+    placed::{Placed, named},
     profile::LineProfile,
 };
 
@@ -35,8 +37,9 @@ pub(crate) mod beam {
         cross_section::CrossSection,
         fit::{CausticFit, FitError, KnifeEdgeFit},
         gaussian::{GaussianBeam, LocatedBeam},
-        light::{Light, Placement},
+        light::Light,
         line::{FanGeometry, LaserLine},
+        placed::Placement,
         profile::LineProfile,
     };
 

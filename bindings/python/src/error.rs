@@ -85,6 +85,9 @@ pub(crate) trait OrRaise<T> {
     /// Returns the value, or the error as an exception.
     fn or_raise(self) -> PyResult<T>;
 
+    /// As [`or_raise`](Self::or_raise), for a function of one argument, whatever the error names.
+    fn or_raise_of(self, argument: &'static str) -> PyResult<T>;
+
     /// As [`or_raise`](Self::or_raise), for a function whose argument `to` has another name in the
     /// error: one of `from`.
     fn or_raise_renamed(self, from: &[&str], to: &'static str) -> PyResult<T>;
@@ -95,13 +98,23 @@ impl<T, E: IntoPython> OrRaise<T> for Result<T, E> {
         self.map_err(IntoPython::into_python)
     }
 
-    fn or_raise_renamed(self, from: &[&str], to: &'static str) -> PyResult<T> {
+    fn or_raise_of(self, argument: &'static str) -> PyResult<T> {
         self.or_raise().map_err(|error| match parameter_of(&error) {
-            Some(name) if from.contains(&name.as_str()) => {
-                let message = Python::attach(|py| error.value(py).to_string());
-                refused(to, format!("{to}: {message}"))
-            }
+            Some(name) if name != argument => renamed(&error, argument),
             _ => error,
         })
     }
+
+    fn or_raise_renamed(self, from: &[&str], to: &'static str) -> PyResult<T> {
+        self.or_raise().map_err(|error| match parameter_of(&error) {
+            Some(name) if from.contains(&name.as_str()) => renamed(&error, to),
+            _ => error,
+        })
+    }
+}
+
+/// The refusal of the argument `to` by the message of another.
+fn renamed(error: &PyErr, to: &'static str) -> PyErr {
+    let message = Python::attach(|py| error.value(py).to_string());
+    refused(to, format!("{to}: {message}"))
 }

@@ -7,6 +7,12 @@
 #[macro_use]
 mod methods;
 
+#[macro_use]
+mod classes;
+
+#[macro_use]
+mod functions;
+
 mod arguments;
 mod arrays;
 mod beam;

@@ -112,15 +112,3 @@ impl Made {
         ))
     }
 }
-
-/// The call of a static method by variables of the names of its parameters.
-macro_rules! keywords {
-    ($name:ident: $($argument:ident),+) => {
-        $crate::pickling::Made {
-            name: stringify!($name),
-            keywords: vec![$((stringify!($argument), $argument)),+],
-        }
-    };
-}
-
-pub(crate) use keywords;

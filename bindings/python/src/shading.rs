@@ -8,7 +8,7 @@ mod speckle;
 use pyo3::prelude::*;
 use tem00_shading::DVec3;
 
-use crate::arrays::{Column, Components, Vectors};
+use crate::arrays::Components;
 
 /// One call per hit: the factor by which speckle that moves multiplies the light of a laser.
 ///
@@ -37,10 +37,8 @@ fn vector<const K: usize>(
     given.map_or(Ok(default), |given| given.vector(name))
 }
 
-/// The components of vectors, whatever they are: the laws have an answer for NaN.
-fn any<'a>(name: &'static str, vectors: &'a Vectors<'_>) -> PyResult<[Column<'a>; 3]> {
-    Column::components((name, vectors), &[3], f64::INFINITY)
-}
+/// Vectors may be whatever they are: the laws have an answer for NaN.
+const LIMIT: f64 = f64::INFINITY;
 
 /// The vectors with these components.
 fn vectors([x, y, z]: [&[f64]; 3]) -> Vec<DVec3> {

@@ -2,9 +2,9 @@ use numpy::ndarray::{ArrayViewD, Axis};
 use pyo3::{exceptions::PyRuntimeError, prelude::*};
 
 use super::{
-    blocks::Blocks,
-    numbers::{Named, Numbers},
-    results,
+    blocks::{BLOCK, Walk, common_shape},
+    numbers::Numbers,
+    results::{self, element_count},
 };
 use crate::error::refused;
 
@@ -16,41 +16,6 @@ pub(crate) struct Column<'a> {
     pub(crate) values: ArrayViewD<'a, f64>,
     /// The largest magnitude that is allowed; infinite where any value is, also one that is no number.
     pub(crate) limit: f64,
-}
-
-impl<'a> Column<'a> {
-    /// Takes an argument of numbers up to a magnitude.
-    pub(crate) fn new((name, numbers): Named<'a, '_>, limit: f64) -> PyResult<Self> {
-        Ok(Self {
-            name,
-            values: view(numbers)?,
-            limit,
-        })
-    }
-
-    /// Takes the `K` components, row by row, of an argument that holds arrays of the shape `inner` in
-    /// its last axes.
-    pub(crate) fn components<const K: usize>(
-        (name, numbers): Named<'a, '_>,
-        inner: &[usize],
-        limit: f64,
-    ) -> PyResult<[Self; K]> {
-        let shape = numbers.shape();
-        if !shape.ends_with(inner) {
-            let message = format!("{name} must end in the shape {inner:?}, but has {shape:?}");
-            return Err(refused(name, message));
-        }
-        let leading = [&shape[..shape.len() - inner.len()], &[K]].concat();
-        let rows = view(numbers)?
-            .into_shape_with_order(leading)
-            .map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
-        let axis = Axis(rows.ndim() - 1);
-        Ok(std::array::from_fn(|k| Self {
-            name,
-            values: rows.clone().index_axis_move(axis, k),
-            limit,
-        }))
-    }
 }
 
 impl Column<'_> {
@@ -75,14 +40,42 @@ impl Column<'_> {
     }
 }
 
-/// Takes arguments of numbers up to a magnitude.
+/// The largest magnitude of an argument that need only be finite.
+pub(crate) const LIMIT: f64 = f64::MAX;
+
+/// The number of columns of an argument of vectors of `size` components, 0 for numbers.
+pub(crate) const fn width(size: usize) -> usize {
+    if size == 0 { 1 } else { size }
+}
+
+/// Takes arguments of numbers up to a magnitude, and the components of those that hold vectors of a
+/// size above 0 in their last axis: `N` columns together.
 pub(crate) fn columns<'a, const N: usize>(
-    arguments: [Named<'a, '_>; N],
+    arguments: &[(&'static str, &'a Numbers<'_>, usize)],
     limit: f64,
 ) -> PyResult<[Column<'a>; N]> {
     let mut columns = Vec::with_capacity(N);
-    for argument in arguments {
-        columns.push(Column::new(argument, limit)?);
+    for &(name, numbers, size) in arguments {
+        let shape = numbers.shape();
+        let values = view(shape, numbers)?;
+        if size == 0 {
+            columns.push(Column {
+                name,
+                values,
+                limit,
+            });
+            continue;
+        }
+        if !shape.ends_with(&[size]) {
+            let message = format!("{name} must end in the shape [{size}], but has {shape:?}");
+            return Err(refused(name, message));
+        }
+        let axis = Axis(shape.len() - 1);
+        columns.extend((0..size).map(|k| Column {
+            name,
+            values: values.clone().index_axis_move(axis, k),
+            limit,
+        }));
     }
     columns
         .try_into()
@@ -107,30 +100,35 @@ pub(crate) fn evaluate<'py, const N: usize, const M: usize>(
     mut f: impl FnMut([&[f64]; N], [&mut [f64]; M]) + Send,
 ) -> PyResult<[results::Values<'py>; M]> {
     let names = columns.each_ref().map(|column| column.name);
-    let blocks = Blocks::new(names, columns.each_ref().map(|column| column.values.view()))?;
-    let shapes = inner.map(|inner| [blocks.shape(), inner].concat());
+    let shape = common_shape(&columns)?;
+    let mut left = element_count(&shape)?;
+    let shapes = inner.map(|inner| [shape.as_slice(), inner].concat());
     let sizes = inner.map(|inner| inner.iter().product::<usize>());
+    let wide = columns
+        .each_ref()
+        .map(|c| c.values.broadcast(shape.as_slice()));
     let filled = py.detach(|| {
         let mut out = results::zeros_of(shapes.each_ref().map(Vec::as_slice))?;
         let mut rest = out.each_mut().map(Vec::as_mut_slice);
+        let mut walks = wide.each_ref().map(|view| Walk::new(view.as_ref(), left));
         let mut outcome = Ok(());
-        blocks.run(|values| {
+        while left > 0 && outcome.is_ok() {
+            let count = left.min(BLOCK);
+            let values = walks.each_mut().map(|walk| walk.next(count));
+            let mut place = 0;
+            let mut block = rest.each_mut().map(|rest| {
+                let (block, after) = core::mem::take(rest).split_at_mut(count * sizes[place]);
+                place += 1;
+                *rest = after;
+                block
+            });
+            outcome = columns.iter().zip(values).try_for_each(|(c, v)| c.check(v));
             if outcome.is_ok() {
-                let count = values[0].len();
-                let mut place = 0;
-                let mut block = rest.each_mut().map(|rest| {
-                    let (block, after) = core::mem::take(rest).split_at_mut(count * sizes[place]);
-                    place += 1;
-                    *rest = after;
-                    block
-                });
-                outcome = columns.iter().zip(values).try_for_each(|(c, v)| c.check(v));
-                if outcome.is_ok() {
-                    f(values, block.each_mut().map(|block| &mut **block));
-                    outcome = check_numbers(names, values, &block);
-                }
+                f(values, block.each_mut().map(|block| &mut **block));
+                outcome = check_numbers(names, values, &block);
             }
-        });
+            left -= count;
+        }
         outcome.map(|()| out)
     })?;
     let mut arrays = Vec::with_capacity(M);
@@ -157,8 +155,8 @@ fn check_numbers<const N: usize>(
     Ok(())
 }
 
-fn view<'a>(numbers: &'a Numbers<'_>) -> PyResult<ArrayViewD<'a, f64>> {
-    ArrayViewD::from_shape(numbers.shape(), numbers.values()?)
+fn view<'a>(shape: &[usize], numbers: &'a Numbers<'_>) -> PyResult<ArrayViewD<'a, f64>> {
+    ArrayViewD::from_shape(shape, numbers.values()?)
         .map_err(|error| PyRuntimeError::new_err(error.to_string()))
 }
 

@@ -1,65 +1,78 @@
 use numpy::{
     Complex32, Complex64, Element, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods,
-    PyReadonlyArrayDyn, PyUntypedArrayMethods,
+    PyUntypedArrayMethods,
 };
 use pyo3::{exceptions::PyMemoryError, prelude::*};
 use tem00_numerics::{Grid, cast::to_f32};
 
 use super::numbers::row_by_row;
-use crate::error::refused;
+use crate::{arguments::kind, error::refused};
 
-/// An image as an argument: a two-dimensional array [row, column] of real numbers.
-#[derive(Debug)]
-pub(crate) struct Image<'py>(Pixels<'py, f32, f64>);
+/// A number that images are of, and the one of twice the precision that it is rounded from.
+pub(crate) trait Pixel: Element + Copy {
+    type Wide: Element;
 
-/// A complex image as an argument: a two-dimensional array [row, column] of numbers.
-#[derive(Debug)]
-pub(crate) struct ComplexImage<'py>(Pixels<'py, Complex32, Complex64>);
+    /// NumPy's letters for the kinds of numbers that an image may hold.
+    const KINDS: &[u8];
 
-/// Pixels as they are stored, or in the precision of everything else.
-#[derive(Debug)]
-enum Pixels<'py, S: Element, D: Element> {
-    Single(PyReadonlyArrayDyn<'py, S>),
-    Double(PyReadonlyArrayDyn<'py, D>),
+    fn rounded(wide: &Self::Wide) -> Self;
+
+    fn is_finite(&self) -> bool;
 }
 
-impl<'py, S: Element, D: Element> Pixels<'py, S, D> {
-    fn of(argument: &Bound<'py, PyAny>, kinds: &[u8]) -> PyResult<Self> {
-        Ok(if argument.cast::<PyArrayDyn<S>>().is_ok() {
-            Self::Single(row_by_row(argument, kinds)?)
-        } else {
-            Self::Double(row_by_row(argument, kinds)?)
-        })
+impl Pixel for f32 {
+    type Wide = f64;
+
+    const KINDS: &[u8] = b"iuf";
+
+    fn rounded(wide: &f64) -> Self {
+        to_f32(*wide)
     }
 
-    /// Copies the pixels into a grid.
-    fn grid(
-        &self,
-        name: &'static str,
-        single: impl Fn(&D) -> S,
-        is_finite: impl Fn(&S) -> bool,
-    ) -> PyResult<Grid<S>>
-    where
-        S: Copy,
-    {
-        match self {
-            Self::Single(array) => {
-                let values = array.as_slice()?.iter().copied();
-                grid(name, array.shape(), values, is_finite)
-            }
-            Self::Double(array) => {
-                let values = array.as_slice()?.iter().map(single);
-                grid(name, array.shape(), values, is_finite)
-            }
-        }
+    fn is_finite(&self) -> bool {
+        Self::is_finite(*self)
     }
 }
 
-fn grid<S>(
+impl Pixel for Complex32 {
+    type Wide = Complex64;
+
+    const KINDS: &[u8] = b"iufc";
+
+    fn rounded(wide: &Complex64) -> Self {
+        Self::new(to_f32(wide.re), to_f32(wide.im))
+    }
+
+    fn is_finite(&self) -> bool {
+        self.re.is_finite() && self.im.is_finite()
+    }
+}
+
+/// Copies an image, a two-dimensional array [row, column] of numbers, into a grid.
+///
+/// # Errors
+///
+/// Refuses the argument of this name unless it has two axes, pixels, and only finite ones.
+pub(crate) fn image<S: Pixel>(
+    argument: &Bound<'_, PyAny>,
+    name: &'static str,
+) -> PyResult<Grid<S>> {
+    if argument.cast::<PyArrayDyn<S>>().is_ok() {
+        let array = row_by_row::<S>(argument, S::KINDS).map_err(|error| kind(name, error))?;
+        return grid(name, array.shape(), array.as_slice()?.iter().copied());
+    }
+    let array = row_by_row::<S::Wide>(argument, S::KINDS).map_err(|error| kind(name, error))?;
+    grid(
+        name,
+        array.shape(),
+        array.as_slice()?.iter().map(S::rounded),
+    )
+}
+
+fn grid<S: Pixel>(
     name: &'static str,
     shape: &[usize],
     values: impl ExactSizeIterator<Item = S>,
-    is_finite: impl Fn(&S) -> bool,
 ) -> PyResult<Grid<S>> {
     let &[height, width] = shape else {
         let message = format!("{name} has the shape {shape:?}, but must have two axes");
@@ -70,53 +83,12 @@ fn grid<S>(
         .try_reserve_exact(values.len())
         .map_err(|error| PyMemoryError::new_err(error.to_string()))?;
     pixels.extend(values);
-    if !pixels.iter().all(is_finite) {
+    if !pixels.iter().all(S::is_finite) {
         let message = format!("{name} must be finite in single precision everywhere");
         return Err(refused(name, message));
     }
     Grid::from_vec(width, height, pixels)
         .map_err(|error| refused(name, format!("{name} must hold pixels: {error}")))
-}
-
-impl<'py> FromPyObject<'_, 'py> for Image<'py> {
-    type Error = PyErr;
-
-    fn extract(argument: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        Ok(Self(Pixels::of(&argument, b"iuf")?))
-    }
-}
-
-impl<'py> FromPyObject<'_, 'py> for ComplexImage<'py> {
-    type Error = PyErr;
-
-    fn extract(argument: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        Ok(Self(Pixels::of(&argument, b"iufc")?))
-    }
-}
-
-impl Image<'_> {
-    /// Copies the image into a grid.
-    ///
-    /// # Errors
-    ///
-    /// Refuses the argument of this name unless it has two axes, pixels, and only finite ones.
-    pub(crate) fn grid(&self, name: &'static str) -> PyResult<Grid<f32>> {
-        self.0
-            .grid(name, |&pixel| to_f32(pixel), |pixel| pixel.is_finite())
-    }
-}
-
-impl ComplexImage<'_> {
-    /// Copies the image into a grid.
-    ///
-    /// # Errors
-    ///
-    /// As [`Image::grid`].
-    pub(crate) fn grid(&self, name: &'static str) -> PyResult<Grid<Complex32>> {
-        let narrow = |pixel: &Complex64| Complex32::new(to_f32(pixel.re), to_f32(pixel.im));
-        let is_finite = |pixel: &Complex32| pixel.re.is_finite() && pixel.im.is_finite();
-        self.0.grid(name, narrow, is_finite)
-    }
 }
 
 /// An image as a result, in Python an array [row, column].

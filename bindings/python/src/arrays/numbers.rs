@@ -25,9 +25,6 @@ pub(crate) enum Numbers<'py> {
     Array(PyReadonlyArrayDyn<'py, f64>),
 }
 
-/// An argument and its name.
-pub(crate) type Named<'a, 'py> = (&'static str, &'a Numbers<'py>);
-
 /// An array of one axis: the components of a vector, or a list.
 pub(crate) type Components<'py> = Numbers<'py>;
 

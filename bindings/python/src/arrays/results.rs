@@ -1,6 +1,4 @@
-use core::convert::Infallible;
-
-use numpy::{Element, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods};
+use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::{exceptions::PyMemoryError, prelude::*, types::PyFloat};
 use tem00_decorrelation::{DMat3, DVec2, DVec3};
 use tem00_numerics::available_memory;
@@ -74,7 +72,7 @@ pub(super) fn zeros_of<T: Copy + Default, const M: usize>(
 }
 
 /// Moves values, row by row, into an array of this shape.
-pub(crate) fn array<'py, T: Element>(
+fn array<'py, T: Element>(
     py: Python<'py>,
     shape: &[usize],
     values: Vec<T>,
@@ -88,84 +86,49 @@ pub(crate) type Values<'py> = Bound<'py, PyAny>;
 /// An array, with vectors or matrices in its last axes.
 pub(crate) type Array<'py> = Bound<'py, PyAny>;
 
-/// A vector, in Python an array of shape (K,).
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Vector<const K: usize>([f64; K]);
-
-impl<const K: usize> From<[f64; K]> for Vector<K> {
-    fn from(components: [f64; K]) -> Self {
-        Self(components)
-    }
-}
-
-impl From<DVec2> for Vector<2> {
-    fn from(vector: DVec2) -> Self {
-        Self(vector.to_array())
-    }
-}
-
-impl From<DVec3> for Vector<3> {
-    fn from(vector: DVec3) -> Self {
-        Self(vector.to_array())
-    }
-}
-
-impl<'py, const K: usize> IntoPyObject<'py> for Vector<K> {
-    type Target = PyArray1<f64>;
-    type Output = Bound<'py, PyArray1<f64>>;
-    type Error = Infallible;
-
-    fn into_pyobject(self, py: Python<'py>) -> Result<Self::Output, Infallible> {
-        Ok(vector_array(py, self.0))
-    }
-}
-
-/// A list of numbers, in Python an array of shape (n,).
+/// Numbers by their shape: in Python an array of float64. A vector has the shape (K,), a list (n,) and
+/// a matrix, by its rows, (3, 3).
 #[derive(Clone, Debug)]
-pub(crate) struct List(Vec<f64>);
+pub(crate) struct Floats(Vec<usize>, Vec<f64>);
 
-impl From<Vec<f64>> for List {
+impl<const K: usize> From<[f64; K]> for Floats {
+    fn from(components: [f64; K]) -> Self {
+        Vec::from(components).into()
+    }
+}
+
+impl From<Vec<f64>> for Floats {
     fn from(values: Vec<f64>) -> Self {
-        Self(values)
+        Self(vec![values.len()], values)
     }
 }
 
-impl<'py> IntoPyObject<'py> for List {
-    type Target = PyArray1<f64>;
-    type Output = Bound<'py, PyArray1<f64>>;
-    type Error = Infallible;
-
-    fn into_pyobject(self, py: Python<'py>) -> Result<Self::Output, Infallible> {
-        Ok(PyArray1::from_vec(py, self.0))
+impl From<DVec2> for Floats {
+    fn from(vector: DVec2) -> Self {
+        vector.to_array().into()
     }
 }
 
-/// A matrix by its rows, in Python an array of shape (3, 3).
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Matrix([[f64; 3]; 3]);
+impl From<DVec3> for Floats {
+    fn from(vector: DVec3) -> Self {
+        vector.to_array().into()
+    }
+}
 
-impl From<DMat3> for Matrix {
+impl From<DMat3> for Floats {
     fn from(matrix: DMat3) -> Self {
-        Self(matrix.transpose().to_cols_array_2d())
+        Self(vec![3, 3], matrix.transpose().to_cols_array().into())
     }
 }
 
-impl<'py> IntoPyObject<'py> for Matrix {
-    type Target = PyArray2<f64>;
-    type Output = Bound<'py, PyArray2<f64>>;
+impl<'py> IntoPyObject<'py> for Floats {
+    type Target = PyArrayDyn<f64>;
+    type Output = Bound<'py, PyArrayDyn<f64>>;
     type Error = PyErr;
 
     fn into_pyobject(self, py: Python<'py>) -> PyResult<Self::Output> {
-        PyArray1::from_slice(py, self.0.as_flattened()).reshape([3, 3])
+        array(py, &self.0, self.1)
     }
-}
-
-/// Returns a vector as an array of the shape (K,).
-pub(crate) fn vector_array<'py, const K: usize>(
-    py: Python<'py>,
-    components: [f64; K],
-) -> Bound<'py, PyArray1<f64>> {
-    PyArray1::from_slice(py, &components)
 }
 
 /// A float for the shape of a number, else an array.

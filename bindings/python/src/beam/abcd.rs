@@ -7,10 +7,9 @@ use pyo3::{
 use tem00_beam::LocatedBeam as Beam;
 use tem00_optics::{self as physics, ComplexBeamParameter};
 
-use super::{gaussian::LocatedBeam, map::components};
+use super::{gaussian::LocatedBeam, map::LIMIT};
 use crate::{
     arguments::{Take, extracted},
-    arrays::{Array, Vectors, map_inner},
     error::{OrRaise, refused},
 };
 
@@ -198,6 +197,19 @@ methods! {
     /// True if rays stay near the axis however often they travel through the system.
     get is_stable -> bool;
 
+    /// Return the rays behind the system.
+    ///
+    /// Parameters
+    /// ----------
+    /// ray : array_like, shape (..., 2)
+    ///     Height above the axis, in metres, and slope of each ray in front.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, shape (..., 2)
+    ///     Height and slope of each ray behind.
+    over transform_ray(ray: 2) -> [2] = |ray| this.0.transform_ray(ray);
+
     made_by new(a, b, c, d);
 }
 
@@ -220,22 +232,6 @@ impl AbcdMatrix {
     fn tilted_mirror(curvature: f64, angle_of_incidence: f64) -> PyResult<(Self, Self)> {
         let planes = physics::AbcdMatrix::tilted_mirror(curvature, angle_of_incidence);
         Ok(planes.or_raise()?.map(Self).into())
-    }
-
-    /// Return the rays behind the system.
-    ///
-    /// Parameters
-    /// ----------
-    /// ray : array_like, shape (..., 2)
-    ///     Height above the axis, in metres, and slope of each ray in front.
-    ///
-    /// Returns
-    /// -------
-    /// ndarray, shape (..., 2)
-    ///     Height and slope of each ray behind.
-    fn transform_ray<'py>(&self, py: Python<'py>, ray: Vectors<'py>) -> PyResult<Array<'py>> {
-        let columns = components::<2>(("ray", &ray))?;
-        map_inner(py, columns, &[2], |ray| self.0.transform_ray(ray))
     }
 }
 

@@ -3,12 +3,7 @@
 use pyo3::prelude::*;
 use tem00_beam::{self as physics, DVec3, LocatedBeam as Beam};
 
-use super::{
-    abcd::AbcdMatrix,
-    cross_section::CrossSection,
-    gaussian::LocatedBeam,
-    map::{map, map_vector},
-};
+use super::{abcd::AbcdMatrix, cross_section::CrossSection, gaussian::LocatedBeam, map::LIMIT};
 use crate::{
     error::OrRaise,
     pickling::{Recipe, by_constructor},
@@ -29,22 +24,6 @@ class! {
 
 #[pymethods]
 impl AstigmaticBeam {
-    /// Return the beam behind a system whose matrices act along the principal axes of the beam.
-    ///
-    /// Parameters
-    /// ----------
-    /// systems : (AbcdMatrix, AbcdMatrix)
-    ///     The matrices of the first and the second axis.
-    ///
-    /// Returns
-    /// -------
-    /// AstigmaticBeam
-    ///     The beam seen from the output plane.
-    fn through_axes(&self, systems: [PyRef<'_, AbcdMatrix>; 2]) -> PyResult<Self> {
-        let beam = tem00_optics::through_axes(&self.0, systems.map(|system| system.0));
-        Ok(Self(beam.or_raise_renamed(&["determinant"], "systems")?))
-    }
-
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
         let (x, y) = slf.get().axes();
         let [x, y] = [x, y].map(|axis| Bound::new(slf.py(), axis).and_then(|axis| axis.repr()));
@@ -63,6 +42,22 @@ impl AstigmaticBeam {
 
 methods! {
     impl AstigmaticBeam as this: this.0;
+
+    /// Return the beam behind a system whose matrices act along the principal axes of the beam.
+    ///
+    /// Parameters
+    /// ----------
+    /// systems : (AbcdMatrix, AbcdMatrix)
+    ///     The matrices of the first and the second axis.
+    ///
+    /// Returns
+    /// -------
+    /// AstigmaticBeam
+    ///     The beam seen from the output plane.
+    call through_axes(_py; systems: [PyRef<'py, AbcdMatrix>; 2]) -> Self = {
+        let beam = tem00_optics::through_axes(&this.0, systems.map(|system| system.0));
+        Ok(Self(beam.or_raise_renamed(&["determinant"], "systems")?))
+    };
 
     make new(x: Beam, y: Beam) =
         physics::AstigmaticBeam::new(x, y).or_raise_renamed(&["wavelength"], "y");
@@ -118,7 +113,7 @@ methods! {
     /// ----------
     /// z : float or array_like
     ///     Distance from the reference plane, in metres.
-    vectors radii_at(z) -> 2 = this.0.radii_at(z);
+    over radii_at(z) -> [2] = |[z]| this.0.radii_at(z);
 
     /// Return the wavefront curvatures along the principal axes, in 1/m, in the last axis; positive where diverging.
     ///
@@ -126,7 +121,7 @@ methods! {
     /// ----------
     /// z : float or array_like
     ///     Distance from the reference plane, in metres.
-    vectors curvatures_at(z) -> 2 = this.0.curvatures_at(z);
+    over curvatures_at(z) -> [2] = |[z]| this.0.curvatures_at(z);
 
     /// Return the energy-flow vector per watt of beam power, in 1/m².
     ///
@@ -142,8 +137,7 @@ methods! {
     /// -------
     /// ndarray, shape (..., 3)
     ///     Energy flow per watt, with its components in the last axis.
-    vectors flux_per_watt(x, y, z) -> 3 =
-        this.0.flux_per_watt(DVec3::new(x, y, z)).to_array();
+    over flux_per_watt(x, y, z) -> [3] = |[x, y, z]| this.0.flux_per_watt(DVec3::new(x, y, z)).to_array();
 
     /// The beams along the first and the second principal axis.
     get axes -> (LocatedBeam, LocatedBeam) = {

@@ -3,11 +3,8 @@
 use pyo3::prelude::*;
 use tem00_optics as physics;
 
-use super::map::{components, coordinate, map, try_map};
-use crate::{
-    arrays::{Values, Vector, Vectors, map_inner},
-    error::OrRaise,
-};
+use super::map::{LIMIT, coordinate};
+use crate::{arrays::Floats, error::OrRaise};
 
 class! {
     /// The irradiance of a Gaussian beam of 1 W over a plane across it.
@@ -34,35 +31,6 @@ impl CrossSection {
     }
 }
 
-#[pymethods]
-impl CrossSection {
-    /// Return the fraction of the power within a rectangle.
-    ///
-    /// Parameters
-    /// ----------
-    /// centre : array_like, shape (..., 2)
-    ///     Centre of the rectangle, in metres.
-    /// size : array_like, shape (..., 2)
-    ///     Full lengths of its sides along x and y, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Fraction from 0 to 1, in the common shape of the leading axes.
-    fn power_in_rectangle<'py>(
-        &self,
-        py: Python<'py>,
-        centre: Vectors<'py>,
-        size: Vectors<'py>,
-    ) -> PyResult<Values<'py>> {
-        let [x, y] = components(("centre", &centre))?;
-        let [width, height] = components(("size", &size))?;
-        map_inner(py, [x, y, width, height], &[], |[x, y, width, height]| {
-            [self.0.power_in_rectangle([x, y], [width, height])]
-        })
-    }
-}
-
 methods! {
     impl CrossSection as this: this.0;
 
@@ -83,17 +51,17 @@ methods! {
     try_map circle_radius(fraction);
 
     /// Principal radii (1/e²), in metres, shape (2,).
-    get radii -> Vector<2>;
+    get radii -> Floats;
 
     /// Full widths at half maximum along x and y, in metres, shape (2,).
-    get fwhm -> Vector<2>;
+    get fwhm -> Floats;
 
     /// D4σ widths along x and y, in metres, shape (2,).
-    get d4_sigma -> Vector<2>;
+    get d4_sigma -> Floats;
 
     /// Distances, in metres, shape (2,), by which a knife edge moves along x and y between the
     /// positions that leave 10 % and 90 % of the power.
-    get knife_edge_width -> Vector<2>;
+    get knife_edge_width -> Floats;
 
     /// Effective area ``π w_x w_y``, in m².
     get effective_area -> f64;
@@ -129,6 +97,22 @@ methods! {
     /// position : float or array_like
     ///     Place of the edge on x, in metres; it covers everything below.
     map power_past_knife_edge(position);
+
+    /// Return the fraction of the power within a rectangle.
+    ///
+    /// Parameters
+    /// ----------
+    /// centre : array_like, shape (..., 2)
+    ///     Centre of the rectangle, in metres.
+    /// size : array_like, shape (..., 2)
+    ///     Full lengths of its sides along x and y, in metres.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Fraction from 0 to 1, in the common shape of the leading axes.
+    over power_in_rectangle(centre: 2, size: 2) -> [] =
+        |[x, y, size @ ..]| [this.0.power_in_rectangle([x, y], size)];
 
     made_by new(radii);
 }

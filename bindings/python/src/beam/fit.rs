@@ -3,7 +3,7 @@
 use pyo3::{exceptions::PyRuntimeError, prelude::*};
 use tem00_optics::{self as physics, RadiusErrors};
 
-use super::{gaussian::LocatedBeam, map::map};
+use super::{gaussian::LocatedBeam, map::LIMIT};
 use crate::{arguments::Take, arrays::named_class, error::refused};
 
 pyo3::create_exception!(
@@ -57,16 +57,15 @@ class! {
     "tem00.beam" CausticFit(physics::CausticFit): Copy
 }
 
-#[pymethods]
-impl CausticFit {
+methods! {
+    impl CausticFit as this: this.0;
+
     #[new]
     #[pyo3(signature = (wavelength, positions, radii, errors = None))]
-    fn new(
-        wavelength: Bound<'_, PyAny>,
-        positions: Bound<'_, PyAny>,
-        radii: Bound<'_, PyAny>,
-        errors: Option<Bound<'_, PyAny>>,
-    ) -> PyResult<Self> {
+    build new(_py;
+        wavelength: Bound<'py, PyAny>, positions: Bound<'py, PyAny>, radii: Bound<'py, PyAny>,
+        errors: Option<Bound<'py, PyAny>>
+    ) = {
         take!(wavelength: f64, positions: Vec<f64>, radii: Vec<f64>);
         let name = errors
             .as_ref()
@@ -88,11 +87,7 @@ impl CausticFit {
         physics::CausticFit::with_errors(wavelength, &positions, &radii, errors)
             .map(Self)
             .map_err(|error| raised(error, "radii"))
-    }
-}
-
-methods! {
-    impl CausticFit as this: this.0;
+    };
 
     /// Waist radius w₀, in metres.
     get waist_radius -> Estimate;
@@ -156,26 +151,21 @@ class! {
     "tem00.beam" KnifeEdgeFit(physics::KnifeEdgeFit): Copy
 }
 
-#[pymethods]
-impl KnifeEdgeFit {
+methods! {
+    impl KnifeEdgeFit as this: this.0;
+
     #[new]
     #[pyo3(signature = (positions, powers, with_background = false))]
-    fn new(
-        positions: Bound<'_, PyAny>,
-        powers: Bound<'_, PyAny>,
-        with_background: bool,
-    ) -> PyResult<Self> {
+    build new(_py;
+        positions: Bound<'py, PyAny>, powers: Bound<'py, PyAny>, with_background: bool
+    ) = {
         take!(positions: Vec<f64>, powers: Vec<f64>);
         let fit = match with_background {
             true => physics::KnifeEdgeFit::with_background(&positions, &powers),
             false => physics::KnifeEdgeFit::new(&positions, &powers),
         };
         fit.map(Self).map_err(|error| raised(error, "powers"))
-    }
-}
-
-methods! {
-    impl KnifeEdgeFit as this: this.0;
+    };
 
     /// Radius (1/e²) of the beam along the movement of the edge, in metres.
     get radius -> Estimate;

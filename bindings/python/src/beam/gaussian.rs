@@ -4,11 +4,7 @@ use pyo3::prelude::*;
 use tem00_beam::{self as physics, DVec3};
 use tem00_optics::{ComplexBeamParameter, through_lens};
 
-use super::{
-    abcd::Parameter,
-    cross_section::CrossSection,
-    map::{map, map_vector, try_map},
-};
+use super::{abcd::Parameter, cross_section::CrossSection, map::LIMIT};
 use crate::{
     error::OrRaise,
     pickling::{Recipe, by_constructor},
@@ -132,8 +128,7 @@ methods! {
     /// -------
     /// ndarray, shape (..., 3)
     ///     Energy flow per watt, with its components in the last axis.
-    vectors flux_per_watt(x, y, z) -> 3 =
-        this.0.flux_per_watt(DVec3::new(x, y, z)).to_array();
+    over flux_per_watt(x, y, z) -> [3] = |[x, y, z]| this.0.flux_per_watt(DVec3::new(x, y, z)).to_array();
 
     /// Wavelength in the medium the beam travels in, in metres.
     get wavelength -> f64;

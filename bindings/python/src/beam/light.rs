@@ -1,65 +1,18 @@
 //! Lights in a scene, prepared for a renderer.
 
 use numpy::PyArray2;
-use pyo3::{
-    exceptions::PyTypeError,
-    prelude::*,
-    types::{PyFloat, PyTuple},
-};
+use pyo3::{exceptions::PyTypeError, prelude::*};
 use tem00_beam::{
-    self as physics, AngularProfile, AstigmaticBeam, DVec3, Emitter, GaussianBeam, LaserLine,
-    LineLight, LineProfile, NextEventSlices, SpotLight, TabulatedLineLight,
+    self as physics, AstigmaticBeam, GaussianBeam, LaserLine, LineLight, LineProfile, SpotLight,
+    TabulatedLineLight,
 };
 use tem00_numerics::cast::to_f32;
-use tem00_shading::{BeamShape, Laser, PlacedLight};
 
-use super::map::{components, coordinate, coordinates, map_vector, uniforms};
-use crate::arrays::{
-    Array, Column, Numbers, Values, Vector, Vectors, evaluate, map_inner, named_class,
+use super::{
+    map::{LIMIT, check_uniforms, coordinate},
+    placed::{Placed, densities, lit, named, spread},
 };
-
-class! {
-    /// Position and directions of a light, in world coordinates.
-    ///
-    /// The values are checked where a light is placed.
-    ///
-    /// Parameters
-    /// ----------
-    /// origin : array_like, shape (3,)
-    ///     Centre of the aperture (the lens of a laser line), in metres.
-    /// direction : array_like, shape (3,)
-    ///     Direction of travel, of any length.
-    /// fan_axis : array_like, shape (3,)
-    ///     Any vector that is not parallel to ``direction``. Its part at right angles to ``direction``
-    ///     is the x axis of the light, along which a fan opens.
-    "tem00.beam" Placement(physics::Placement): Copy
-}
-
-methods! {
-    impl Placement as this: this.0;
-
-    make new(origin: DVec3, direction: DVec3, fan_axis: DVec3) =
-        PyResult::Ok(physics::Placement { origin, direction, fan_axis });
-
-    /// Centre of the aperture, in metres, shape (3,).
-    field origin -> Vector<3>;
-
-    /// Direction of travel, of any length, shape (3,).
-    field direction -> Vector<3>;
-
-    /// A vector in the plane of the fan, shape (3,).
-    field fan_axis -> Vector<3>;
-
-    made_by new(origin, direction, fan_axis);
-}
-
-/// A light as the beam crate holds it.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Placed {
-    Spot(SpotLight),
-    Line(LineLight),
-    Tabulated(LineLight, AngularProfile),
-}
+use crate::arrays::{Array, Floats, Numbers, Values, Vectors, evaluate, named_class};
 
 class! {
     /// A beam or a laser line in a scene, which a renderer can evaluate and sample.
@@ -81,6 +34,205 @@ methods! {
     impl Light as this: this.0;
 
     unmade "spot, elliptic or line";
+
+    /// Return the fields of the light in the order of memory, as rows of four: what a kernel reads.
+    ///
+    /// Those of a beam are ``origin, power | ex, cutoff | ey, wavelength | ez, 0 | x: w0_sq, theta_sq, z0, 0 |
+    /// y: likewise``, with ``w² = w0_sq + theta_sq (z − z0)²``. Those of a line are ``origin, power | ex, cutoff |
+    /// ey, apex_offset | ez, source_radius | y: w0_sq, theta_sq, z0, 0 | flat, sigma, variable, mass | half_slope,
+    /// focus_on_plane, wavelength, 0``: its thickness depends on the slant distance from the virtual apex, and the
+    /// power along the fan is uniform on ±``flat`` in a variable, convolved with a normal density of the standard
+    /// deviation ``sigma`` and divided by ``mass``. ``variable`` is 0 for ``tan θ``, 1 for ``θ``, 2 for ``sin θ`` and
+    /// 3 for a table.
+    ///
+    /// Returns
+    /// -------
+    /// float32 ndarray, shape (6, 4) or (7, 4)
+    ///     6 rows for a beam, 7 for a line.
+    call to_rows(py; ) -> Bound<'py, PyArray2<f32>> = {
+        let rows = this.0.rows().into_iter();
+        let rows: Vec<_> = rows.map(|row| Vec::from(row.map(to_f32))).collect();
+        Ok(PyArray2::from_vec2(py, &rows)?)
+    };
+
+    /// Return the irradiance, in W/m², of a plane at right angles to the axis.
+    ///
+    /// Parameters
+    /// ----------
+    /// x, y, z : float or array_like
+    ///     Coordinates of the points, in metres; they broadcast together.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Irradiance, in the common shape.
+    call irradiance(py; x: Numbers<'py>, y: Numbers<'py>, z: Numbers<'py>) -> Values<'py> = {
+        let points = columns!(LIMIT; x, y, z);
+        let [irradiance] = evaluate(py, points, [&[]], |[x, y, z], [out]| {
+            this.0.ask(|light| light.irradiance_batch(x, y, z, out));
+        })?;
+        Ok(irradiance)
+    };
+
+    /// Return the light at points as one direction each: that of the mean energy flow.
+    ///
+    /// A surface of normal ``n`` receives the irradiance ``e_perp·|n·wi|``, and reflects
+    /// ``f·|n·wi|·V·e_perp``.
+    ///
+    /// Parameters
+    /// ----------
+    /// x, y, z : float or array_like
+    ///     Coordinates of the points, in metres; they broadcast together.
+    ///
+    /// Returns
+    /// -------
+    /// NextEvent or None
+    ///     For numbers None outside the cut-off and behind the aperture, where no shadow ray is
+    ///     needed. For arrays all members are 0 there.
+    call next_event(py; x: Numbers<'py>, y: Numbers<'py>, z: Numbers<'py>) -> Option<Array<'py>> = {
+        lit(
+            py,
+            "NextEvent",
+            this.0.events(py, columns!(LIMIT; x, y, z))?,
+            3,
+        )
+    };
+
+    /// Return the light at points as one direction each, drawn from the phase-space density there.
+    ///
+    /// The estimate of the reflected radiance is ``f·|n·wi|·V·value``: ``value`` has been divided by
+    /// the density already. The mean over ``u`` is that of ``next_event``.
+    ///
+    /// Parameters
+    /// ----------
+    /// x, y, z : float or array_like
+    ///     Coordinates of the points, in metres; they broadcast together and with ``u[..., 0]``.
+    /// u : array_like, shape (..., 2)
+    ///     Uniform variates in [0, 1).
+    ///
+    /// Returns
+    /// -------
+    /// SampledEvent or None
+    ///     For numbers None outside the cut-off and behind the aperture. For arrays all members are 0
+    ///     there.
+    call next_event_sampled(py;
+        x: Numbers<'py>, y: Numbers<'py>, z: Numbers<'py>, u: Vectors<'py>
+    ) -> Option<Array<'py>> = {
+        check_uniforms(&u)?;
+        let inner: [&[usize]; 5] = [&[3], &[], &[3], &[], &[]];
+        let events = spread(
+            py,
+            columns!(LIMIT; x, y, z, u: 2),
+            inner,
+            |[x, y, z, u @ ..]| {
+                let event = this.0.ask(|light| light.next_event_sampled([x, y, z], u))?;
+                let ([a, b, c], [d, e, f]) = (event.point, event.wi);
+                Some([a, b, c, event.distance, d, e, f, event.value, event.pdf])
+            },
+        )?;
+        lit(py, "SampledEvent", events, 3)
+    };
+
+    /// Return the light that rays from points meet, for directions that a material has drawn.
+    ///
+    /// It is the other technique beside ``next_event_sampled``: a direction of the density ``q`` has
+    /// the weight ``q / (q + pdf)`` of the balance heuristic. Only what is nearer than ``distance``
+    /// hides the light.
+    ///
+    /// Parameters
+    /// ----------
+    /// x, y, z : float or array_like
+    ///     Coordinates of the points, in metres; they broadcast together and with ``wi[..., 0]``.
+    /// wi : array_like, shape (..., 3)
+    ///     Unit vectors towards the light.
+    ///
+    /// Returns
+    /// -------
+    /// ApertureHit or None
+    ///     For numbers None where the ray meets no light. For arrays all members are 0 there.
+    call hit(py;
+        x: Numbers<'py>, y: Numbers<'py>, z: Numbers<'py>, wi: Vectors<'py>
+    ) -> Option<Array<'py>> = {
+        let inner: [&[usize]; 4] = [&[3], &[], &[], &[]];
+        let rays = columns!(LIMIT; x, y, z, wi: 3);
+        let hits = spread(py, rays, inner, |[x, y, z, wi @ ..]| {
+            let hit = this.0.ask(|light| light.hit([x, y, z], wi))?;
+            let [a, b, c] = hit.point;
+            Some([a, b, c, hit.distance, hit.radiance, hit.pdf])
+        })?;
+        lit(py, "ApertureHit", hits, 2)
+    };
+
+    /// Return rays that leave the aperture, drawn from the phase-space density of the light.
+    ///
+    /// Parameters
+    /// ----------
+    /// u : array_like, shape (..., 4)
+    ///     Uniform variates in [0, 1).
+    ///
+    /// Returns
+    /// -------
+    /// RaySample
+    ///     The rays, in the shape of ``u[..., 0]``.
+    call sample_ray(py; u: Vectors<'py>) -> Array<'py> = {
+        let inner: [&[usize]; 8] = [&[3], &[], &[3], &[], &[], &[], &[], &[]];
+        check_uniforms(&u)?;
+        let u = columns!(LIMIT; u: 4);
+        let [origin, flux, direction, cos, pdf @ ..] = spread(py, u, inner, |u| {
+            let ray = this.0.ask(|light| light.sample_ray(u));
+            let ([a, b, c], [d, e, f], [g, h, i, j]) =
+                (ray.origin, ray.direction, densities(&ray.pdf));
+            Some([a, b, c, ray.flux, d, e, f, ray.cos, g, h, i, j])
+        })?;
+        let pdf = named(py, "RayPdf", pdf)?;
+        named(py, "RaySample", [origin, flux, direction, cos, pdf])
+    };
+
+    /// Return the densities with which ``sample_ray`` draws the rays through points.
+    ///
+    /// They are 0 for a ray against the axis.
+    ///
+    /// Parameters
+    /// ----------
+    /// x, y, z : float or array_like
+    ///     Coordinates of any point of each ray, in metres; they broadcast together and with
+    ///     ``d[..., 0]``.
+    /// d : array_like, shape (..., 3)
+    ///     Unit vectors along the rays.
+    ///
+    /// Returns
+    /// -------
+    /// RayPdf
+    ///     The densities, in the common shape.
+    call ray_pdf(py;
+        x: Numbers<'py>, y: Numbers<'py>, z: Numbers<'py>, d: Vectors<'py>
+    ) -> Array<'py> = {
+        let rays = columns!(LIMIT; x, y, z, d: 3);
+        let pdf = spread(py, rays, [&[]; 4], |[x, y, z, d @ ..]| {
+            Some(densities(&this.0.ask(|light| light.ray_pdf([x, y, z], d))))
+        })?;
+        named(py, "RayPdf", pdf)
+    };
+
+    /// Return bounds of the light from the aperture to a distance along its axis.
+    ///
+    /// The box holds all points within the cut-off. The cone holds the mean energy flow at all of
+    /// them; a sampled ray is outside it with a probability of about exp(-2 cutoff²).
+    ///
+    /// Parameters
+    /// ----------
+    /// l : float
+    ///     Distance along the axis, in metres, within ±1e30.
+    ///
+    /// Returns
+    /// -------
+    /// Bounds
+    call bounds(py; l: f64) -> Array<'py> = {
+        let l = coordinate("l", l)?;
+        let bounds = this.0.ask(|light| light.bounds(l));
+        let [min, max, axis] = [bounds.min, bounds.max, bounds.axis].map(Floats::from);
+        named_class(py, "Bounds")?.call1((min, max, axis, bounds.half_angle))
+    };
 
     /// Place a beam in a scene.
     ///
@@ -124,16 +276,16 @@ methods! {
     };
 
     /// Centre of the aperture (the lens of a laser line), in metres, shape (3,).
-    get origin -> Vector<3> = this.0.frame_vector(0);
+    get origin -> Floats = this.0.frame_vector(0);
 
     /// Unit vector of the local x axis, along which a fan opens, shape (3,).
-    get ex -> Vector<3> = this.0.frame_vector(1);
+    get ex -> Floats = this.0.frame_vector(1);
 
     /// Unit vector of the local y axis, the normal of the plane of a fan, shape (3,).
-    get ey -> Vector<3> = this.0.frame_vector(2);
+    get ey -> Floats = this.0.frame_vector(2);
 
     /// Unit vector along the direction of travel, shape (3,).
-    get ez -> Vector<3> = this.0.frame_vector(3);
+    get ez -> Floats = this.0.frame_vector(3);
 
     /// Power, in watts.
     get power -> f64 = this.0.ask(|light| light.power());
@@ -154,135 +306,7 @@ methods! {
     /// -------
     /// ndarray, shape (..., 3)
     ///     Energy flow, with its components in the last axis.
-    vectors flux(x, y, z) -> 3 = this.0.ask(|light| light.flux([x, y, z]));
-}
-
-#[pymethods]
-impl Light {
-    /// Return the fields of the light in the order of memory, as rows of four: what a kernel reads.
-    ///
-    /// Those of a beam are ``origin, power | ex, cutoff | ey, wavelength | ez, 0 | x: w0_sq, theta_sq, z0, 0 |
-    /// y: likewise``, with ``w² = w0_sq + theta_sq (z − z0)²``. Those of a line are ``origin, power | ex, cutoff |
-    /// ey, apex_offset | ez, source_radius | y: w0_sq, theta_sq, z0, 0 | flat, sigma, variable, mass | half_slope,
-    /// focus_on_plane, wavelength, 0``: its thickness depends on the slant distance from the virtual apex, and the
-    /// power along the fan is uniform on ±``flat`` in a variable, convolved with a normal density of the standard
-    /// deviation ``sigma`` and divided by ``mass``. ``variable`` is 0 for ``tan θ``, 1 for ``θ``, 2 for ``sin θ`` and
-    /// 3 for a table.
-    ///
-    /// Returns
-    /// -------
-    /// float32 ndarray, shape (6, 4) or (7, 4)
-    ///     6 rows for a beam, 7 for a line.
-    fn to_rows<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let rows = self.0.rows().into_iter();
-        let rows: Vec<_> = rows.map(|row| Vec::from(row.map(to_f32))).collect();
-        Ok(PyArray2::from_vec2(py, &rows)?)
-    }
-
-    fn __repr__(&self) -> String {
-        let [origin, axis] = [0, 3].map(|row| self.0.frame_vector(row));
-        let kind = match self.0 {
-            Placed::Spot(_) => "spot",
-            _ => "line",
-        };
-        let power = self.power();
-        format!(
-            "<Light: {kind}, origin={:?}, axis={:?}, power={power:?}>",
-            origin, axis
-        )
-    }
-
-    fn __reduce__(&self) -> PyResult<()> {
-        let message = "a placed light cannot be pickled: pickle its beam or line and its placement";
-        Err(PyTypeError::new_err(message))
-    }
-
-    /// Return the irradiance, in W/m², of a plane at right angles to the axis.
-    ///
-    /// Parameters
-    /// ----------
-    /// x, y, z : float or array_like
-    ///     Coordinates of the points, in metres; they broadcast together.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Irradiance, in the common shape.
-    fn irradiance<'py>(
-        &self,
-        py: Python<'py>,
-        x: Numbers<'py>,
-        y: Numbers<'py>,
-        z: Numbers<'py>,
-    ) -> PyResult<Values<'py>> {
-        let points = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
-        let [irradiance] = evaluate(py, points, [&[]], |[x, y, z], [out]| {
-            self.0.ask(|light| light.irradiance_batch(x, y, z, out));
-        })?;
-        Ok(irradiance)
-    }
-
-    /// Return the light at points as one direction each: that of the mean energy flow.
-    ///
-    /// A surface of normal ``n`` receives the irradiance ``e_perp·|n·wi|``, and reflects
-    /// ``f·|n·wi|·V·e_perp``.
-    ///
-    /// Parameters
-    /// ----------
-    /// x, y, z : float or array_like
-    ///     Coordinates of the points, in metres; they broadcast together.
-    ///
-    /// Returns
-    /// -------
-    /// NextEvent or None
-    ///     For numbers None outside the cut-off and behind the aperture, where no shadow ray is
-    ///     needed. For arrays all members are 0 there.
-    fn next_event<'py>(
-        &self,
-        py: Python<'py>,
-        x: Numbers<'py>,
-        y: Numbers<'py>,
-        z: Numbers<'py>,
-    ) -> PyResult<Option<Array<'py>>> {
-        let events = self.events(py, coordinates([("x", &x), ("y", &y), ("z", &z)])?)?;
-        lit(py, "NextEvent", events, 3)
-    }
-
-    /// Return the light at points as one direction each, drawn from the phase-space density there.
-    ///
-    /// The estimate of the reflected radiance is ``f·|n·wi|·V·value``: ``value`` has been divided by
-    /// the density already. The mean over ``u`` is that of ``next_event``.
-    ///
-    /// Parameters
-    /// ----------
-    /// x, y, z : float or array_like
-    ///     Coordinates of the points, in metres; they broadcast together and with ``u[..., 0]``.
-    /// u : array_like, shape (..., 2)
-    ///     Uniform variates in [0, 1).
-    ///
-    /// Returns
-    /// -------
-    /// SampledEvent or None
-    ///     For numbers None outside the cut-off and behind the aperture. For arrays all members are 0
-    ///     there.
-    fn next_event_sampled<'py>(
-        &self,
-        py: Python<'py>,
-        x: Numbers<'py>,
-        y: Numbers<'py>,
-        z: Numbers<'py>,
-        u: Vectors<'py>,
-    ) -> PyResult<Option<Array<'py>>> {
-        let [x, y, z] = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
-        let [u0, u1] = uniforms(&u)?;
-        let inner: [&[usize]; 5] = [&[3], &[], &[3], &[], &[]];
-        let events = spread(py, [x, y, z, u0, u1], inner, |[x, y, z, u @ ..]| {
-            let event = self.0.ask(|light| light.next_event_sampled([x, y, z], u))?;
-            let ([a, b, c], [d, e, f]) = (event.point, event.wi);
-            Some([a, b, c, event.distance, d, e, f, event.value, event.pdf])
-        })?;
-        lit(py, "SampledEvent", events, 3)
-    }
+    over flux(x, y, z) -> [3] = |[x, y, z]| this.0.ask(|light| light.flux([x, y, z]));
 
     /// Return the density, per steradian, with which ``next_event_sampled`` draws a direction.
     ///
@@ -299,114 +323,8 @@ impl Light {
     /// -------
     /// float or ndarray
     ///     Density per steradian, in the common shape.
-    fn next_event_pdf<'py>(
-        &self,
-        py: Python<'py>,
-        x: Numbers<'py>,
-        y: Numbers<'py>,
-        z: Numbers<'py>,
-        wi: Vectors<'py>,
-    ) -> PyResult<Values<'py>> {
-        map_inner(
-            py,
-            rays([&x, &y, &z], ("wi", &wi))?,
-            &[],
-            |[x, y, z, wi @ ..]| [self.0.ask(|light| light.next_event_pdf([x, y, z], wi))],
-        )
-    }
-
-    /// Return the light that rays from points meet, for directions that a material has drawn.
-    ///
-    /// It is the other technique beside ``next_event_sampled``: a direction of the density ``q`` has
-    /// the weight ``q / (q + pdf)`` of the balance heuristic. Only what is nearer than ``distance``
-    /// hides the light.
-    ///
-    /// Parameters
-    /// ----------
-    /// x, y, z : float or array_like
-    ///     Coordinates of the points, in metres; they broadcast together and with ``wi[..., 0]``.
-    /// wi : array_like, shape (..., 3)
-    ///     Unit vectors towards the light.
-    ///
-    /// Returns
-    /// -------
-    /// ApertureHit or None
-    ///     For numbers None where the ray meets no light. For arrays all members are 0 there.
-    fn hit<'py>(
-        &self,
-        py: Python<'py>,
-        x: Numbers<'py>,
-        y: Numbers<'py>,
-        z: Numbers<'py>,
-        wi: Vectors<'py>,
-    ) -> PyResult<Option<Array<'py>>> {
-        let inner: [&[usize]; 4] = [&[3], &[], &[], &[]];
-        let hits = spread(
-            py,
-            rays([&x, &y, &z], ("wi", &wi))?,
-            inner,
-            |[x, y, z, wi @ ..]| {
-                let hit = self.0.ask(|light| light.hit([x, y, z], wi))?;
-                let [a, b, c] = hit.point;
-                Some([a, b, c, hit.distance, hit.radiance, hit.pdf])
-            },
-        )?;
-        lit(py, "ApertureHit", hits, 2)
-    }
-
-    /// Return rays that leave the aperture, drawn from the phase-space density of the light.
-    ///
-    /// Parameters
-    /// ----------
-    /// u : array_like, shape (..., 4)
-    ///     Uniform variates in [0, 1).
-    ///
-    /// Returns
-    /// -------
-    /// RaySample
-    ///     The rays, in the shape of ``u[..., 0]``.
-    fn sample_ray<'py>(&self, py: Python<'py>, u: Vectors<'py>) -> PyResult<Array<'py>> {
-        let inner: [&[usize]; 8] = [&[3], &[], &[3], &[], &[], &[], &[], &[]];
-        let [origin, flux, direction, cos, pdf @ ..] = spread(py, uniforms(&u)?, inner, |u| {
-            let ray = self.0.ask(|light| light.sample_ray(u));
-            let ([a, b, c], [d, e, f], [g, h, i, j]) =
-                (ray.origin, ray.direction, densities(&ray.pdf));
-            Some([a, b, c, ray.flux, d, e, f, ray.cos, g, h, i, j])
-        })?;
-        let pdf = named(py, "RayPdf", pdf)?;
-        named(py, "RaySample", [origin, flux, direction, cos, pdf])
-    }
-
-    /// Return the densities with which ``sample_ray`` draws the rays through points.
-    ///
-    /// They are 0 for a ray against the axis.
-    ///
-    /// Parameters
-    /// ----------
-    /// x, y, z : float or array_like
-    ///     Coordinates of any point of each ray, in metres; they broadcast together and with
-    ///     ``d[..., 0]``.
-    /// d : array_like, shape (..., 3)
-    ///     Unit vectors along the rays.
-    ///
-    /// Returns
-    /// -------
-    /// RayPdf
-    ///     The densities, in the common shape.
-    fn ray_pdf<'py>(
-        &self,
-        py: Python<'py>,
-        x: Numbers<'py>,
-        y: Numbers<'py>,
-        z: Numbers<'py>,
-        d: Vectors<'py>,
-    ) -> PyResult<Array<'py>> {
-        let rays = rays([&x, &y, &z], ("d", &d))?;
-        let pdf = spread(py, rays, [&[]; 4], |[x, y, z, d @ ..]| {
-            Some(densities(&self.0.ask(|light| light.ray_pdf([x, y, z], d))))
-        })?;
-        named(py, "RayPdf", pdf)
-    }
+    over next_event_pdf(x, y, z, wi: 3) -> [] =
+        |[x, y, z, wi @ ..]| [this.0.ask(|light| light.next_event_pdf([x, y, z], wi))];
 
     /// Return the radiance, in W/(m² sr), of the rays through points.
     ///
@@ -425,41 +343,8 @@ impl Light {
     /// -------
     /// float or ndarray
     ///     Radiance, in the common shape.
-    fn radiance<'py>(
-        &self,
-        py: Python<'py>,
-        x: Numbers<'py>,
-        y: Numbers<'py>,
-        z: Numbers<'py>,
-        d: Vectors<'py>,
-    ) -> PyResult<Values<'py>> {
-        map_inner(
-            py,
-            rays([&x, &y, &z], ("d", &d))?,
-            &[],
-            |[x, y, z, d @ ..]| [self.0.ask(|light| light.radiance([x, y, z], d))],
-        )
-    }
-
-    /// Return bounds of the light from the aperture to a distance along its axis.
-    ///
-    /// The box holds all points within the cut-off. The cone holds the mean energy flow at all of
-    /// them; a sampled ray is outside it with a probability of about exp(-2 cutoff²).
-    ///
-    /// Parameters
-    /// ----------
-    /// l : float
-    ///     Distance along the axis, in metres, within ±1e30.
-    ///
-    /// Returns
-    /// -------
-    /// Bounds
-    fn bounds<'py>(&self, py: Python<'py>, l: f64) -> PyResult<Array<'py>> {
-        let l = coordinate("l", l)?;
-        let bounds = self.0.ask(|light| light.bounds(l));
-        let [min, max, axis] = [bounds.min, bounds.max, bounds.axis].map(Vector::from);
-        named_class(py, "Bounds")?.call1((min, max, axis, bounds.half_angle))
-    }
+    over radiance(x, y, z, d: 3) -> [] =
+        |[x, y, z, d @ ..]| [this.0.ask(|light| light.radiance([x, y, z], d))];
 
     /// Return bounds of the power, in watts, that reaches axis-aligned boxes.
     ///
@@ -475,149 +360,27 @@ impl Light {
     /// -------
     /// float or ndarray
     ///     Bounds, in the common shape.
-    fn power_bound<'py>(
-        &self,
-        py: Python<'py>,
-        min: Vectors<'py>,
-        max: Vectors<'py>,
-    ) -> PyResult<Values<'py>> {
-        let [a, b, c] = components(("min", &min))?;
-        let [d, e, f] = components(("max", &max))?;
-        map_inner(py, [a, b, c, d, e, f], &[], |[a, b, c, max @ ..]| {
-            [self.0.ask(|light| light.power_bound([a, b, c], max))]
-        })
-    }
+    over power_bound(min: 3, max: 3) -> [] =
+        |[x, y, z, max @ ..]| [this.0.ask(|light| light.power_bound([x, y, z], max))];
 }
 
+#[pymethods]
 impl Light {
-    /// The light of a laser.
-    pub(crate) fn of(laser: &Laser) -> Self {
-        Self(match (laser.placed(), &laser.description().shape) {
-            (PlacedLight::Spot(light), _) => Placed::Spot(light),
-            (
-                PlacedLight::Line(line),
-                BeamShape::Line {
-                    profile: LineProfile::Tabulated(table),
-                    ..
-                },
-            ) => Placed::Tabulated(line, table.clone()),
-            (PlacedLight::Line(line), _) => Placed::Line(line),
-        })
+    fn __repr__(&self) -> String {
+        let [origin, axis] = [0, 3].map(|row| self.0.frame_vector(row));
+        let kind = match self.0 {
+            Placed::Spot(_) => "spot",
+            _ => "line",
+        };
+        let power = self.power();
+        format!(
+            "<Light: {kind}, origin={:?}, axis={:?}, power={power:?}>",
+            origin, axis
+        )
     }
 
-    /// The members of the next events at points, all 0 where there is no light.
-    ///
-    /// The point follows from the batch form, which leaves it out: `p + distance · wi`.
-    pub(crate) fn events<'py>(
-        &self,
-        py: Python<'py>,
-        points: [Column<'_>; 3],
-    ) -> PyResult<[Values<'py>; 4]> {
-        evaluate(py, points, [&[3], &[], &[3], &[]], |points, out| {
-            let [x, y, z] = points;
-            let [point, distance, wi, e_perp] = out;
-            let mut towards = [x, y, z].map(|x| vec![0.0; x.len()]);
-            let slices = NextEventSlices {
-                wi: towards.each_mut().map(Vec::as_mut_slice),
-                distance,
-                e_perp,
-            };
-            self.0.ask(|light| light.next_event_batch(x, y, z, slices));
-            for i in 0..x.len() {
-                for (k, (p, towards)) in points.iter().zip(&towards).enumerate() {
-                    wi[3 * i + k] = towards[i];
-                    if e_perp[i] > 0.0 {
-                        point[3 * i + k] = p[i] + distance[i] * towards[i];
-                    }
-                }
-            }
-        })
+    fn __reduce__(&self) -> PyResult<()> {
+        let message = "a placed light cannot be pickled: pickle its beam or line and its placement";
+        Err(PyTypeError::new_err(message))
     }
-}
-
-impl Placed {
-    /// The fields in the order of memory.
-    fn rows(&self) -> Vec<[f64; 4]> {
-        match self {
-            Self::Spot(light) => light.to_rows().to_vec(),
-            Self::Line(light) | Self::Tabulated(light, _) => light.to_rows().to_vec(),
-        }
-    }
-
-    fn frame_vector(&self, row: usize) -> [f64; 3] {
-        let [x, y, z, _] = self.rows()[row];
-        [x, y, z]
-    }
-
-    /// Asks the light, whichever it is.
-    fn ask<R>(&self, query: impl FnOnce(&dyn Emitter) -> R) -> R {
-        match self {
-            Self::Spot(light) => query(light),
-            Self::Line(light) => query(light),
-            Self::Tabulated(line, profile) => query(&TabulatedLineLight {
-                line: *line,
-                knots: profile.knots(),
-            }),
-        }
-    }
-}
-
-/// Points, and a vector for each.
-fn rays<'a, 'py>(
-    [x, y, z]: [&'a Numbers<'py>; 3],
-    vectors: (&'static str, &'a Vectors<'py>),
-) -> PyResult<[Column<'a>; 6]> {
-    let [x, y, z] = coordinates([("x", x), ("y", y), ("z", z)])?;
-    let [a, b, c] = components(vectors)?;
-    Ok([x, y, z, a, b, c])
-}
-
-/// Applies `f` to columns, and spreads its values, one after the other, over arrays of the shapes `inner`, all 0
-/// where there are none.
-fn spread<'py, const N: usize, const M: usize, const S: usize>(
-    py: Python<'py>,
-    columns: [Column<'_>; N],
-    inner: [&[usize]; M],
-    f: impl Fn([f64; N]) -> Option<[f64; S]> + Send + Sync,
-) -> PyResult<[Values<'py>; M]> {
-    let sizes = inner.map(|inner| inner.iter().product::<usize>());
-    evaluate(py, columns, inner, |columns, mut out| {
-        for i in 0..columns[0].len() {
-            let values = f(columns.map(|column| column[i])).unwrap_or([0.0; S]);
-            let mut rest = values.as_slice();
-            for (out, size) in out.iter_mut().zip(sizes) {
-                let (own, after) = rest.split_at(size);
-                out[i * size..][..size].copy_from_slice(own);
-                rest = after;
-            }
-        }
-    })
-}
-
-fn densities(pdf: &physics::RayPdf) -> [f64; 4] {
-    let given = [pdf.direction_given_position, pdf.position_given_direction];
-    [pdf.position, given[0], pdf.direction, given[1]]
-}
-
-/// The named tuple of members.
-pub(crate) fn named<'py, const M: usize>(
-    py: Python<'py>,
-    name: &str,
-    members: [Values<'py>; M],
-) -> PyResult<Array<'py>> {
-    named_class(py, name)?.call1(PyTuple::new(py, members)?)
-}
-
-/// The named tuple of members, unless the one at `place` is the number 0, of a point in the dark.
-fn lit<'py, const M: usize>(
-    py: Python<'py>,
-    name: &str,
-    members: [Values<'py>; M],
-    place: usize,
-) -> PyResult<Option<Array<'py>>> {
-    let number = members[place].cast::<PyFloat>();
-    if number.is_ok_and(|number| number.value() <= 0.0) {
-        return Ok(None);
-    }
-    named(py, name, members).map(Some)
 }

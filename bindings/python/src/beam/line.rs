@@ -3,11 +3,7 @@
 use pyo3::prelude::*;
 use tem00_beam::{self as physics, DVec3, FocusCurve};
 
-use super::{
-    gaussian::GaussianBeam,
-    map::{map, map_vector},
-    profile::LineProfile,
-};
+use super::{gaussian::GaussianBeam, map::LIMIT, profile::LineProfile};
 use crate::arrays::Numbers;
 
 class! {
@@ -37,16 +33,15 @@ crate::arguments::choices! {
     FocusCurve: "equal_distance" = Self::EqualDistance, "equal_plane" = Self::EqualPlane;
 }
 
-#[pymethods]
-impl FanGeometry {
+methods! {
+    impl FanGeometry as this: this.0;
+
     #[new]
     #[pyo3(signature = (fan_angle, apex_offset, focus_distance, focus_curve = None))]
-    fn new(
-        fan_angle: f64,
-        apex_offset: f64,
-        focus_distance: f64,
-        focus_curve: Option<Bound<'_, PyAny>>,
-    ) -> PyResult<Self> {
+    build new(_py;
+        fan_angle: f64, apex_offset: f64, focus_distance: f64,
+        focus_curve: Option<Bound<'py, PyAny>>
+    ) = {
         let focus_curve = crate::arguments::optional(focus_curve, "focus_curve")?;
         Ok(Self(physics::FanGeometry {
             fan_angle,
@@ -54,11 +49,7 @@ impl FanGeometry {
             focus_distance,
             focus_curve: focus_curve.unwrap_or_default(),
         }))
-    }
-}
-
-methods! {
-    impl FanGeometry as this: this.0;
+    };
 
     /// Surface on which the line is thinnest off the axis, ``"equal_distance"`` or ``"equal_plane"``.
     get focus_curve -> &'static str = match this.0.focus_curve {
@@ -121,8 +112,7 @@ methods! {
     /// -------
     /// ndarray, shape (..., 3)
     ///     Energy flow per watt, with its components in the last axis.
-    vectors flux_per_watt(x, y, z) -> 3 =
-        this.0.flux_per_watt(DVec3::new(x, y, z)).to_array();
+    over flux_per_watt(x, y, z) -> [3] = |[x, y, z]| this.0.flux_per_watt(DVec3::new(x, y, z)).to_array();
 
     /// The beam across the fan.
     get focus -> GaussianBeam = this.0.focus().to_owned();

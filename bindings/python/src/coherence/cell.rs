@@ -3,7 +3,7 @@ use pyo3::prelude::*;
 use tem00_coherence::{self as physics, DVec3, PolychromaticSpeckle, Rows, SpectralLine as Line};
 
 use crate::{
-    arrays::{Array, List, Vector},
+    arrays::{Array, Floats},
     error::{OrRaise, refused},
 };
 
@@ -29,22 +29,25 @@ class! {
     "tem00.coherence" ResolutionCell(physics::ResolutionCell)
 }
 
-#[pymethods]
 impl ResolutionCell {
+    const fn speckle<'a>(&'a self, line: &'a Line) -> PolychromaticSpeckle<'a> {
+        PolychromaticSpeckle {
+            line,
+            cell: &self.0,
+        }
+    }
+}
+
+methods! {
+    impl ResolutionCell as this: this.0;
+
     #[new]
     #[pyo3(signature = (to_source, to_pupil, normal, sin_aperture, wavelength, rms_height=0.0, correlation_length=0.0, defocus=0.0, source_half_angle=0.0))]
-    #[expect(clippy::too_many_arguments, reason = "Python passes them by name")]
-    fn new(
-        to_source: Bound<'_, PyAny>,
-        to_pupil: Bound<'_, PyAny>,
-        normal: Bound<'_, PyAny>,
-        sin_aperture: f64,
-        wavelength: f64,
-        rms_height: f64,
-        correlation_length: f64,
-        defocus: f64,
-        source_half_angle: f64,
-    ) -> PyResult<Self> {
+    build new(_py;
+        to_source: Bound<'py, PyAny>, to_pupil: Bound<'py, PyAny>, normal: Bound<'py, PyAny>,
+        sin_aperture: f64, wavelength: f64, rms_height: f64, correlation_length: f64, defocus: f64,
+        source_half_angle: f64
+    ) = {
         take!(to_source: DVec3, to_pupil: DVec3, normal: DVec3);
         let cell = physics::ResolutionCell::new(physics::CellGeometry {
             to_source,
@@ -61,22 +64,17 @@ impl ResolutionCell {
         let extent = physics::SourceExtent::disc(source_half_angle);
         let cell = cell.with_defocus(defocus).or_raise()?;
         Ok(Self(cell.with_source_extent(extent.or_raise()?)))
-    }
+    };
 
     /// Return the standard deviation of the position of a laser line over that in light of one wavelength.
     ///
     /// The tilt lies across the line, whose rows are finer than a speckle, or much taller.
     #[pyo3(signature = (line, tall_rows=false))]
-    fn line_noise_ratio(
-        &self,
-        py: Python<'_>,
-        line: Bound<'_, PyAny>,
-        tall_rows: bool,
-    ) -> PyResult<f64> {
+    call line_noise_ratio(py; line: Bound<'py, PyAny>, tall_rows: bool) -> f64 = {
         take!(line: Line);
         let rows = if tall_rows { Rows::Tall } else { Rows::Thin };
-        Ok(py.detach(|| self.speckle(&line).line_noise_ratio(rows)))
-    }
+        Ok(py.detach(|| this.speckle(&line).line_noise_ratio(rows)))
+    };
 
     /// Return the patterns of one wavelength that together have the contrast, as two arrays of float64.
     ///
@@ -87,34 +85,17 @@ impl ResolutionCell {
     /// heights : (m, 2)
     ///     Heights of the relief in metres whose fields add, each with the root of its fraction of the light; none where the
     ///     patterns are looked up as in one wavelength.
-    fn patterns<'py>(
-        &self,
-        py: Python<'py>,
-        line: Bound<'py, PyAny>,
-    ) -> PyResult<(List, Array<'py>)> {
+    call patterns(py; line: Bound<'py, PyAny>) -> (Floats, Array<'py>) = {
         take!(line: Line);
         let patterns = py.detach(|| {
-            let speckle = self.speckle(&line);
+            let speckle = this.speckle(&line);
             speckle.patterns(|speckle| speckle.contrast().powi(2))
         });
         let physics::PatternSum { fractions, heights } = patterns;
         let size = [heights.len(), 2];
         let heights = PyArray1::from_vec(py, heights.into_flattened()).reshape(size)?;
         Ok((fractions.into(), heights.into_any()))
-    }
-}
-
-impl ResolutionCell {
-    const fn speckle<'a>(&'a self, line: &'a Line) -> PolychromaticSpeckle<'a> {
-        PolychromaticSpeckle {
-            line,
-            cell: &self.0,
-        }
-    }
-}
-
-methods! {
-    impl ResolutionCell as this: this.0;
+    };
 
     /// Return the contrast of the speckle in the light of a line.
     fn contrast(line: Line) -> f64 = this.speckle(&line).contrast();
@@ -133,10 +114,10 @@ methods! {
     };
 
     /// Return the fractions of the light in its coherent modes, float64 of shape (n,), the largest first.
-    fn modes(line: Line) -> List = this.speckle(&line).modes();
+    fn modes(line: Line) -> Floats = this.speckle(&line).modes();
 
     /// Path per length on the object by the tilt of the cell, across the line of sight, of shape (3,).
-    get tilt -> Vector<3>;
+    get tilt -> Floats;
 
     /// Path per height.
     get height_factor -> f64;

@@ -1,8 +1,7 @@
-use pyo3::prelude::*;
 use tem00_coherence::{self as physics, LineShape};
 
 use crate::{
-    arrays::map,
+    arrays::LIMIT,
     error::{OrRaise, refused},
 };
 
@@ -18,18 +17,15 @@ class! {
     "tem00.coherence" SpectralLine(physics::SpectralLine)
 }
 
-#[pymethods]
-impl SpectralLine {
-    #[new]
-    #[pyo3(signature = (wavelength, linewidth=0.0))]
-    fn new(wavelength: f64, linewidth: f64) -> PyResult<Self> {
-        let line = physics::SpectralLine::new(wavelength, linewidth, LineShape::Gaussian);
-        Ok(Self(line.or_raise()?))
-    }
-}
-
 methods! {
     impl SpectralLine as this: this.0;
+
+    #[new]
+    #[pyo3(signature = (wavelength, linewidth=0.0))]
+    build new(_py; wavelength: f64, linewidth: f64) = {
+        let line = physics::SpectralLine::new(wavelength, linewidth, LineShape::Gaussian);
+        Ok(Self(line.or_raise()?))
+    };
 
     /// Return a Lorentzian line: long wings, as of a single mode of a diode.
     make lorentzian(wavelength: f64, linewidth: f64) =

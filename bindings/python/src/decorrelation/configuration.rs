@@ -3,7 +3,7 @@ use tem00_decorrelation::{self as physics, DVec3};
 
 use super::rigid::RigidMotion;
 use crate::{
-    arrays::{Vector, named_tuple},
+    arrays::{Floats, named_tuple},
     error::{OrRaise, refused},
 };
 
@@ -32,6 +32,30 @@ class! {
 methods! {
     impl Configuration as this: this.0;
 
+    /// Return the state after surface, camera and light source have moved, as rigid bodies.
+    ///
+    /// Parameters
+    /// ----------
+    /// surface, camera, source : RigidMotion, optional
+    ///     Motions of each; what is left out stands still.
+    #[pyo3(signature = (*, surface = None, camera = None, source = None))]
+    call moved(_py;
+        surface: Option<PyRef<'py, RigidMotion>>, camera: Option<PyRef<'py, RigidMotion>>,
+        source: Option<PyRef<'py, RigidMotion>>
+    ) -> Self = {
+        let [surface, camera, source] = [surface, camera, source]
+            .map(|motion| motion.map_or(physics::RigidMotion::IDENTITY, |motion| motion.0));
+        let motions = physics::RigidMotions {
+            surface,
+            camera,
+            source,
+        };
+        let state = this.0.moved(&motions);
+        Ok(Self(
+            state.or_raise_renamed(&["to_pupil", "point"], "motions")?,
+        ))
+    };
+
     make new(
         wavelength: f64, point: DVec3, normal: DVec3, illumination: physics::Illumination,
         camera: physics::CameraFrame, pupil: DVec3
@@ -50,55 +74,26 @@ methods! {
     get wavelength -> f64;
 
     /// Position of the surface point in metres, of shape (3,).
-    get point -> Vector<3>;
+    get point -> Floats;
 
     /// Unit normal of the surface, of shape (3,).
-    get normal -> Vector<3>;
+    get normal -> Floats;
 
     /// Unit vector from the surface point to the light source, of shape (3,).
-    get direction_to_source -> Vector<3>;
+    get direction_to_source -> Floats;
 
     /// Position of the centre of the entrance pupil in metres, of shape (3,).
-    get pupil -> Vector<3>;
+    get pupil -> Floats;
 
     shown wavelength, point, normal, direction_to_source, pupil;
 }
 
-#[pymethods]
-impl Configuration {
-    /// Return the state after surface, camera and light source have moved, as rigid bodies.
-    ///
-    /// Parameters
-    /// ----------
-    /// surface, camera, source : RigidMotion, optional
-    ///     Motions of each; what is left out stands still.
-    #[pyo3(signature = (*, surface = None, camera = None, source = None))]
-    fn moved(
-        &self,
-        surface: Option<PyRef<'_, RigidMotion>>,
-        camera: Option<PyRef<'_, RigidMotion>>,
-        source: Option<PyRef<'_, RigidMotion>>,
-    ) -> PyResult<Self> {
-        let [surface, camera, source] = [surface, camera, source]
-            .map(|motion| motion.map_or(physics::RigidMotion::IDENTITY, |motion| motion.0));
-        let motions = physics::RigidMotions {
-            surface,
-            camera,
-            source,
-        };
-        let state = self.0.moved(&motions);
-        Ok(Self(
-            state.or_raise_renamed(&["to_pupil", "point"], "motions")?,
-        ))
-    }
-}
-
 named_tuple! {
     SpeckleMotion(physics::SpeckleMotion) as motion: (
-        Vector::from(motion.image_displacement),
-        Vector::from(motion.defocus_displacement),
-        Vector::from(motion.speckle_displacement()),
-        motion.pupil_displacement.map(Vector::from),
+        Floats::from(motion.image_displacement),
+        Floats::from(motion.defocus_displacement),
+        Floats::from(motion.speckle_displacement()),
+        motion.pupil_displacement.map(Floats::from),
         motion.axial_displacement,
         motion.correlation,
     )

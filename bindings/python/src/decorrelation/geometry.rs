@@ -2,67 +2,22 @@ use pyo3::prelude::*;
 use tem00_decorrelation::{self as physics, DVec2, Focus};
 
 use crate::{
-    arguments::{Take, object},
-    arrays::{Numbers, Values, length, map, map_many},
+    arrays::{LIMIT, Numbers, Values, columns, evaluate, length},
     error::{OrRaise, refused},
-    pickling::{Made, Recipe, keywords},
+    pickling::Made,
 };
 
-/// A camera focused on a surface: a lens, its pupils and the sensor behind it.
-///
-/// All lengths are in metres. Wavelengths are those in vacuum, f-numbers those of focus at infinity.
-#[pyclass(frozen, eq, module = "tem00.decorrelation")]
-#[derive(Clone, Debug)]
-pub(crate) struct ImagingGeometry {
-    geometry: physics::ImagingGeometry,
-    made: Made,
-}
-
-impl PartialEq for ImagingGeometry {
-    fn eq(&self, other: &Self) -> bool {
-        self.geometry == other.geometry
-    }
-}
-
-impl<'py> Take<'py> for physics::ImagingGeometry {
-    fn take(given: &Bound<'py, PyAny>, name: &'static str) -> PyResult<Self> {
-        Ok(object::<ImagingGeometry>(given, name)?.get().geometry)
-    }
-}
-
-#[pymethods]
-impl ImagingGeometry {
-    /// Return the geometry of a thin lens that images a surface at a given distance sharply.
+kept_class! {
+    /// A camera focused on a surface: a lens, its pupils and the sensor behind it.
     ///
-    /// Parameters
-    /// ----------
-    /// wavelength, focal_length, f_number : float
-    ///     Light and lens.
-    /// surface_to_pupil : float
-    ///     Distance of the surface from the lens.
-    /// pixel_pitch : float
-    ///     Pixel pitch of the sensor.
-    #[staticmethod]
-    fn from_lens(
-        wavelength: Bound<'_, PyAny>,
-        focal_length: f64,
-        f_number: f64,
-        surface_to_pupil: f64,
-        pixel_pitch: f64,
-    ) -> PyResult<Self> {
-        take!(wavelength: f64);
-        let geometry = physics::ImagingGeometry::from_lens(physics::LensData {
-            wavelength,
-            focal_length,
-            f_number,
-            surface_to_pupil,
-            pixel_pitch,
-        });
-        let made =
-            keywords!(from_lens: wavelength, focal_length, f_number, surface_to_pupil, pixel_pitch);
-        let geometry = geometry.or_raise_renamed(&["pupil_diameter"], "f_number")?;
-        Ok(Self { geometry, made })
-    }
+    /// All lengths are in metres. Wavelengths are those in vacuum, f-numbers those of focus at infinity.
+    "tem00.decorrelation" ImagingGeometry(physics::ImagingGeometry)
+}
+
+methods! {
+    impl ImagingGeometry as this: this.inner;
+
+    unmade "from_lens, from_thick_lens or from_distances";
 
     /// Return the geometry of a lens of many elements.
     ///
@@ -81,17 +36,11 @@ impl ImagingGeometry {
         wavelength, focal_length, f_number, pupil_magnification, pixel_pitch, *,
         magnification = None, surface_to_principal_plane = None, surface_to_pupil = None,
     ))]
-    #[expect(clippy::too_many_arguments, reason = "Python passes them by name")]
-    fn from_thick_lens(
-        wavelength: Bound<'_, PyAny>,
-        focal_length: f64,
-        f_number: f64,
-        pupil_magnification: f64,
-        pixel_pitch: f64,
-        magnification: Option<f64>,
-        surface_to_principal_plane: Option<f64>,
-        surface_to_pupil: Option<f64>,
-    ) -> PyResult<Self> {
+    build from_thick_lens(_py;
+        wavelength: Bound<'py, PyAny>, focal_length: f64, f_number: f64, pupil_magnification: f64,
+        pixel_pitch: f64, magnification: Option<f64>, surface_to_principal_plane: Option<f64>,
+        surface_to_pupil: Option<f64>
+    ) = {
         take!(wavelength: f64);
         let given = [magnification, surface_to_principal_plane, surface_to_pupil];
         let (name, value, focus) = match given {
@@ -116,58 +65,30 @@ impl ImagingGeometry {
             focus,
             pixel_pitch,
         });
-        let mut made = keywords!(
-            from_thick_lens: wavelength, focal_length, f_number, pupil_magnification, pixel_pitch
-        );
-        made.keywords.push((name, value));
-        let geometry = geometry.or_raise_renamed(&["pupil_diameter"], "f_number")?;
-        Ok(Self { geometry, made })
-    }
-
-    /// Return the geometry of a camera whose pupil and distances are known.
-    ///
-    /// Parameters
-    /// ----------
-    /// wavelength : float
-    ///     Vacuum wavelength.
-    /// surface_to_pupil, pupil_to_image : float
-    ///     Distances from the entrance pupil to the surface and from the exit pupil to the sensor.
-    /// pupil_diameter : float
-    ///     Diameter of the entrance pupil.
-    /// pixel_pitch : float
-    ///     Pixel pitch of the sensor.
-    #[staticmethod]
-    fn from_distances(
-        wavelength: Bound<'_, PyAny>,
-        surface_to_pupil: f64,
-        pupil_to_image: f64,
-        pupil_diameter: f64,
-        pixel_pitch: f64,
-    ) -> PyResult<Self> {
-        take!(wavelength: f64);
-        let geometry = physics::ImagingGeometry::from_distances(physics::PupilDistances {
-            wavelength,
-            surface_to_pupil,
-            pupil_to_image,
-            pupil_diameter,
-            pixel_pitch,
-        });
-        let made = keywords!(
-            from_distances: wavelength, surface_to_pupil, pupil_to_image, pupil_diameter, pixel_pitch
-        );
-        let geometry = geometry.or_raise()?;
-        Ok(Self { geometry, made })
-    }
+        let made = Made {
+            name: "from_thick_lens",
+            keywords: vec![
+                ("wavelength", wavelength),
+                ("focal_length", focal_length),
+                ("f_number", f_number),
+                ("pupil_magnification", pupil_magnification),
+                ("pixel_pitch", pixel_pitch),
+                (name, value),
+            ],
+        };
+        let inner = geometry.or_raise_renamed(&["pupil_diameter"], "f_number")?;
+        Ok(Self { inner, made })
+    };
 
     /// Return the geometry of the same camera in light of another wavelength, in metres.
-    fn with_wavelength(&self, wavelength: Bound<'_, PyAny>) -> PyResult<Self> {
+    call with_wavelength(_py; wavelength: Bound<'py, PyAny>) -> Self = {
         take!(wavelength: f64);
-        let geometry = self.geometry.with_wavelength(wavelength);
-        let geometry = geometry.or_raise_renamed(&["pupil_diameter"], "wavelength")?;
-        let mut made = self.made.clone();
+        let inner = this.inner.with_wavelength(wavelength);
+        let inner = inner.or_raise_renamed(&["pupil_diameter"], "wavelength")?;
+        let mut made = this.made.clone();
         made.keywords[0].1 = wavelength;
-        Ok(Self { geometry, made })
-    }
+        Ok(Self { inner, made })
+    };
 
     /// Return the coordinate in a speckle pattern that belongs to a place in the image.
     ///
@@ -185,37 +106,61 @@ impl ImagingGeometry {
     /// -------
     /// (float, float) or (ndarray, ndarray)
     ///     Coordinate in samples, to the right and up, not wrapped, in the common shape.
-    fn pattern_coordinate<'py>(
-        &self,
-        py: Python<'py>,
-        pixel: [Numbers<'py>; 2],
-        image_displacement: [Numbers<'py>; 2],
-        pattern_speckle_size: f64,
-    ) -> PyResult<[Values<'py>; 2]> {
+    call pattern_coordinate(py;
+        pixel: [Numbers<'py>; 2], image_displacement: [Numbers<'py>; 2], pattern_speckle_size: f64
+    ) -> [Values<'py>; 2] = {
         length("pattern_speckle_size", pattern_speckle_size)?;
         let ([x, y], [dx, dy]) = (&pixel, &image_displacement);
         let (place, motion) = ("pixel", "image_displacement");
-        let named = [(place, x), (place, y), (motion, dx), (motion, dy)];
-        map_many(py, named, |[x, y, dx, dy]| {
-            self.geometry
-                .pattern_coordinate(DVec2::new(x, y), DVec2::new(dx, dy), pattern_speckle_size)
-                .to_array()
+        let named = [
+            (place, x, 0),
+            (place, y, 0),
+            (motion, dx, 0),
+            (motion, dy, 0),
+        ];
+        let columns = columns(&named, LIMIT)?;
+        evaluate(py, columns, [&[]; 2], |[x, y, dx, dy], [right, up]| {
+            for i in 0..x.len() {
+                let (pixel, moved) = (DVec2::new(x[i], y[i]), DVec2::new(dx[i], dy[i]));
+                let found = this
+                    .inner
+                    .pattern_coordinate(pixel, moved, pattern_speckle_size);
+                [right[i], up[i]] = found.to_array();
+            }
         })
-    }
+    };
 
-    fn __repr__(&self) -> String {
-        self.made.call("ImagingGeometry")
-    }
+    /// Return the geometry of a thin lens that images a surface at a given distance sharply.
+    ///
+    /// Parameters
+    /// ----------
+    /// wavelength, focal_length, f_number : float
+    ///     Light and lens.
+    /// surface_to_pupil : float
+    ///     Distance of the surface from the lens.
+    /// pixel_pitch : float
+    ///     Pixel pitch of the sensor.
+    keep from_lens(wavelength, focal_length, f_number, surface_to_pupil, pixel_pitch) =
+        physics::ImagingGeometry::from_lens(physics::LensData {
+            wavelength, focal_length, f_number, surface_to_pupil, pixel_pitch,
+        }).or_raise_renamed(&["pupil_diameter"], "f_number");
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        self.made.recipe::<Self>(py)
-    }
-}
-
-methods! {
-    impl ImagingGeometry as this: this.geometry;
-
-    unmade "from_lens, from_thick_lens or from_distances";
+    /// Return the geometry of a camera whose pupil and distances are known.
+    ///
+    /// Parameters
+    /// ----------
+    /// wavelength : float
+    ///     Vacuum wavelength.
+    /// surface_to_pupil, pupil_to_image : float
+    ///     Distances from the entrance pupil to the surface and from the exit pupil to the sensor.
+    /// pupil_diameter : float
+    ///     Diameter of the entrance pupil.
+    /// pixel_pitch : float
+    ///     Pixel pitch of the sensor.
+    keep from_distances(wavelength, surface_to_pupil, pupil_to_image, pupil_diameter, pixel_pitch) =
+        physics::ImagingGeometry::from_distances(physics::PupilDistances {
+            wavelength, surface_to_pupil, pupil_to_image, pupil_diameter, pixel_pitch,
+        });
 
     /// Vacuum wavelength in metres.
     get wavelength -> f64;

@@ -2,7 +2,7 @@ use pyo3::prelude::*;
 use tem00_decorrelation::{self as physics, DMat3, DVec3};
 
 use crate::{
-    arrays::{Matrix, Vector},
+    arrays::Floats,
     error::{OrRaise, refused},
 };
 
@@ -73,10 +73,10 @@ methods! {
     make from_differentials(direction_to_source: DVec3, dp: [DVec3; 2], dl: [DVec3; 2]);
 
     /// Unit vector from the surface to the source, of shape (3,).
-    get direction_to_source -> Vector<3>;
+    get direction_to_source -> Floats;
 
     /// Symmetric curvature tensor in 1/m, of shape (3, 3).
-    get curvature -> Matrix;
+    get curvature -> Floats;
 
     made_by from_tensor(direction_to_source, curvature);
 }
@@ -111,8 +111,8 @@ methods! {
     /// Return the unit vector of shape (3,) from a point, in metres, to the source.
     ///
     /// ``None`` in a focus or at the source itself.
-    fn direction_from(point: DVec3) -> Option<Vector<3>> =
-        this.0.direction_from(point).map(Vector::from);
+    fn direction_from(point: DVec3) -> Option<Floats> =
+        this.0.direction_from(point).map(Floats::from);
 }
 
 #[pymethods]

@@ -1,7 +1,7 @@
 use tem00_decorrelation::{self as physics, DMat3, DVec3};
 
 use crate::{
-    arrays::{Matrix, Vector},
+    arrays::Floats,
     error::{OrRaise, refused},
 };
 
@@ -52,16 +52,16 @@ methods! {
     fn inverse() -> RigidMotion = this.0.inverse();
 
     /// Return where the motion takes a point of shape (3,), in metres.
-    try point(point: DVec3) -> Vector<3> = finite("point", this.0.point(point));
+    try point(point: DVec3) -> Floats = finite("point", this.0.point(point));
 
     /// Return where the motion turns a direction of shape (3,).
-    fn direction(direction: DVec3) -> Vector<3> = this.0.direction(direction);
+    fn direction(direction: DVec3) -> Floats = this.0.direction(direction);
 
     /// Rotation matrix of shape (3, 3).
-    get rotation -> Matrix;
+    get rotation -> Floats;
 
     /// Translation in metres, of shape (3,).
-    get translation -> Vector<3>;
+    get translation -> Floats;
 
     made_by new(rotation, translation);
 }
@@ -100,7 +100,7 @@ methods! {
 
     /// Rotation matrix of shape (3, 3), whose columns lead right in the image (b1), up in it (b2) and from
     /// the scene towards the camera (b3).
-    get axes -> Matrix =
+    get axes -> Floats =
         DMat3::from_cols(this.0.right(), this.0.up(), this.0.towards_camera());
 
     made_by from_axes(axes);

@@ -1,9 +1,8 @@
-use pyo3::prelude::*;
 use tem00_shading::{self as physics, CameraDescription, DVec2, ShadingError};
 
-use super::{any, vector};
+use super::{LIMIT, vector};
 use crate::{
-    arrays::{Array, Column, Components, Vector, Vectors, Whole, map_inner},
+    arrays::{Array, Components, Floats, Vectors, Whole, map_inner},
     error::OrRaise,
 };
 
@@ -47,8 +46,9 @@ fn plain() -> CameraDescription {
     CameraDescription::default()
 }
 
-#[pymethods]
-impl Camera {
+methods! {
+    impl Camera as this: this.0;
+
     #[new]
     #[pyo3(signature = (
         *,
@@ -65,21 +65,13 @@ impl Camera {
         distortion = None,
         depth_of_field = true,
     ))]
-    #[expect(clippy::too_many_arguments, reason = "each goes by its name")]
-    fn new(
-        position: Option<Components<'_>>,
-        look_at: Option<Components<'_>>,
-        up: Option<Components<'_>>,
-        focal_length: f64,
-        f_number: f64,
-        focus_distance: f64,
-        pixel_pitch: f64,
-        resolution: Option<[Whole<'_>; 2]>,
-        principal_point: Option<Components<'_>>,
-        tilt: Option<Components<'_>>,
-        distortion: Option<Components<'_>>,
-        depth_of_field: bool,
-    ) -> PyResult<Self> {
+    build new(_py;
+        position: Option<Components<'py>>, look_at: Option<Components<'py>>,
+        up: Option<Components<'py>>, focal_length: f64, f_number: f64, focus_distance: f64,
+        pixel_pitch: f64, resolution: Option<[Whole<'py>; 2]>,
+        principal_point: Option<Components<'py>>, tilt: Option<Components<'py>>,
+        distortion: Option<Components<'py>>, depth_of_field: bool
+    ) = {
         let plain = plain();
         let mut description = CameraDescription {
             position: vector("position", position.as_ref(), plain.position.into())?.into(),
@@ -106,7 +98,7 @@ impl Camera {
             vector("distortion", distortion.as_ref(), [0.0; 3])?;
         let camera = physics::Camera::new(description).map_err(ShadingError::from);
         Ok(Self(camera.or_raise()?))
-    }
+    };
 
     /// Return the rays that arrive at image points through the centre of the lens.
     ///
@@ -121,13 +113,13 @@ impl Camera {
     ///     The centre of the lens, in metres.
     /// direction : ndarray, shape (..., 3)
     ///     Unit vectors into the scene.
-    fn ray<'py>(&self, py: Python<'py>, pixels: Vectors<'py>) -> PyResult<(Vector<3>, Array<'py>)> {
-        let pixels = Column::components(("pixels", &pixels), &[2], f64::MAX)?;
+    call ray(py; pixels: Vectors<'py>) -> (Floats, Array<'py>) = {
+        let pixels = columns!(f64::MAX; pixels: 2);
         let direction = map_inner(py, pixels, &[3], |pixel| {
-            self.0.ray(DVec2::from(pixel)).direction.to_array()
+            this.0.ray(DVec2::from(pixel)).direction.to_array()
         })?;
-        Ok((self.0.position().into(), direction))
-    }
+        Ok((this.0.position().into(), direction))
+    };
 
     /// Return the image points at which points are seen through the centre of the lens.
     ///
@@ -140,22 +132,13 @@ impl Camera {
     /// -------
     /// ndarray, shape (..., 2)
     ///     Image points, in pixels with y down, also beside the image; infinite where the camera cannot see.
-    fn project<'py>(&self, py: Python<'py>, points: Vectors<'py>) -> PyResult<Array<'py>> {
-        map_inner(py, any("points", &points)?, &[2], |point| {
-            let seen = self
-                .0
-                .project(point.into())
-                .filter(|pixel| pixel.is_finite());
-            seen.unwrap_or(DVec2::INFINITY).to_array()
-        })
-    }
-}
-
-methods! {
-    impl Camera as this: this.0;
+    over project(points: 3) -> [2] = |point| {
+        let seen = this.0.project(point.into()).filter(|pixel| pixel.is_finite());
+        seen.unwrap_or(DVec2::INFINITY).to_array()
+    };
 
     /// Centre of the lens, in metres, shape (3,).
-    get position -> Vector<3>;
+    get position -> Floats;
 
     /// Numbers of pixel columns and rows.
     get resolution -> (usize, usize) = this.0.description().resolution;

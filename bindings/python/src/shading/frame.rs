@@ -2,9 +2,9 @@ use pyo3::prelude::*;
 use tem00_decorrelation::pupil_overlap_correlation;
 use tem00_shading::{self as physics, DVec2, DVec3, Motion};
 
-use super::{any, vectors};
+use super::{LIMIT, vectors};
 use crate::{
-    arrays::{Array, Column, Numbers, Values, Vectors, evaluate, map_complex, map_inner},
+    arrays::{Array, Numbers, Values, Vectors, evaluate, map_complex, map_inner},
     beam::named,
     decorrelation::RigidMotion,
 };
@@ -21,62 +21,10 @@ pub(crate) struct SpeckleFrame {
     pub(super) motion: Motion,
 }
 
-#[pymethods]
-impl SpeckleFrame {
-    /// Return the factors, with mean 1, that multiply the radiance which surfaces send from the laser to the camera.
-    ///
-    /// Parameters
-    /// ----------
-    /// points : array_like, shape (..., 3)
-    ///     Points, in metres. Neighbours in the image, one after the other, are looked up fastest.
-    /// normals : array_like, shape (..., 3)
-    ///     Unit normals, to either side.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Factors, in the common shape.
-    fn factor<'py>(
-        &self,
-        py: Python<'py>,
-        points: Vectors<'py>,
-        normals: Vectors<'py>,
-    ) -> PyResult<Values<'py>> {
-        let [factors] = ask(py, [&points, &normals], [&[]], |points, normals, [out]| {
-            self.frame.factors(points, normals, out);
-        })?;
-        Ok(factors)
-    }
+methods! {
+    impl SpeckleFrame as this: this.frame;
 
-    /// Return the factors at points that camera samples see at image points: out of focus those lie beside the ones where
-    /// the centre of the lens sees the points.
-    ///
-    /// Parameters
-    /// ----------
-    /// pixels : array_like, shape (..., 2)
-    ///     Image points of the samples, in pixels with y down.
-    /// points, normals : array_like, shape (..., 3)
-    ///     As for ``factor``.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Factors, in the common shape.
-    fn factor_at<'py>(
-        &self,
-        py: Python<'py>,
-        pixels: Vectors<'py>,
-        points: Vectors<'py>,
-        normals: Vectors<'py>,
-    ) -> PyResult<Values<'py>> {
-        let [x, y] = Column::components(("pixels", &pixels), &[2], f64::INFINITY)?;
-        let [a, b, c, d, e, f] = hits([&points, &normals])?;
-        let columns = [x, y, a, b, c, d, e, f];
-        map_inner(py, columns, &[], |[x, y, a, b, c, d, e, f]| {
-            let (point, normal) = (DVec3::new(a, b, c), DVec3::new(d, e, f));
-            [self.frame.factor_at(DVec2::new(x, y), point, normal)]
-        })
-    }
+    unmade "Speckle.frame";
 
     /// Return the factors in light of one wave number of the laser's line each, for a renderer that draws one for each of
     /// its samples; ``factor`` is their mean over the line.
@@ -92,42 +40,39 @@ impl SpeckleFrame {
     /// -------
     /// float or ndarray
     ///     Factors, in the common shape.
-    fn factor_in_wave<'py>(
-        &self,
-        py: Python<'py>,
-        points: Vectors<'py>,
-        normals: Vectors<'py>,
-        wave: Numbers<'py>,
-    ) -> PyResult<Values<'py>> {
-        let [a, b, c, d, e, f] = hits([&points, &normals])?;
-        let columns = [a, b, c, d, e, f, Column::new(("wave", &wave), 1.0)?];
+    call factor_in_wave(py;
+        points: Vectors<'py>, normals: Vectors<'py>, wave: Numbers<'py>
+    ) -> Values<'py> = {
+        let [wave] = columns!(1.0; wave);
+        let [a, b, c, d, e, f] = columns!(LIMIT; points: 3, normals: 3);
+        let columns = [a, b, c, d, e, f, wave];
         map_inner(py, columns, &[], |[a, b, c, d, e, f, wave]| {
             let (point, normal) = (DVec3::new(a, b, c), DVec3::new(d, e, f));
-            [self.frame.factor_in_wave(point, normal, wave)]
+            [this.frame.factor_in_wave(point, normal, wave)]
         })
-    }
+    };
 
-    /// Return the means of the factors over the pixels about the images of points, for a host with one sample per pixel.
+    /// Return the factors, with mean 1, that multiply the radiance which surfaces send from the laser to the camera.
     ///
     /// Parameters
     /// ----------
-    /// points, normals : array_like, shape (..., 3)
-    ///     As for ``factor``.
+    /// points : array_like, shape (..., 3)
+    ///     Points, in metres. Neighbours in the image, one after the other, are looked up fastest.
+    /// normals : array_like, shape (..., 3)
+    ///     Unit normals, to either side.
     ///
     /// Returns
     /// -------
     /// float or ndarray
-    ///     Means, in the common shape; 1 where the camera does not see the point.
-    fn average<'py>(
-        &self,
-        py: Python<'py>,
-        points: Vectors<'py>,
-        normals: Vectors<'py>,
-    ) -> PyResult<Values<'py>> {
-        map_inner(py, hits([&points, &normals])?, &[], |[a, b, c, d, e, f]| {
-            [self.frame.average(DVec3::new(a, b, c), DVec3::new(d, e, f))]
-        })
-    }
+    ///     Factors, in the common shape.
+    call factor(py; points: Vectors<'py>, normals: Vectors<'py>) -> Values<'py> = {
+        let hits = columns!(LIMIT; points: 3, normals: 3);
+        let [factors] = evaluate(py, hits, [&[]], |[a, b, c, d, e, f], [out]| {
+            this.frame
+                .factors(&vectors([a, b, c]), &vectors([d, e, f]), out);
+        })?;
+        Ok(factors)
+    };
 
     /// Return the complex amplitudes of the first pattern, of mean square 1, for a host that adds fields.
     ///
@@ -140,19 +85,13 @@ impl SpeckleFrame {
     /// -------
     /// complex or ndarray of complex
     ///     Amplitudes, in the common shape; 0 where the camera does not see the point.
-    fn amplitude<'py>(
-        &self,
-        py: Python<'py>,
-        points: Vectors<'py>,
-        normals: Vectors<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map_complex(py, hits([&points, &normals])?, |[a, b, c, d, e, f]| {
-            let amplitude = self
-                .frame
-                .amplitude(DVec3::new(a, b, c), DVec3::new(d, e, f));
+    call amplitude(py; points: Vectors<'py>, normals: Vectors<'py>) -> Bound<'py, PyAny> = {
+        let hits = columns!(LIMIT; points: 3, normals: 3);
+        map_complex(py, hits, |[x, y, z, normal @ ..]| {
+            let amplitude = this.frame.amplitude(DVec3::new(x, y, z), normal.into());
             amplitude.unwrap_or_default()
         })
-    }
+    };
 
     /// Return what has become of the speckle at points since the reference state.
     ///
@@ -165,17 +104,14 @@ impl SpeckleFrame {
     /// -------
     /// SpeckleShift
     ///     The shifts, in the common shape.
-    fn shift<'py>(
-        &self,
-        py: Python<'py>,
-        points: Vectors<'py>,
-        normals: Vectors<'py>,
-    ) -> PyResult<Array<'py>> {
+    call shift(py; points: Vectors<'py>, normals: Vectors<'py>) -> Array<'py> = {
         let inner: [&[usize]; 5] = [&[2], &[], &[2], &[], &[]];
-        let shifts = ask(py, [&points, &normals], inner, |points, normals, out| {
+        let hits = columns!(LIMIT; points: 3, normals: 3);
+        let shifts = evaluate(py, hits, inner, |[a, b, c, d, e, f], out| {
             let [displacement, pupil, across, axial, correlation] = out;
             let mut shifts = vec![None; pupil.len()];
-            self.frame.shifts(points, normals, &mut shifts);
+            let (points, normals) = (vectors([a, b, c]), vectors([d, e, f]));
+            this.frame.shifts(&points, &normals, &mut shifts);
             for (i, shift) in shifts.into_iter().enumerate() {
                 let shift = shift.unwrap_or(physics::SpeckleShift {
                     pupil: f64::INFINITY,
@@ -188,13 +124,40 @@ impl SpeckleFrame {
             }
         })?;
         named(py, "SpeckleShift", shifts)
-    }
-}
+    };
 
-methods! {
-    impl SpeckleFrame as this: this.frame;
+    /// Return the factors at points that camera samples see at image points: out of focus those lie beside the ones where
+    /// the centre of the lens sees the points.
+    ///
+    /// Parameters
+    /// ----------
+    /// pixels : array_like, shape (..., 2)
+    ///     Image points of the samples, in pixels with y down.
+    /// points, normals : array_like, shape (..., 3)
+    ///     As for ``factor``.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Factors, in the common shape.
+    over factor_at(pixels: 2, points: 3, normals: 3) -> [] = |[x, y, a, b, c, normal @ ..]| {
+        let (pixel, point) = (DVec2::new(x, y), DVec3::new(a, b, c));
+        [this.frame.factor_at(pixel, point, normal.into())]
+    };
 
-    unmade "Speckle.frame";
+    /// Return the means of the factors over the pixels about the images of points, for a host with one sample per pixel.
+    ///
+    /// Parameters
+    /// ----------
+    /// points, normals : array_like, shape (..., 3)
+    ///     As for ``factor``.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Means, in the common shape; 1 where the camera does not see the point.
+    over average(points: 3, normals: 3) -> [] =
+        |[x, y, z, normal @ ..]| [this.frame.average(DVec3::new(x, y, z), normal.into())];
 
     /// Side of the reference state on which the speckle is: 1.0, or -1.0 where the pupil has moved over it the other way
     /// than in the frame in which it moves farthest.
@@ -211,27 +174,4 @@ methods! {
     get body -> usize = this.motion.body;
 
     shown poses, body;
-}
-
-/// The components of points and of their normals.
-fn hits<'a>([points, normals]: [&'a Vectors<'_>; 2]) -> PyResult<[Column<'a>; 6]> {
-    let ([a, b, c], [d, e, f]) = (any("points", points)?, any("normals", normals)?);
-    Ok([a, b, c, d, e, f])
-}
-
-/// Hands points and their normals to `f` block by block, with where to write: as [`evaluate`].
-fn ask<'py, const M: usize>(
-    py: Python<'py>,
-    [points, normals]: [&Vectors<'py>; 2],
-    inner: [&[usize]; M],
-    mut f: impl FnMut(&[DVec3], &[DVec3], [&mut [f64]; M]) + Send,
-) -> PyResult<[Values<'py>; M]> {
-    evaluate(
-        py,
-        hits([points, normals])?,
-        inner,
-        |[a, b, c, d, e, g], out| {
-            f(&vectors([a, b, c]), &vectors([d, e, g]), out);
-        },
-    )
 }

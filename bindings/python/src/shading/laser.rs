@@ -5,8 +5,8 @@ use tem00_shading::{self as physics, DVec3, LaserBuilder};
 use super::vector;
 use crate::{
     arguments::Take,
-    arrays::{Array, Column, Components, Numbers, Vectors},
-    beam::{Light, LineProfile, named},
+    arrays::{Array, Components, Numbers, Vectors},
+    beam::{Light, LineProfile, Placed, named},
     coherence::SpectralLine,
     error::{IntoPython, OrRaise, refused},
 };
@@ -30,8 +30,11 @@ class! {
     "tem00.shading" Laser(physics::Laser)
 }
 
-#[pymethods]
-impl Laser {
+methods! {
+    impl Laser as this: this.0;
+
+    unmade "spot or line";
+
     /// Return a spot: a Gaussian beam, round or elliptic.
     ///
     /// Parameters
@@ -59,18 +62,11 @@ impl Laser {
         wavelength, waist_radius, *, origin, target, line_direction = None, power = 1e-3,
         focused_at = None, m_squared = 1.0, source_half_angle = 0.0,
     ))]
-    #[expect(clippy::too_many_arguments, reason = "most go by their names")]
-    fn spot(
-        wavelength: Bound<'_, PyAny>,
-        waist_radius: Numbers<'_>,
-        origin: Components<'_>,
-        target: Components<'_>,
-        line_direction: Option<Components<'_>>,
-        power: f64,
-        focused_at: Option<f64>,
-        m_squared: f64,
-        source_half_angle: f64,
-    ) -> PyResult<Self> {
+    build spot(_py;
+        wavelength: Bound<'py, PyAny>, waist_radius: Numbers<'py>, origin: Components<'py>,
+        target: Components<'py>, line_direction: Option<Components<'py>>, power: f64,
+        focused_at: Option<f64>, m_squared: f64, source_half_angle: f64
+    ) = {
         let radii = match waist_radius {
             Numbers::One(radius) => [radius; 2],
             radii => radii.vector("waist_radius")?,
@@ -80,7 +76,7 @@ impl Laser {
         let builder = builder.power(power).m_squared(m_squared).spectrum(spectrum);
         let builder = builder.source_extent(disc(source_half_angle)?);
         Self::placed(builder, [origin, target], line_direction, focused_at, &[])
-    }
+    };
 
     /// Return a laser line.
     ///
@@ -113,20 +109,12 @@ impl Laser {
         wavelength, thickness, fan_angle, *, origin, target, line_direction = None, profile = None,
         power = 1e-3, focused_at = None, m_squared = 1.0, source_half_angle = 0.0,
     ))]
-    #[expect(clippy::too_many_arguments, reason = "most go by their names")]
-    fn line(
-        wavelength: Bound<'_, PyAny>,
-        thickness: f64,
-        fan_angle: f64,
-        origin: Components<'_>,
-        target: Components<'_>,
-        line_direction: Option<Components<'_>>,
-        profile: Option<&LineProfile>,
-        power: f64,
-        focused_at: Option<f64>,
-        m_squared: f64,
-        source_half_angle: f64,
-    ) -> PyResult<Self> {
+    build line(_py;
+        wavelength: Bound<'py, PyAny>, thickness: f64, fan_angle: f64, origin: Components<'py>,
+        target: Components<'py>, line_direction: Option<Components<'py>>,
+        profile: Option<&LineProfile>, power: f64, focused_at: Option<f64>, m_squared: f64,
+        source_half_angle: f64
+    ) = {
         let spectrum = spectrum(&wavelength)?;
         let mut builder = physics::Laser::line(spectrum.wavelength(), thickness, fan_angle);
         builder = builder.power(power).m_squared(m_squared).spectrum(spectrum);
@@ -142,7 +130,7 @@ impl Laser {
             focused_at,
             &names,
         )
-    }
+    };
 
     /// Return the light at points as one direction each, that of the mean energy flow.
     ///
@@ -155,16 +143,10 @@ impl Laser {
     /// -------
     /// NextEvent
     ///     All members are 0 where no light arrives, and no shadow ray is needed.
-    fn next_event<'py>(&self, py: Python<'py>, points: Vectors<'py>) -> PyResult<Array<'py>> {
-        let points = Column::components(("points", &points), &[3], 1e30)?;
-        named(py, "NextEvent", Light::of(&self.0).events(py, points)?)
-    }
-}
-
-methods! {
-    impl Laser as this: this.0;
-
-    unmade "spot or line";
+    call next_event(py; points: Vectors<'py>) -> Array<'py> = {
+        let events = Placed::of(&this.0).events(py, columns!(1e30; points: 3))?;
+        named(py, "NextEvent", events)
+    };
 
     /// Wavelength in vacuum, in metres.
     get wavelength -> f64;
@@ -173,7 +155,7 @@ methods! {
     get power -> f64;
 
     /// The placed light, for all else there is to ask.
-    get light -> Light = Light::of(&this.0);
+    get light -> Light = Placed::of(&this.0);
 
     shown wavelength, light;
 }

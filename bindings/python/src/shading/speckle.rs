@@ -2,9 +2,9 @@ use pyo3::prelude::*;
 use tem00_coherence::Relief;
 use tem00_shading::{self as physics, Motion, Pose};
 
-use super::{any, camera::Camera, frame::SpeckleFrame, laser::Laser, vectors};
+use super::{LIMIT, camera::Camera, frame::SpeckleFrame, laser::Laser, vectors};
 use crate::{
-    arrays::{Values, Vectors, Whole, evaluate},
+    arrays::{Values, Vectors, Whole, columns, evaluate},
     decorrelation::RigidMotion,
     error::{OrRaise, refused},
 };
@@ -44,28 +44,32 @@ pub(crate) struct Speckle(physics::PreparedSpeckle);
 
 #[pymethods]
 impl Speckle {
+    fn __str__(&self) -> String {
+        self.0.to_string()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Speckle: {}>", self.0)
+    }
+}
+
+methods! {
+    impl Speckle as this: this.0;
+
     #[new]
     #[pyo3(signature = (
         camera, laser, seed, *, poses = None, camera_poses = None, laser_poses = None,
         at_points = None, memory = None, looks = None, polarisation = 1.0, rms_height = 0.0,
         correlation_length = 0.0,
     ))]
-    #[expect(clippy::too_many_arguments, reason = "most go by their names")]
-    fn new(
-        py: Python<'_>,
-        camera: &Camera,
-        laser: &Laser,
-        seed: Whole<'_>,
-        poses: Option<Vec<PyRef<'_, RigidMotion>>>,
-        camera_poses: Option<Vec<PyRef<'_, RigidMotion>>>,
-        laser_poses: Option<Vec<PyRef<'_, RigidMotion>>>,
-        at_points: Option<[Vectors<'_>; 2]>,
-        memory: Option<Whole<'_>>,
-        looks: Option<Whole<'_>>,
-        polarisation: f64,
-        rms_height: f64,
-        correlation_length: f64,
-    ) -> PyResult<Self> {
+    build new(py;
+        camera: &Camera, laser: &Laser, seed: Whole<'py>,
+        poses: Option<Vec<PyRef<'py, RigidMotion>>>,
+        camera_poses: Option<Vec<PyRef<'py, RigidMotion>>>,
+        laser_poses: Option<Vec<PyRef<'py, RigidMotion>>>, at_points: Option<[Vectors<'py>; 2]>,
+        memory: Option<Whole<'py>>, looks: Option<Whole<'py>>, polarisation: f64, rms_height: f64,
+        correlation_length: f64
+    ) = {
         let mut speckle = physics::Speckle::new(&camera.0, &laser.0, seed.unsigned("seed")?)
             .for_motions(motions([poses, camera_poses, laser_poses])?)
             .polarisation(polarisation)
@@ -74,11 +78,16 @@ impl Speckle {
                 correlation_length,
             });
         if let Some([points, normals]) = at_points {
-            let ([a, b, c], [d, e, f]) = (any("at_points", &points)?, any("at_points", &normals)?);
+            let at_points = [("at_points", &points, 3), ("at_points", &normals, 3)];
             let mut pairs = Vec::new();
-            let [] = evaluate(py, [a, b, c, d, e, f], [], |[a, b, c, d, e, f], []| {
-                pairs.extend(vectors([a, b, c]).into_iter().zip(vectors([d, e, f])));
-            })?;
+            let [] = evaluate(
+                py,
+                columns(&at_points, LIMIT)?,
+                [],
+                |[a, b, c, d, e, f], []| {
+                    pairs.extend(vectors([a, b, c]).into_iter().zip(vectors([d, e, f])));
+                },
+            )?;
             speckle = speckle.at_points(pairs);
         }
         if let Some(memory) = memory {
@@ -91,7 +100,7 @@ impl Speckle {
             py.detach(|| speckle.prepare())
                 .or_raise_renamed(&["patterns"], "looks")?,
         ))
-    }
+    };
 
     /// Return the speckle of a body in a frame: once per body and frame.
     ///
@@ -107,13 +116,10 @@ impl Speckle {
     /// SpeckleFrame
     ///     A motion that shifts the speckle farther than the poses do is refused.
     #[pyo3(signature = (surface = None, camera = None, laser = None, body = None))]
-    fn frame(
-        &self,
-        surface: Option<PyRef<'_, RigidMotion>>,
-        camera: Option<PyRef<'_, RigidMotion>>,
-        laser: Option<PyRef<'_, RigidMotion>>,
-        body: Option<Whole<'_>>,
-    ) -> PyResult<SpeckleFrame> {
+    call frame(_py;
+        surface: Option<PyRef<'py, RigidMotion>>, camera: Option<PyRef<'py, RigidMotion>>,
+        laser: Option<PyRef<'py, RigidMotion>>, body: Option<Whole<'py>>
+    ) -> SpeckleFrame = {
         let body = body.map_or(Ok(0), |body| body.unsigned("body"))?;
         let [surface, camera, laser] =
             [surface, camera, laser].map(|pose| pose.map_or(Pose::IDENTITY, |pose| pose.0));
@@ -123,9 +129,9 @@ impl Speckle {
             camera,
             laser,
         };
-        let frame = self.0.frame(&motion).or_raise()?;
+        let frame = this.0.frame(&motion).or_raise()?;
         Ok(SpeckleFrame { frame, motion })
-    }
+    };
 
     /// Return the factors at points that stood elsewhere in the reference state, for a host that knows no bodies.
     ///
@@ -143,35 +149,16 @@ impl Speckle {
     /// -------
     /// float or ndarray
     ///     Factors, in the common shape.
-    fn factors_since<'py>(
-        &self,
-        py: Python<'py>,
-        previous: Vectors<'py>,
-        points: Vectors<'py>,
-        normals: Vectors<'py>,
-    ) -> PyResult<Values<'py>> {
-        let [a, b, c] = any("previous", &previous)?;
-        let [d, e, f] = any("points", &points)?;
-        let [g, h, i] = any("normals", &normals)?;
-        let columns = [a, b, c, d, e, f, g, h, i];
+    call factors_since(py;
+        previous: Vectors<'py>, points: Vectors<'py>, normals: Vectors<'py>
+    ) -> Values<'py> = {
+        let columns = columns!(LIMIT; previous: 3, points: 3, normals: 3);
         let [factors] = evaluate(py, columns, [&[]], |[a, b, c, d, e, f, g, h, i], [out]| {
             let [previous, points, normals] = [[a, b, c], [d, e, f], [g, h, i]].map(vectors);
-            self.0.factors_since(&previous, &points, &normals, out);
+            this.0.factors_since(&previous, &points, &normals, out);
         })?;
         Ok(factors)
-    }
-
-    fn __str__(&self) -> String {
-        self.0.to_string()
-    }
-
-    fn __repr__(&self) -> String {
-        format!("<Speckle: {}>", self.0)
-    }
-}
-
-methods! {
-    impl Speckle as this: this.0;
+    };
 
     /// Bytes that the patterns take.
     get memory_bytes -> u64;

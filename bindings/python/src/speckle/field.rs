@@ -1,4 +1,4 @@
-use numpy::{Complex32, PyArray2};
+use numpy::Complex32;
 use pyo3::{exceptions::PyTypeError, prelude::*};
 use tem00_numerics::{
     Grid,
@@ -8,13 +8,13 @@ use tem00_numerics::{
 use tem00_speckle::{self as physics, Phasors, PupilField as Field, SpeckleError};
 
 use super::{
-    images::{check_room, view},
+    images::{View, check_room, view},
     pattern::{SpeckleField, SpecklePattern},
     pupil::Pupil,
 };
 use crate::{
     arguments::{choices, optional},
-    arrays::{List, Numbers, columns, map_complex},
+    arrays::{Floats, LIMIT, Numbers, map_complex},
     error::{OrRaise, refused},
     pickling::{Recipe, by_constructor},
 };
@@ -43,6 +43,88 @@ choices! {
 
 methods! {
     impl PupilField as this: this.0;
+
+    /// Return the exact amplitude correlation of two samples.
+    ///
+    /// Parameters
+    /// ----------
+    /// x, y : array_like
+    ///     Distance of the samples along x and y, in samples.
+    ///
+    /// Returns
+    /// -------
+    /// complex or ndarray of complex
+    ///     Correlation in the common shape of the arguments, 1 at no distance.
+    call amplitude_correlation(py; x: Numbers<'py>, y: Numbers<'py>) -> Bound<'py, PyAny> = {
+        map_complex(py, columns!(LIMIT; x, y), |lag| {
+            this.0.amplitude_correlation(lag)
+        })
+    };
+
+    /// Return the intensity behind the pupil.
+    ///
+    /// Parameters
+    /// ----------
+    /// offset : (float, float), optional
+    ///     Displacement of the pupil in its diameters.
+    /// defocus : float, optional
+    ///     In axial decorrelation lengths: at 1 the correlation first vanishes. Turns of phase from the
+    ///     centre of the pupil to its rim.
+    /// image_drift : (float, float), optional
+    ///     Drift of the pattern over the sensor during an exposure, in speckle sizes.
+    /// pupil_drift : (float, float), optional
+    ///     Drift of the light over the pupil during an exposure, in pupil diameters.
+    #[pyo3(signature = (offset = None, defocus = 0.0, *, image_drift = None, pupil_drift = None))]
+    call pattern(py;
+        offset: Option<Bound<'py, PyAny>>, defocus: f64, image_drift: Option<Bound<'py, PyAny>>,
+        pupil_drift: Option<Bound<'py, PyAny>>
+    ) -> SpecklePattern = {
+        let offset = optional(offset, "offset")?.unwrap_or_default();
+        let defocus = finite("defocus", defocus)?;
+        if image_drift.is_none() && pupil_drift.is_none() {
+            check_room(this.0.size(), 4)?;
+            return Ok(py.detach(|| this.0.pattern_at(offset, defocus)).into());
+        }
+        let image_drift = optional(image_drift, "image_drift")?.unwrap_or_default();
+        let pupil_drift = optional(pupil_drift, "pupil_drift")?.unwrap_or_default();
+        let exposure = physics::Exposure::default().with_image_drift(image_drift);
+        let exposure = exposure.or_raise_renamed(&["drift"], "image_drift")?;
+        let exposure = exposure.with_pupil_drift(pupil_drift);
+        let exposure = exposure.or_raise_renamed(&["drift"], "pupil_drift")?;
+        // Two patterns, their spectrum and what it is summed to.
+        check_room(this.0.size(), 2 * 4 + 3 * 8)?;
+        Ok(py
+            .detach(|| exposure.pattern_at(&this.0, offset, defocus))
+            .into())
+    };
+
+    /// Return the complex amplitude behind the pupil.
+    ///
+    /// Parameters
+    /// ----------
+    /// offset : (float, float), optional
+    ///     Displacement of the pupil in its diameters.
+    /// defocus : float, optional
+    ///     As for ``pattern``.
+    #[pyo3(signature = (offset = None, defocus = 0.0))]
+    call field(py; offset: Option<Bound<'py, PyAny>>, defocus: f64) -> SpeckleField = {
+        let offset = optional(offset, "offset")?.unwrap_or_default();
+        let defocus = finite("defocus", defocus)?;
+        check_room(this.0.size(), 8)?;
+        Ok(SpeckleField(py.detach(|| this.0.speckle(offset, defocus))))
+    };
+
+    /// Constructor that pickle calls.
+    #[staticmethod]
+    build _restored(_py;
+        layout: ([usize; 2], f64, Option<usize>), random: (Option<u64>, Option<Bound<'py, PyAny>>),
+        samples: Option<Bound<'py, PyAny>>, pupil: Bound<'py, PyAny>
+    ) = {
+        take!(pupil: physics::Pupil);
+        let random = (random.0, optional(random.1, "phasors")?);
+        let field = restored(layout, random, optional(samples, "samples")?, pupil);
+        Ok(Self(field.or_raise()?))
+    };
 
     make new(size: usize, diameter: usize, seed: u64) = Field::new(size, diameter, seed);
 
@@ -151,94 +233,8 @@ methods! {
 impl PupilField {
     /// External samples, complex64 [row, column], a read-only view; None for random phasors.
     #[getter]
-    fn samples<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyArray2<Complex32>>>> {
-        let samples = slf.get().0.samples();
-        // SAFETY: the samples belong to this object, which is frozen.
-        let array = samples.map(|samples| unsafe { view(slf.clone().into_any(), samples) });
-        array.transpose()
-    }
-
-    /// Return the exact amplitude correlation of two samples.
-    ///
-    /// Parameters
-    /// ----------
-    /// x, y : array_like
-    ///     Distance of the samples along x and y, in samples.
-    ///
-    /// Returns
-    /// -------
-    /// complex or ndarray of complex
-    ///     Correlation in the common shape of the arguments, 1 at no distance.
-    fn amplitude_correlation<'py>(
-        &self,
-        py: Python<'py>,
-        x: Numbers<'py>,
-        y: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let lags = columns([("x", &x), ("y", &y)], f64::MAX)?;
-        map_complex(py, lags, |lag| self.0.amplitude_correlation(lag))
-    }
-
-    /// Return the intensity behind the pupil.
-    ///
-    /// Parameters
-    /// ----------
-    /// offset : (float, float), optional
-    ///     Displacement of the pupil in its diameters.
-    /// defocus : float, optional
-    ///     In axial decorrelation lengths: at 1 the correlation first vanishes. Turns of phase from the
-    ///     centre of the pupil to its rim.
-    /// image_drift : (float, float), optional
-    ///     Drift of the pattern over the sensor during an exposure, in speckle sizes.
-    /// pupil_drift : (float, float), optional
-    ///     Drift of the light over the pupil during an exposure, in pupil diameters.
-    #[pyo3(signature = (offset = None, defocus = 0.0, *, image_drift = None, pupil_drift = None))]
-    fn pattern(
-        &self,
-        py: Python<'_>,
-        offset: Option<Bound<'_, PyAny>>,
-        defocus: f64,
-        image_drift: Option<Bound<'_, PyAny>>,
-        pupil_drift: Option<Bound<'_, PyAny>>,
-    ) -> PyResult<SpecklePattern> {
-        let offset = optional(offset, "offset")?.unwrap_or_default();
-        let defocus = finite("defocus", defocus)?;
-        if image_drift.is_none() && pupil_drift.is_none() {
-            check_room(self.0.size(), 4)?;
-            return Ok(py.detach(|| self.0.pattern_at(offset, defocus)).into());
-        }
-        let image_drift = optional(image_drift, "image_drift")?.unwrap_or_default();
-        let pupil_drift = optional(pupil_drift, "pupil_drift")?.unwrap_or_default();
-        let exposure = physics::Exposure::default().with_image_drift(image_drift);
-        let exposure = exposure.or_raise_renamed(&["drift"], "image_drift")?;
-        let exposure = exposure.with_pupil_drift(pupil_drift);
-        let exposure = exposure.or_raise_renamed(&["drift"], "pupil_drift")?;
-        // Two patterns, their spectrum and what it is summed to.
-        check_room(self.0.size(), 2 * 4 + 3 * 8)?;
-        Ok(py
-            .detach(|| exposure.pattern_at(&self.0, offset, defocus))
-            .into())
-    }
-
-    /// Return the complex amplitude behind the pupil.
-    ///
-    /// Parameters
-    /// ----------
-    /// offset : (float, float), optional
-    ///     Displacement of the pupil in its diameters.
-    /// defocus : float, optional
-    ///     As for ``pattern``.
-    #[pyo3(signature = (offset = None, defocus = 0.0))]
-    fn field(
-        &self,
-        py: Python<'_>,
-        offset: Option<Bound<'_, PyAny>>,
-        defocus: f64,
-    ) -> PyResult<SpeckleField> {
-        let offset = optional(offset, "offset")?.unwrap_or_default();
-        let defocus = finite("defocus", defocus)?;
-        check_room(self.0.size(), 8)?;
-        Ok(SpeckleField(py.detach(|| self.0.speckle(offset, defocus))))
+    fn samples<'py>(slf: &Bound<'py, Self>) -> PyResult<View<'py, Complex32>> {
+        view(slf, |this| this.0.samples())
     }
 
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
@@ -274,20 +270,6 @@ impl PupilField {
         let random = (field.seed(), slf.get().phasors());
         let arguments = (layout, random, Self::samples(slf)?, slf.get().pupil());
         by_constructor::<Self>(slf.py(), "_restored", arguments)
-    }
-
-    /// Constructor that pickle calls.
-    #[staticmethod]
-    fn _restored(
-        layout: ([usize; 2], f64, Option<usize>),
-        random: (Option<u64>, Option<Bound<'_, PyAny>>),
-        samples: Option<Bound<'_, PyAny>>,
-        pupil: Bound<'_, PyAny>,
-    ) -> PyResult<Self> {
-        take!(pupil: physics::Pupil);
-        let random = (random.0, optional(random.1, "phasors")?);
-        let field = restored(layout, random, optional(samples, "samples")?, pupil);
-        Ok(Self(field.or_raise()?))
     }
 }
 
@@ -352,6 +334,6 @@ functions! {
     /// -------
     /// ndarray
     ///     Fractions of sum 1, float64, at most 1024 of them.
-    try incoherent_fractions(patterns: usize, polarisation: f64, weights: Vec<f64>) -> List =
+    try incoherent_fractions(patterns: usize, polarisation: f64, weights: Vec<f64>) -> Floats =
         physics::incoherent_fractions(patterns, polarisation, &weights);
 }

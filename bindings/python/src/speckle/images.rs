@@ -2,29 +2,34 @@
 
 use numpy::{Element, PyArray2, ndarray::ArrayView2};
 use pyo3::{
+    PyClass,
     exceptions::{PyMemoryError, PyRuntimeError},
     prelude::*,
+    pyclass::boolean_struct::True,
 };
 use tem00_numerics::{Grid, available_memory};
 
-/// Returns a read-only array over the values of `grid`, which belongs to `owner`.
-///
-/// # Safety
-///
-/// `grid` must live in the memory of `owner`, an object that never changes.
-pub(crate) unsafe fn view<'py, T: Element>(
-    owner: Bound<'py, PyAny>,
-    grid: &Grid<T>,
-) -> PyResult<Bound<'py, PyArray2<T>>> {
+/// A read-only array [row, column], or None.
+pub(crate) type View<'py, T> = Option<Bound<'py, PyArray2<T>>>;
+
+/// Returns a read-only array over the values of a grid that lies in `owner`, an object that never
+/// changes; None where there is no grid.
+pub(crate) fn view<'py, C: PyClass<Frozen = True> + Sync, T: Element>(
+    owner: &Bound<'py, C>,
+    grid: impl for<'a> FnOnce(&'a C) -> Option<&'a Grid<T>>,
+) -> PyResult<View<'py, T>> {
+    let Some(grid) = grid(owner.get()) else {
+        return Ok(None);
+    };
     let rows = (grid.height(), grid.width());
     let values = ArrayView2::from_shape(rows, grid.values())
         .map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
     // SAFETY: the array keeps `owner` alive, and with it the values, which nobody changes: not Rust,
-    // as the caller promises, and not Python, for which they are made read-only here.
-    let array = unsafe { PyArray2::borrow_from_array(&values, owner) };
+    // since `owner` is frozen, and not Python, for which they are made read-only here.
+    let array = unsafe { PyArray2::borrow_from_array(&values, owner.clone().into_any()) };
     // Not through a borrow to write, which fails while another thread reads the same values.
     array.call_method1("setflags", (false,))?;
-    Ok(array)
+    Ok(Some(array))
 }
 
 /// Checks that the machine has memory for an image of `bytes_each` bytes for each of its samples, and for another

@@ -1,8 +1,8 @@
-use numpy::{Complex32, PyArray2};
+use numpy::Complex32;
 use pyo3::prelude::*;
 use tem00_speckle as physics;
 
-use super::images::view;
+use super::images::{View, view};
 use crate::error::OrRaise;
 
 class! {
@@ -14,10 +14,15 @@ class! {
 impl SpecklePattern {
     /// Intensity at every sample, float32 [row, column]: a read-only view without a copy.
     #[getter]
-    fn values<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        // SAFETY: the values lie in this object, which is frozen.
-        unsafe { view(slf.clone().into_any(), slf.get().0.values()) }
+    fn values<'py>(slf: &Bound<'py, Self>) -> PyResult<View<'py, f32>> {
+        view(slf, |this| Some(this.0.values()))
     }
+}
+
+methods! {
+    impl SpecklePattern as this: this.0;
+
+    unmade "PupilField.pattern, SpeckleField.to_pattern or weighted_mean";
 
     /// Return the mean of patterns with weights: light that adds by intensities.
     ///
@@ -28,7 +33,7 @@ impl SpecklePattern {
     /// patterns : iterable of SpecklePattern
     ///     As many patterns, of one size. They are drawn one by one.
     #[staticmethod]
-    fn weighted_mean(weights: Bound<'_, PyAny>, patterns: &Bound<'_, PyAny>) -> PyResult<Self> {
+    build weighted_mean(_py; weights: Bound<'py, PyAny>, patterns: &Bound<'py, PyAny>) = {
         take!(weights: Vec<f64>);
         let mut failed = None;
         let patterns = patterns.try_iter()?.map_while(|pattern| {
@@ -40,13 +45,7 @@ impl SpecklePattern {
             Some(error) => Err(error),
             None => Ok(Self(mean.or_raise()?)),
         }
-    }
-}
-
-methods! {
-    impl SpecklePattern as this: this.0;
-
-    unmade "PupilField.pattern, SpeckleField.to_pattern or weighted_mean";
+    };
 
     /// Width and height, which are the periods, in samples.
     get size -> (usize, usize);
@@ -66,9 +65,8 @@ class! {
 impl SpeckleField {
     /// Amplitude at every sample, complex64 [row, column]: a read-only view without a copy.
     #[getter]
-    fn values<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<Complex32>>> {
-        // SAFETY: the values lie in this object, which is frozen.
-        unsafe { view(slf.clone().into_any(), slf.get().0.values()) }
+    fn values<'py>(slf: &Bound<'py, Self>) -> PyResult<View<'py, Complex32>> {
+        view(slf, |this| Some(this.0.values()))
     }
 }
 

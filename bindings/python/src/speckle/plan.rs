@@ -48,6 +48,10 @@ impl StackPlan {
         take!(number: usize);
         Ok(physics::StackPlan::place(number).into())
     }
+}
+
+methods! {
+    impl StackPlan as this: this.0;
 
     /// Generate the stack of this plan.
     ///
@@ -58,21 +62,14 @@ impl StackPlan {
     /// memory_limit : int, optional
     ///     Bytes that the slices may take; by default all that the machine has.
     #[pyo3(signature = (seed, memory_limit = None))]
-    fn stack(
-        &self,
-        py: Python<'_>,
-        seed: Bound<'_, PyAny>,
-        memory_limit: Option<Bound<'_, PyAny>>,
-    ) -> PyResult<SpeckleStack> {
+    call stack(py;
+        seed: Bound<'py, PyAny>, memory_limit: Option<Bound<'py, PyAny>>
+    ) -> SpeckleStack = {
         take!(seed: u64);
         let limit = optional(memory_limit, "memory_limit")?;
-        let field = self.0.field(seed).or_raise()?;
-        py.detach(|| SpeckleStack::of(field, self.0.path(), within(limit)))
-    }
-}
-
-methods! {
-    impl StackPlan as this: this.0;
+        let field = this.0.field(seed).or_raise()?;
+        py.detach(|| SpeckleStack::of(field, this.0.path(), within(limit)))
+    };
 
     make new(
         image: [f64; 2], region: [f64; 2], speckle_size: f64, motion: Option<f64>, frames: u32,

@@ -1,10 +1,10 @@
-use numpy::{Complex32, PyArray2};
+use numpy::Complex32;
 use pyo3::prelude::*;
 use tem00_numerics::Grid;
 use tem00_speckle::{self as physics, Pupil as Shape, SpeckleError};
 
-use super::images::view;
-use crate::{arrays::map, pickling::Value};
+use super::images::{View, view};
+use crate::{arrays::LIMIT, pickling::Value};
 
 class! {
     /// The shape of the camera's pupil; lengths are in units of its diameter.
@@ -75,12 +75,11 @@ methods! {
 impl Pupil {
     /// Amplitude transmission of a sampled pupil, complex64 [row, column], a read-only view; None for others.
     #[getter]
-    fn values<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyArray2<Complex32>>>> {
-        let Shape::Sampled(transmission) = &slf.get().0 else {
-            return Ok(None);
-        };
-        // SAFETY: the values lie in this object, which is frozen.
-        unsafe { view(slf.clone().into_any(), transmission.values()) }.map(Some)
+    fn values<'py>(slf: &Bound<'py, Self>) -> PyResult<View<'py, Complex32>> {
+        view(slf, |this| match &this.0 {
+            Shape::Sampled(transmission) => Some(transmission.values()),
+            _ => None,
+        })
     }
 }
 

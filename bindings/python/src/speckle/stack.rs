@@ -2,10 +2,16 @@ use numpy::{Complex32, PyArray2};
 use pyo3::prelude::*;
 use tem00_speckle::{self as physics, SlicePath as Path, StackOptions};
 
-use super::{field::PupilField, images::view, path::SlicePath};
+use super::{
+    field::PupilField,
+    images::{View, view},
+    path::SlicePath,
+};
 use crate::{
     arguments::optional,
-    arrays::{Numbers, Values, Vector, Whole, columns, fill, map, map_complex, named_class},
+    arrays::{
+        Floats, LIMIT, Numbers, Values, Whole, evaluate, map_complex, map_inner, named_class,
+    },
     error::{OrRaise, refused},
     pickling::{Recipe, by_constructor},
 };
@@ -53,6 +59,33 @@ impl SpeckleStack {
 
 #[pymethods]
 impl SpeckleStack {
+    /// Return the coefficients that look-ups interpolate, complex64 [row, column].
+    ///
+    /// They are those of the prefiltered cubic spline: a read-only view without a copy.
+    ///
+    /// Parameters
+    /// ----------
+    /// index : int
+    ///     Slice; negative ones count from the last.
+    fn coefficients<'py>(
+        slf: &Bound<'py, Self>,
+        index: Whole<'py>,
+    ) -> PyResult<View<'py, Complex32>> {
+        let slice = slf.get().slice(&index)?;
+        view(slf, |this| Some(this.0.coefficients(slice)))
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        let parts = (PupilField(self.1.clone()), self.path());
+        by_constructor::<Self>(py, "generate", parts)
+    }
+}
+
+methods! {
+    impl SpeckleStack as this: this.0;
+
+    unmade "generate";
+
     /// Generate the slices of a field along a path.
     ///
     /// Parameters
@@ -70,33 +103,13 @@ impl SpeckleStack {
     ///     If the slices take more than the limit, or than the machine has.
     #[staticmethod]
     #[pyo3(signature = (field, path, memory_limit = None))]
-    fn generate(
-        py: Python<'_>,
-        field: Bound<'_, PyAny>,
-        path: Bound<'_, PyAny>,
-        memory_limit: Option<Bound<'_, PyAny>>,
-    ) -> PyResult<Self> {
+    build generate(py;
+        field: Bound<'py, PyAny>, path: Bound<'py, PyAny>, memory_limit: Option<Bound<'py, PyAny>>
+    ) = {
         take!(field: physics::PupilField, path: Path);
         let limit = optional(memory_limit, "memory_limit")?;
         py.detach(|| Self::of(field, path, within(limit)))
-    }
-
-    /// Return the coefficients that look-ups interpolate, complex64 [row, column].
-    ///
-    /// They are those of the prefiltered cubic spline: a read-only view without a copy.
-    ///
-    /// Parameters
-    /// ----------
-    /// index : int
-    ///     Slice; negative ones count from the last.
-    fn coefficients<'py>(
-        slf: &Bound<'py, Self>,
-        index: Whole<'py>,
-    ) -> PyResult<Bound<'py, PyArray2<Complex32>>> {
-        let slice = slf.get().slice(&index)?;
-        // SAFETY: the coefficients lie in this object, which is frozen.
-        unsafe { view(slf.clone().into_any(), slf.get().0.coefficients(slice)) }
-    }
+    };
 
     /// Return the closed forms of a slice and of its join to the next.
     ///
@@ -108,17 +121,17 @@ impl SpeckleStack {
     /// Returns
     /// -------
     /// SliceLaw
-    fn slice_law<'py>(&self, py: Python<'py>, index: Whole<'_>) -> PyResult<Values<'py>> {
-        let law = self.0.slice_law(self.slice(&index)?);
+    call slice_law(py; index: Whole<'py>) -> Values<'py> = {
+        let law = this.0.slice_law(this.slice(&index)?);
         let rows = |rows: &[&[f32]]| {
             let rows: Vec<_> = rows.iter().map(|row| row.to_vec()).collect();
             PyArray2::from_vec2(py, &rows)
         };
         let mean_square = rows(&law.mean_square.each_ref().map(|row| &row[..]))?;
         let covariance = rows(&law.covariance.each_ref().map(|row| &row[..]))?;
-        let turns: Vector<2> = law.turns.into();
+        let turns: Floats = law.turns.into();
         named_class(py, "SliceLaw")?.call1((mean_square, covariance, turns))
-    }
+    };
 
     /// Return where the pupil of a slice stands, in its diameters along x and y.
     ///
@@ -126,9 +139,9 @@ impl SpeckleStack {
     /// ----------
     /// index : int
     ///     Slice; negative ones count from the last.
-    fn offset(&self, index: Whole<'_>) -> PyResult<(f64, f64)> {
-        Ok(self.0.offset(self.slice(&index)?).into())
-    }
+    call offset(_py; index: Whole<'py>) -> (f64, f64) = {
+        Ok(this.0.offset(this.slice(&index)?).into())
+    };
 
     /// Return the intensity, with mean 1, at positions and slice coordinates.
     ///
@@ -143,18 +156,13 @@ impl SpeckleStack {
     /// -------
     /// float or ndarray
     ///     Intensity in the common shape of the arguments.
-    fn intensity_at<'py>(
-        &self,
-        py: Python<'py>,
-        x: Numbers<'py>,
-        y: Numbers<'py>,
-        u: Numbers<'py>,
-    ) -> PyResult<Values<'py>> {
-        let [intensity] = fill(py, [("x", &x), ("y", &y), ("u", &u)], |[x, y, u], [out]| {
-            self.0.intensity_batch(x, y, u, out);
+    call intensity_at(py; x: Numbers<'py>, y: Numbers<'py>, u: Numbers<'py>) -> Values<'py> = {
+        let places = columns!(LIMIT; x, y, u);
+        let [intensity] = evaluate(py, places, [&[]], |[x, y, u], [out]| {
+            this.0.intensity_batch(x, y, u, out);
         })?;
         Ok(intensity)
-    }
+    };
 
     /// Return the amplitude whose squared magnitude is the intensity, for light whose fields add.
     ///
@@ -171,16 +179,13 @@ impl SpeckleStack {
     /// -------
     /// complex or ndarray of complex
     ///     Amplitude in the common shape of the arguments.
-    fn amplitude_at<'py>(
-        &self,
-        py: Python<'py>,
-        x: Numbers<'py>,
-        y: Numbers<'py>,
-        u: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let columns = columns([("x", &x), ("y", &y), ("u", &u)], f64::MAX)?;
-        map_complex(py, columns, |[x, y, u]| self.0.amplitude_at(x, y, u))
-    }
+    call amplitude_at(py;
+        x: Numbers<'py>, y: Numbers<'py>, u: Numbers<'py>
+    ) -> Bound<'py, PyAny> = {
+        map_complex(py, columns!(LIMIT; x, y, u), |[x, y, u]| {
+            this.0.amplitude_at(x, y, u)
+        })
+    };
 
     /// Return the mean of the intensity over boxes: what pixels see whose whole area takes part.
     ///
@@ -197,14 +202,9 @@ impl SpeckleStack {
     /// -------
     /// float or ndarray
     ///     Mean intensity in the common shape of x, y and u.
-    fn average_over<'py>(
-        &self,
-        py: Python<'py>,
-        x: Numbers<'py>,
-        y: Numbers<'py>,
-        size: Numbers<'py>,
-        u: Numbers<'py>,
-    ) -> PyResult<Values<'py>> {
+    call average_over(py;
+        x: Numbers<'py>, y: Numbers<'py>, size: Numbers<'py>, u: Numbers<'py>
+    ) -> Values<'py> = {
         let size: [f64; 2] = size.vector("size")?;
         if let Some(bad) = size.into_iter().find(|side| *side < 0.0) {
             return Err(refused(
@@ -212,21 +212,10 @@ impl SpeckleStack {
                 format!("size must be 0 or more, got {bad}"),
             ));
         }
-        map(py, [("x", &x), ("y", &y), ("u", &u)], |[x, y, u]| {
-            self.0.average_over([x, y], size, u)
+        map_inner(py, columns!(LIMIT; x, y, u), &[], |[x, y, u]| {
+            [this.0.average_over([x, y], size, u)]
         })
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        let parts = (PupilField(self.1.clone()), self.path());
-        by_constructor::<Self>(py, "generate", parts)
-    }
-}
-
-methods! {
-    impl SpeckleStack as this: this.0;
-
-    unmade "generate";
+    };
 
     /// Field the slices were cut from. That of a straight path closes on itself after the length of
     /// the path.

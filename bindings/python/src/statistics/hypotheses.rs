@@ -6,7 +6,7 @@ use pyo3::{prelude::*, types::PyAny};
 
 use crate::{
     arguments::Samples,
-    arrays::{List, Numbers, map, named_tuple},
+    arrays::{Floats, LIMIT, Numbers, named_tuple},
     error::{OrRaise, refused},
 };
 
@@ -42,7 +42,7 @@ methods! {
     unmade "from_values";
 
     /// Return the samples in ascending order, those of each level spread evenly over its cell.
-    try spread(samples: Samples) -> List = checked(&samples.0).map(|samples| this.0.spread(samples));
+    try spread(samples: Samples) -> Floats = checked(&samples.0).map(|samples| this.0.spread(samples));
 
     /// Number of levels.
     get count -> usize;
@@ -97,13 +97,22 @@ class! {
 
 #[pymethods]
 impl GoodnessOfFit {
+    fn __repr__(&self) -> String {
+        match self.0.kolmogorov_smirnov() {
+            Ok(test) => format!("<GoodnessOfFit: kolmogorov_smirnov={:?}>", test.p_value),
+            Err(_) => "<GoodnessOfFit: too few samples>".to_owned(),
+        }
+    }
+}
+
+methods! {
+    impl GoodnessOfFit as this: this.0;
+
     #[new]
     #[pyo3(signature = (samples, cumulative, levels = None))]
-    fn new(
-        samples: Numbers<'_>,
-        cumulative: Bound<'_, PyAny>,
-        levels: Option<PyRef<'_, GreyLevels>>,
-    ) -> PyResult<Self> {
+    build new(_py;
+        samples: Numbers<'py>, cumulative: Bound<'py, PyAny>, levels: Option<PyRef<'py, GreyLevels>>
+    ) = {
         let samples = checked(samples.values()?)?;
         let Some(levels) = levels else {
             let places = probabilities(&cumulative, samples)?;
@@ -115,18 +124,7 @@ impl GoodnessOfFit {
         let law = |edge: f64| law.get(&edge.to_bits()).copied().unwrap_or(1.0);
         let fit = physics::GoodnessOfFit::of_rounded(samples, &levels.0, law);
         Ok(Self(fit.or_raise()?))
-    }
-
-    fn __repr__(&self) -> String {
-        match self.0.kolmogorov_smirnov() {
-            Ok(test) => format!("<GoodnessOfFit: kolmogorov_smirnov={:?}>", test.p_value),
-            Err(_) => "<GoodnessOfFit: too few samples>".to_owned(),
-        }
-    }
-}
-
-methods! {
-    impl GoodnessOfFit as this: this.0;
+    };
 
     /// Test after Kolmogorov and Smirnov.
     ///

@@ -2,7 +2,7 @@ use super::physics::{self, Boundary};
 use tem00_numerics::Grid;
 
 use crate::{
-    arrays::{ImageArray, List, named_tuple},
+    arrays::{Floats, ImageArray, named_tuple},
     error::OrRaise,
 };
 
@@ -79,7 +79,7 @@ functions! {
     /// -------
     /// ndarray, shape (n,)
     ///     The samples, without those of an incomplete last stride.
-    try decorrelated_samples(grid: Grid<f32>, stride: usize) -> List =
+    try decorrelated_samples(grid: Grid<f32>, stride: usize) -> Floats =
         physics::decorrelated_samples(&grid, stride);
 
     /// Return the contrast of an image within a square window about every pixel.

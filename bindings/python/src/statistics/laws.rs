@@ -2,7 +2,7 @@ use super::physics;
 use pyo3::prelude::*;
 
 use crate::{
-    arrays::map,
+    arrays::LIMIT,
     error::{OrRaise, refused},
 };
 

@@ -1,0 +1,64 @@
+//! Declarations of classes.
+
+/// Declares a class that holds an object of the library: frozen, compared by value, made from the
+/// library's object by [`From`], and taken as an argument where the library's object is declared.
+macro_rules! class {
+    ($(#[$doc:meta])* $module:literal $class:ident($inner:ty) $(: $derive:ident)?) => {
+        $(#[$doc])*
+        #[pyo3::pyclass(frozen, eq, module = $module)]
+        #[derive(Clone, Debug, PartialEq $(, $derive)?)]
+        pub(crate) struct $class(pub(crate) $inner);
+
+        impl From<$inner> for $class {
+            fn from(inner: $inner) -> Self {
+                Self(inner)
+            }
+        }
+
+        impl<'py> $crate::arguments::Take<'py> for $inner {
+            fn take(given: &pyo3::Bound<'py, pyo3::PyAny>, name: &'static str) -> pyo3::PyResult<Self> {
+                Ok($crate::arguments::object::<$class>(given, name)?.get().0.clone())
+            }
+        }
+    };
+}
+
+/// Declares a class that keeps how it was made beside the object of the library, for its `__repr__` and
+/// for pickle; otherwise as [`class`].
+macro_rules! kept_class {
+    ($(#[$doc:meta])* $module:literal $class:ident($inner:ty)) => {
+        $(#[$doc])*
+        #[pyo3::pyclass(frozen, eq, module = $module)]
+        #[derive(Clone, Debug)]
+        pub(crate) struct $class {
+            inner: $inner,
+            made: $crate::pickling::Made,
+        }
+
+        impl PartialEq for $class {
+            fn eq(&self, other: &Self) -> bool {
+                self.inner == other.inner
+            }
+        }
+
+        impl<'py> $crate::arguments::Take<'py> for $inner {
+            fn take(given: &pyo3::Bound<'py, pyo3::PyAny>, name: &'static str) -> pyo3::PyResult<Self> {
+                Ok($crate::arguments::object::<$class>(given, name)?.get().inner.clone())
+            }
+        }
+
+        #[pyo3::pymethods]
+        impl $class {
+            fn __repr__(&self) -> String {
+                self.made.call(stringify!($class))
+            }
+
+            fn __reduce__<'py>(
+                &self,
+                py: pyo3::Python<'py>,
+            ) -> pyo3::PyResult<$crate::pickling::Recipe<'py>> {
+                self.made.recipe::<Self>(py)
+            }
+        }
+    };
+}

@@ -77,7 +77,7 @@ fn broken_ply_files_are_explained() {
         0.25 => 0,25 => line 18: vertex needs x, y, z, red, got "0,25 -0.125 1.5 255"
         4 0 3 2 1 => 4 0 3 2 => line 20: face needs vertex_indices, got "4 0 3 2"
         3 3 0 4\n =>  => the file ends within face 4 (from 0) of 5
-        3 3 0 4 => 3 3 0 9 => face 4 (from 0) refers to vertex 9, but the file has 5
+        3 3 0 4 => 3 3 0 5 => face 4 (from 0) refers to vertex 5, but the file has 5
         3 3 0 4 => 3 3 0 -1 => face 4 (from 0) refers to vertex -1
         float z => float w => the element vertex needs the numbers x, y and z, got "x, y, w, red"
         0.25 => nan => vertex 4 (from 0) must be finite, got [NaN, -0.000125, 0.0015]

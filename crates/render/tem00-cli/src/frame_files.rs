@@ -145,35 +145,24 @@ pub(crate) fn write_layers(
 }
 
 fn layers_of<'a>(frame: &'a Frame, [red, green, blue]: &'a [Grid<f32>; 3]) -> Vec<Layer<'a>> {
+    let [x, y, z] = &frame.normal;
+    let (light, variance) = (&frame.lights, &frame.lights_variance);
+    let picture = [("R", red), ("G", green), ("B", blue)];
+    let lights = [("radiance", light), ("variance", variance)];
+    let depth = [("Z", &frame.depth)];
+    let normal = [("X", x), ("Y", y), ("Z", z)];
+    let samples = [("count", &frame.samples)];
+    let of_lights = "radiance of the lights in W/(m^2 sr), and its variance";
+    let distance = "distance along the axis in metres; 0: nothing";
     let picture = layer(
         "picture",
         "all light in linear sRGB, in W/(m^2 sr)",
-        [("R", red), ("G", green), ("B", blue)],
+        picture,
     );
-    let lights = layer(
-        "lights",
-        "radiance of the lights in W/(m^2 sr), and its variance",
-        [
-            ("radiance", &frame.lights),
-            ("variance", &frame.lights_variance),
-        ],
-    );
-    let depth = layer(
-        "depth",
-        "distance along the axis in metres; 0: nothing",
-        [("Z", &frame.depth)],
-    );
-    let [x, y, z] = &frame.normal;
-    let normal = layer(
-        "normal",
-        "unit normal in world axes; 0: nothing",
-        [("X", x), ("Y", y), ("Z", z)],
-    );
-    let samples = layer(
-        "samples",
-        "camera samples of the pixel",
-        [("count", &frame.samples)],
-    );
+    let lights = layer("lights", of_lights, lights);
+    let depth = layer("depth", distance, depth);
+    let normal = layer("normal", "unit normal in world axes; 0: nothing", normal);
+    let samples = layer("samples", "camera samples of the pixel", samples);
     let lasers = frame.lasers.iter().enumerate().map(laser_layer);
     core::iter::once(picture)
         .chain(lasers)

@@ -52,12 +52,12 @@ impl<'a> Inspection<'a> {
     }
 
     /// Draws camera, lasers and parts into NAME.svg in a folder, as they stand in the first frame in which a
-    /// laser is not seen, or else in the first; returns the path, or `None` if this build draws nothing.
+    /// laser is not seen, or else in the first; returns the path.
     ///
     /// # Errors
     ///
     /// Returns a failure if the file cannot be written.
-    pub fn draw(&self, folder: &Path, name: &str) -> Result<Option<PathBuf>, Failure> {
+    pub fn draw(&self, folder: &Path, name: &str) -> Result<PathBuf, Failure> {
         let dark = |(_, lasers): &&(u32, Vec<LaserInspection>)| {
             !lasers.iter().all(LaserInspection::is_seen)
         };
@@ -65,7 +65,7 @@ impl<'a> Inspection<'a> {
         if let Some((frame, lasers)) = frame {
             overview::draw(self.scene, *frame, lasers).save(folder, name)?;
         }
-        Ok(Some(folder.join(format!("{name}.svg"))))
+        Ok(folder.join(format!("{name}.svg")))
     }
 
     fn is_seen(&self, laser: usize) -> bool {
@@ -74,17 +74,13 @@ impl<'a> Inspection<'a> {
     }
 
     fn words(&self, laser: usize) -> Vec<String> {
-        let in_frames = |seen: bool| {
-            let frames = self.frames.iter();
-            let frames = frames.filter(move |(_, lasers)| lasers[laser].is_seen() == seen);
-            frames.collect::<Vec<_>>()
+        let first = |seen: bool| {
+            let mut frames = self.frames.iter();
+            frames.find(|(_, lasers)| lasers[laser].is_seen() == seen)
         };
-        let (seen, dark) = (in_frames(true), in_frames(false));
-        let mut lines = Vec::new();
-        if let Some((_, lasers)) = seen.first() {
-            lines.push(words::seen(self.scene, laser, &lasers[laser]));
-        }
-        if let Some((frame, lasers)) = dark.first() {
+        let seen = first(true).map(|(_, lasers)| words::seen(self.scene, laser, &lasers[laser]));
+        let mut lines = Vec::from_iter(seen);
+        if let Some((frame, lasers)) = first(false) {
             let which = (self.scene.frames > 1).then_some(*frame);
             lines.extend(words::dark(self.scene, laser, which, &lasers[laser]));
         }

@@ -16,10 +16,11 @@ mod summary;
 use std::{
     ffi::OsString,
     io::{self, Write},
+    path::Path,
 };
 
 use clap::CommandFactory;
-use tem00_report::{failure::Failure, output, program, shell};
+use tem00_report::{atomic::probe_writable, failure::Failure, output, program, shell};
 
 use crate::args::{Cli, Command};
 pub use crate::{
@@ -30,15 +31,7 @@ pub use crate::{
 };
 
 /// The commands of `tem00-inspect`.
-const INSPECTION: [&str; 7] = [
-    "budget",
-    "calibrate",
-    "characterise",
-    "design",
-    "lines",
-    "sweep",
-    "triangulate",
-];
+const INSPECTION: &str = "budget calibrate characterise design lines sweep triangulate";
 
 /// Runs the program with the arguments of a process, the first of which is its own name, and returns
 /// the exit code.
@@ -46,7 +39,8 @@ const INSPECTION: [&str; 7] = [
 /// Takes over Ctrl-C and the termination signals of the process: a second one ends it at once.
 pub fn run(arguments: &[OsString]) -> u8 {
     let command = arguments.get(1).and_then(|command| command.to_str());
-    if let Some(command) = command.filter(|command| INSPECTION.contains(command)) {
+    let is_other = |command: &&str| INSPECTION.split(' ').any(|other| other == *command);
+    if let Some(command) = command.filter(is_other) {
         let _ = writeln!(
             io::stderr(),
             "`{command}` is a command of the program tem00-inspect: `tem00-inspect {command}`"
@@ -54,6 +48,16 @@ pub fn run(arguments: &[OsString]) -> u8 {
         return 2;
     }
     program::run(arguments, obey)
+}
+
+/// Makes sure, before the work, that a file can be written.
+fn check_writable(path: &Path) -> Result<(), Failure> {
+    probe_writable(path).map_err(|error| {
+        Failure::input(
+            format!("cannot write {}: {error}", path.display()),
+            "name a file in a folder that exists and may be written",
+        )
+    })
 }
 
 /// Does the command and prints its results to `out`.

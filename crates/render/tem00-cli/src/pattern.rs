@@ -11,7 +11,7 @@ use std::{
 use num_complex::Complex;
 use tem00_numerics::Grid;
 use tem00_report::{
-    atomic::{probe_writable, write_atomically},
+    atomic::write_atomically,
     failure::Failure,
     image::{Format, ImageError, Layer, open, write_exr, write_grey_png},
     interrupt,
@@ -21,7 +21,7 @@ use tem00_report::{
 };
 use tem00_speckle::{PupilField, SpeckleError, SpeckleField, SpecklePattern};
 
-use crate::{args::PatternArgs, comparison};
+use crate::{args::PatternArgs, check_writable, comparison};
 
 /// The largest size Q: 2²⁸ samples, the most that [`read_image`](tem00_report::image::read_image) takes.
 const MAXIMUM_SIZE: usize = 1 << 14;
@@ -47,7 +47,7 @@ pub(crate) fn run(args: &PatternArgs, out: &mut impl Write) -> Result<(), Failur
 fn write_and_compare(args: &PatternArgs) -> Result<Report, Failure> {
     let format = output_format(&args.output, args.amplitude)?;
     let field = pupil_field(args)?;
-    probe_writable(&args.output).map_err(|error| cannot_write(&args.output, &error))?;
+    check_writable(&args.output)?;
     interrupt::check()?;
 
     let values = if args.amplitude {
@@ -68,13 +68,10 @@ fn write_and_compare(args: &PatternArgs) -> Result<Report, Failure> {
     })
     .map_err(|error| Failure::writing(&args.output, error))?;
     let mut report = Report::new("A speckle pattern beside the theory");
-    report
-        .section("Statistics")
-        .table(comparison::table(&compared.rows));
-    compared
-        .notes
-        .into_iter()
-        .for_each(|line| report.note(line));
+    let table = comparison::table(&compared.rows);
+    report.section("Statistics").table(table);
+    let notes = compared.notes.into_iter();
+    notes.for_each(|line| report.note(line));
     Ok(report)
 }
 
@@ -148,14 +145,6 @@ fn read_field(path: &Path) -> Result<Grid<Complex<f32>>, Failure> {
     })
 }
 
-/// Returns the failure to write where the user asked to: found before the work, it is bad input.
-fn cannot_write(path: &Path, error: &io::Error) -> Failure {
-    Failure::input(
-        format!("cannot write {}: {error}", path.display()),
-        "name a file in a folder that exists and may be written",
-    )
-}
-
 fn description(args: &PatternArgs, field: &PupilField) -> String {
     let source = match &args.field {
         None => format!("seed {}", args.seed),
@@ -200,11 +189,8 @@ fn write(
         (Format::Exr, Values::Amplitude(field)) => {
             let values = field.values();
             let (real, imaginary) = (values.map(|u| u.re), values.map(|u| u.im));
-            write_layer(
-                file,
-                description,
-                vec![("real", &real), ("imaginary", &imaginary)],
-            )
+            let channels = vec![("real", &real), ("imaginary", &imaginary)];
+            write_layer(file, description, channels)
         }
         (Format::Png, _) => write_scaled_png(file, values.pattern().values(), description),
     }
@@ -229,11 +215,8 @@ fn write_scaled_png(
     values: &Grid<f32>,
     description: &str,
 ) -> Result<(), ImageError> {
-    let white = values
-        .values()
-        .iter()
-        .copied()
-        .fold(f32::MIN_POSITIVE, f32::max);
+    let samples = values.values().iter().copied();
+    let white = samples.fold(f32::MIN_POSITIVE, f32::max);
     let text = [
         ("Description", description.to_owned()),
         ("Scale", format!("white is the intensity {white}, linear")),

@@ -86,7 +86,7 @@ fn check(args: &RenderArgs, scene: &Scene, out: &mut impl Write) -> Result<(), F
     output::prepare(&folder)?;
     let mut lines = found.lines();
     let drawing = found.draw(&folder, &format!("{name}_overview"))?;
-    lines.extend(drawing.map(|path| path.display().to_string()));
+    lines.push(drawing.display().to_string());
     writeln!(out, "{}", lines.join("\n")).map_err(|error| Failure::stdout(&error))?;
     if found.sees_all_lasers() {
         Ok(())

@@ -22,6 +22,7 @@ use tem00_statistics::{
 
 use crate::{
     args::StatsArgs,
+    check_writable,
     comparison::{self, Row},
 };
 use curves::{Curves, Measured};
@@ -63,9 +64,6 @@ struct Measurement {
 /// Returns a failure if the image cannot be read or holds no speckle to measure, or if the page
 /// cannot be written.
 pub(crate) fn run(args: &StatsArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let cannot = |error: &dyn core::fmt::Display, help: &str| {
-        Failure::input(format!("{}: {error}", args.image.display()), help)
-    };
     let plot = args.plot.as_deref().map(plot_file).transpose()?;
     let reading = Reading {
         channel: args.channel.as_deref(),
@@ -75,13 +73,13 @@ pub(crate) fn run(args: &StatsArgs, out: &mut impl Write) -> Result<(), Failure>
     };
     let image = read_image(&args.image, &reading).map_err(|error| {
         let help = "give an image of light, and a --crop inside it";
-        wrong_or(&args.image, Kind::Image, || cannot(&error, help))
+        wrong_or(&args.image, Kind::Image, || cannot(args, &error, help))
     })?;
     let (width, height) = (image.values.width(), image.values.height());
     if width.min(height) < FEWEST_PIXELS {
         let error = format!("the image has {width} × {height} pixels");
         let help = format!("speckle needs at least {FEWEST_PIXELS} pixels along either axis");
-        return Err(cannot(&error, &help));
+        return Err(cannot(args, &error, &help));
     }
     let pixels = (width * height) as u64;
     let name = args.image.display().to_string();
@@ -103,21 +101,21 @@ pub(crate) fn run(args: &StatsArgs, out: &mut impl Write) -> Result<(), Failure>
 
 /// Measures an image, flattened if that was asked for.
 fn measurement(args: &StatsArgs, image: &LoadedImage) -> Result<Measurement, Failure> {
-    let cannot = |error: &dyn core::fmt::Display, help: &str| {
-        Failure::input(format!("{}: {error}", args.image.display()), help)
-    };
-    let help = "give an image that light and speckle fill, or a part of one with --crop; --flatten divides by uneven light";
-    let flat = match args.flatten {
-        Some(window) => Some(flattened(&image.values, window).map_err(|error| {
-            cannot(
-                &error,
-                "take a brighter part with --crop, or another window",
-            )
-        })?),
-        None => None,
-    };
+    let flat = args.flatten.map(|window| flattened(&image.values, window));
+    let flat = flat.transpose().map_err(|error| {
+        let help = "take a brighter part with --crop, or another window";
+        cannot(args, &error, help)
+    })?;
     let is_raw = args.black_level.is_none();
-    measure(&args.image, image, (flat.as_ref(), is_raw)).map_err(|error| cannot(&error, help))
+    measure(&args.image, image, (flat.as_ref(), is_raw)).map_err(|error| {
+        let help = "give an image that light and speckle fill, or a part of one with --crop; --flatten divides by \
+                    uneven light";
+        cannot(args, &error, help)
+    })
+}
+
+fn cannot(args: &StatsArgs, error: &impl core::fmt::Display, help: &str) -> Failure {
+    Failure::input(format!("{}: {error}", args.image.display()), help)
 }
 
 /// Returns the file of the page and its format, if it can be written.
@@ -128,12 +126,7 @@ fn plot_file(path: &Path) -> Result<(&Path, Format), Failure> {
             "end the name in .svg or .png",
         )
     })?;
-    tem00_report::atomic::probe_writable(path).map_err(|error| {
-        Failure::input(
-            format!("cannot write {}: {error}", path.display()),
-            "name a file in a folder that exists and may be written",
-        )
-    })?;
+    check_writable(path)?;
     Ok((path, format))
 }
 
@@ -142,10 +135,8 @@ fn draw(measurement: &Measurement, path: &Path, format: Format) -> Result<(), Fa
         title: &measurement.image,
         curves: &measurement.curves,
     };
-    let bytes = page
-        .draw()
-        .bytes(format)
-        .map_err(|error| Failure::writing(path, error))?;
+    let bytes = page.draw().bytes(format);
+    let bytes = bytes.map_err(|error| Failure::writing(path, error))?;
     tem00_report::atomic::write_atomically(path, |file| file.write_all(&bytes))
         .map_err(|error| Failure::writing(path, error))
 }
@@ -158,9 +149,8 @@ impl Measurement {
         report.data("height", self.height);
         report.data("interpretation", &self.interpretation);
         report.data("curves", &self.curves);
-        report
-            .section("Statistics")
-            .table(comparison::table(&self.rows));
+        let table = comparison::table(&self.rows);
+        report.section("Statistics").table(table);
         report.verdict(comparison::conclusion(&self.rows));
         self.warnings.iter().for_each(|line| report.warning(line));
         self.assumptions.iter().for_each(|line| report.note(line));

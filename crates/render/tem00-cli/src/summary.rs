@@ -21,30 +21,28 @@ pub(crate) struct Exposure {
 impl Exposure {
     /// The white level that the user asked for.
     pub(crate) fn asked(level: f64) -> Self {
-        Self {
-            // What f32 cannot hold is shown as black or white all the same.
-            white_level: to_f32(level).clamp(f32::MIN_POSITIVE, f32::MAX),
-            chosen_by: Cow::Borrowed("as asked"),
-        }
+        // What f32 cannot hold is shown as black or white all the same.
+        let white_level = to_f32(level).clamp(f32::MIN_POSITIVE, f32::MAX);
+        Self::chosen(white_level, "as asked")
     }
 
     /// The white level that the lasers' light in the first frame suggests.
     pub(crate) const fn for_laser_light(white_level: f32) -> Self {
-        Self {
-            white_level,
-            chosen_by: Cow::Borrowed(
-                "so that 99.5 % of the pixels that laser light reaches in the first frame are darker",
-            ),
-        }
+        let rule =
+            "so that 99.5 % of the pixels that laser light reaches in the first frame are darker";
+        Self::chosen(white_level, rule)
     }
 
     /// The white level that all light in the first frame suggests.
     pub(crate) const fn for_all_light(white_level: f32) -> Self {
+        let rule = "so that 99.5 % of the lit pixels of the first frame are darker";
+        Self::chosen(white_level, rule)
+    }
+
+    const fn chosen(white_level: f32, rule: &'static str) -> Self {
         Self {
             white_level,
-            chosen_by: Cow::Borrowed(
-                "so that 99.5 % of the lit pixels of the first frame are darker",
-            ),
+            chosen_by: Cow::Borrowed(rule),
         }
     }
 }

@@ -35,24 +35,16 @@ struct View {
 }
 
 const VIEWS: [View; 3] = [
-    View {
-        title: "from +z: x to the right, y up",
-        right: DVec3::X,
-        up: DVec3::Y,
-    },
-    View {
-        title: "from −x: z to the right, y up",
-        right: DVec3::Z,
-        up: DVec3::Y,
-    },
-    View {
-        title: "from +y: x to the right, z down",
-        right: DVec3::X,
-        up: DVec3::NEG_Z,
-    },
+    View::new("from +z: x to the right, y up", DVec3::X, DVec3::Y),
+    View::new("from −x: z to the right, y up", DVec3::Z, DVec3::Y),
+    View::new("from +y: x to the right, z down", DVec3::X, DVec3::NEG_Z),
 ];
 
 impl View {
+    const fn new(title: &'static str, right: DVec3, up: DVec3) -> Self {
+        Self { title, right, up }
+    }
+
     fn of(&self, point: DVec3) -> DVec2 {
         DVec2::new(point.dot(self.right), point.dot(self.up))
     }
@@ -112,11 +104,8 @@ impl Content<'_> {
         canvas.add(text(panel.view.title, title, 18.0, 13, "#202020"));
         for (index, shape) in self.shapes.iter().enumerate() {
             let is_part = index < self.scene.surfaces.len();
-            panel.area(
-                &outline(shape, panel.view),
-                if is_part { PART } else { LIGHT },
-                canvas,
-            );
+            let colour = if is_part { PART } else { LIGHT };
+            panel.area(&outline(shape, panel.view), colour, canvas);
         }
         for (index, laser) in self.lasers.iter().enumerate() {
             self.draw_laser(index, laser, panel, canvas);
@@ -141,12 +130,8 @@ impl Content<'_> {
         let colour = LASERS[index % LASERS.len()];
         for way in &laser.ways {
             for leg in way.windows(2) {
-                panel.line(
-                    [leg[0], leg[1]].map(|p| panel.view.of(p)),
-                    0.5,
-                    colour,
-                    canvas,
-                );
+                let ends = [leg[0], leg[1]].map(|p| panel.view.of(p));
+                panel.line(ends, 0.5, colour, canvas);
             }
         }
         if let Some(aperture) = aperture(laser) {
@@ -182,20 +167,12 @@ impl Panel<'_> {
     }
 
     fn area(&self, corners: &[DVec2], colour: &str, canvas: &mut Canvas) {
-        use core::fmt::Write;
-        let mut path = String::new();
-        for (index, &corner) in corners.iter().enumerate() {
-            let DVec2 { x, y } = self.place(corner);
-            // Writing to memory does not fail.
-            let _ = write!(
-                path,
-                "{} {x:.2} {y:.2} ",
-                if index == 0 { 'M' } else { 'L' }
-            );
-        }
-        path.push('Z');
+        let places = corners.iter().map(|&corner| self.place(corner));
+        let steps: Vec<_> = places
+            .map(|at| format!("{:.2} {:.2} ", at.x, at.y))
+            .collect();
         canvas.add(Primitive::Path(Box::new(PathData {
-            d: path,
+            d: format!("M {}Z", steps.join("L ")),
             fill: Some(Color::from("#e8e8e8")),
             stroke: Color::from(colour),
             stroke_width: 1.0,
@@ -208,22 +185,26 @@ impl Panel<'_> {
     fn line(&self, ends: [DVec2; 2], width: f64, colour: &str, canvas: &mut Canvas) {
         let low = DVec2::new(self.left, TITLE);
         let ends = clipped(ends.map(|p| self.place(p)), [low, low + SIDE]);
-        if let Some([from, to]) = ends {
-            canvas.add(Primitive::Line {
-                x1: from.x,
-                y1: from.y,
-                x2: to.x,
-                y2: to.y,
-                stroke: Color::from(colour),
-                stroke_width: width,
-                stroke_dasharray: None,
-            });
+        if let Some(ends) = ends {
+            canvas.add(stroke(ends, width, colour));
         }
     }
 
     fn label(&self, name: &str, at: DVec2, colour: &str, canvas: &mut Canvas) {
         let DVec2 { x, y } = self.place(at);
         canvas.add(text(name, x, y - 4.0, 11, colour));
+    }
+}
+
+fn stroke([from, to]: [DVec2; 2], stroke_width: f64, colour: &str) -> Primitive {
+    Primitive::Line {
+        x1: from.x,
+        y1: from.y,
+        x2: to.x,
+        y2: to.y,
+        stroke: Color::from(colour),
+        stroke_width,
+        stroke_dasharray: None,
     }
 }
 
@@ -247,15 +228,8 @@ fn draw_scale(extent: f64, canvas: &mut Canvas) {
     let length = decade * [5.0, 2.0].into_iter().find(fits).unwrap_or(1.0);
     let width = length * (SIDE - 2.0 * MARGIN) / extent;
     let y = TITLE + SIDE + 8.0;
-    canvas.add(Primitive::Line {
-        x1: MARGIN,
-        y1: y,
-        x2: MARGIN + width,
-        y2: y,
-        stroke: Color::from("#202020"),
-        stroke_width: 2.0,
-        stroke_dasharray: None,
-    });
+    let ends = [MARGIN, MARGIN + width].map(|x| DVec2::new(x, y));
+    canvas.add(stroke(ends, 2.0, "#202020"));
     let name = format!("{} mm", tem00_report::digits::rounded(1e3 * length, 3));
     canvas.add(text(&name, MARGIN + 0.5 * width, y + 16.0, 12, "#202020"));
 }

@@ -59,32 +59,24 @@ fn why(scene: &Scene, part: &LightPart) -> String {
     let fraction = percent(part.fraction);
     let name = name_of(scene, part.surface);
     let place = millimetres(part.centre);
+    let lit = format!("{fraction} lights {name} at {place}");
     match part.fate {
         LightFate::Misses => format!("{fraction} misses every surface: `look_at` aims the laser"),
         LightFate::MeetsBack => format!(
             "{fraction} meets the back of {name} at {place}, and {name} is one-sided: turn it round, or \
              leave out `one_sided`"
         ),
-        LightFate::LightsFarSide => {
-            format!("{fraction} lights {name} at {place} on the side away from the camera")
-        }
-        LightFate::BehindCamera => {
-            format!("{fraction} lights {name} at {place}, behind the camera")
-        }
-        LightFate::OutsideImage => format!(
-            "{fraction} lights {name} at {place}, outside the image: {}",
-            beside(scene, part)
-        ),
+        LightFate::LightsFarSide => lit + " on the side away from the camera",
+        LightFate::BehindCamera => lit + ", behind the camera",
+        LightFate::OutsideImage => format!("{lit}, outside the image: {}", beside(scene, part)),
         LightFate::Hidden { by } if part.surface == Some(by) => {
-            format!(
-                "{fraction} lights {name} at {place}, where {name} hides itself from the camera"
-            )
+            format!("{lit}, where {name} hides itself from the camera")
         }
-        LightFate::Hidden { by } => format!(
-            "{fraction} lights {name} at {place}, which {} hides from the camera",
-            name_of(scene, Some(by))
-        ),
-        _ => format!("{fraction} lights {name} at {place}"),
+        LightFate::Hidden { by } => {
+            let other = name_of(scene, Some(by));
+            format!("{lit}, which {other} hides from the camera")
+        }
+        _ => lit,
     }
 }
 
@@ -99,7 +91,9 @@ fn beside(scene: &Scene, part: &LightPart) -> String {
             y,
             width,
             height,
-        }) => format!("{width} × {height} are rendered, from pixel ({x}, {y}) on"),
+        }) => {
+            format!("{width} × {height} are rendered, from pixel ({x}, {y}) on")
+        }
     };
     match part.pixel {
         Some(pixel) => format!("on pixel ({:.0}, {:.0}), and {image}", pixel.x, pixel.y),

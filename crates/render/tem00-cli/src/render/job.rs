@@ -110,9 +110,8 @@ impl<'a> Render<'a> {
             return Ok(());
         }
         warnings.iter().for_each(|line| note(line));
-        if let Some(path) = found.draw(&self.folder, &format!("{}_overview", self.name))? {
-            note(&format!("drawn in {}", path.display()));
-        }
+        let path = found.draw(&self.folder, &format!("{}_overview", self.name))?;
+        note(&format!("drawn in {}", path.display()));
         Ok(())
     }
 

@@ -19,10 +19,10 @@ fn read_face(
         let DVec3 { x, y, z } = place(corner);
         text += &format!("v {x} {y} {z}\n");
     }
-    let corners: Vec<String> = (1..=outline.len())
-        .map(|corner| corner.to_string())
+    let corners: String = (1..=outline.len())
+        .map(|corner| format!(" {corner}"))
         .collect();
-    text += &format!("f {}\n", corners.join(" "));
+    text += &format!("f{corners}\n");
     mesh_and_notes(text.as_bytes(), MeshFormat::Obj).unwrap()
 }
 
@@ -59,69 +59,33 @@ fn comb(teeth: u32) -> Outline {
     outline
 }
 
+/// Reads the corners of an outline: "0 0, 4 -3, 1 0, 4 3".
+fn outline(text: &str) -> Outline {
+    let corner = |pair: &str| {
+        let (x, y) = pair.split_once(' ').unwrap();
+        [x, y].map(|number| number.parse().unwrap())
+    };
+    text.split(", ").map(corner).collect()
+}
+
 fn simple_outlines() -> Vec<(&'static str, Outline)> {
+    let joined = "0 0, 10 0, 10 10, 0 10, 0 0, 2 2, 2 4, 4 4, 4 2, 2 2";
+    let u = "-20 -15, 20 -15, 20 15, 10 15, 10 -5, -10 -5, -10 15, -20 15";
     vec![
-        (
-            "dart",
-            vec![[0.0, 0.0], [4.0, -3.0], [1.0, 0.0], [4.0, 3.0]],
-        ),
-        (
-            "L",
-            vec![
-                [0.0, 0.0],
-                [3.0, 0.0],
-                [3.0, 1.0],
-                [1.0, 1.0],
-                [1.0, 5.0],
-                [0.0, 5.0],
-            ],
-        ),
-        (
-            "U",
-            vec![
-                [-20.0, -15.0],
-                [20.0, -15.0],
-                [20.0, 15.0],
-                [10.0, 15.0],
-                [10.0, -5.0],
-                [-10.0, -5.0],
-                [-10.0, 15.0],
-                [-20.0, 15.0],
-            ],
-        ),
+        ("dart", outline("0 0, 4 -3, 1 0, 4 3")),
+        ("L", outline("0 0, 3 0, 3 1, 1 1, 1 5, 0 5")),
+        ("U", outline(u)),
         ("star", star(&[2.0, 1.0].repeat(7))),
         ("gear", star(&[5.0, 5.0, 4.0, 4.0].repeat(50))),
         ("comb", comb(200)),
         (
-            "corners on its sides",
-            vec![
-                [0.0, 0.0],
-                [1.0, 0.0],
-                [2.0, 0.0],
-                [2.0, 2.0],
-                [1.0, 0.5],
-                [0.0, 2.0],
-                [0.0, 1.0],
-            ],
+            "corners on sides",
+            outline("0 0, 1 0, 2 0, 2 2, 1 0.5, 0 2, 0 1"),
         ),
+        ("first corner again", outline("0 0, 4 -3, 1 0, 4 3, 0 0")),
         (
-            "first corner again at the end",
-            vec![[0.0, 0.0], [4.0, -3.0], [1.0, 0.0], [4.0, 3.0], [0.0, 0.0]],
-        ),
-        (
-            "a hole, joined to the rim by a side that is there twice",
-            vec![
-                [0.0, 0.0],
-                [10.0, 0.0],
-                [10.0, 10.0],
-                [0.0, 10.0],
-                [0.0, 0.0],
-                [2.0, 2.0],
-                [2.0, 4.0],
-                [4.0, 4.0],
-                [4.0, 2.0],
-                [2.0, 2.0],
-            ],
+            "a hole, joined to the rim by a double side",
+            outline(joined),
         ),
     ]
 }
@@ -137,35 +101,22 @@ fn faces_that_are_not_convex_cover_their_area_and_no_more() {
         for (outline, normal) in [(&outline, area.signum()), (&turned, -area.signum())] {
             let (mesh, notes) = read_face(outline, |[x, y]| DVec3::new(x, y, 0.0));
             let (sum, all) = areas(&mesh);
-            assert!(
-                (all - area.abs()).abs() < 1e-12 * all,
-                "{name}: {all} is not {area}"
-            );
-            assert!(
-                (sum.z - normal * all).abs() < 1e-12 * all,
-                "{name} turns {sum}"
-            );
+            let (off, turned) = ((all - area.abs()).abs(), (sum.z - normal * all).abs());
+            assert!(off < 1e-12 * all, "{name}: {all} is not {area}");
+            assert!(turned < 1e-12 * all, "{name} turns {sum}");
             assert_eq!(notes, [""; 0], "{name}");
-            for (place, scale) in [(&tilted as &dyn Fn(_) -> _, 1.0), (&far, 1.0)] {
+            for place in [&tilted as &dyn Fn(_) -> _, &far] {
                 let (sum, all) = areas(&read_face(outline, place).0);
-                let got = (sum.length() / scale, all / scale);
                 // Coordinates of 3e5 are rounded to 6e-11.
-                assert!((got.0 - got.1).abs() < 1e-9 * all, "{name}, moved: {got:?}");
-                assert!(
-                    (got.1 - area.abs()).abs() < 1e-9 * all,
-                    "{name}, moved: {got:?}"
-                );
+                let off = (sum.length() - all).abs().max((all - area.abs()).abs());
+                assert!(off < 1e-9 * all, "{name}, moved: {sum}, {all}");
             }
             let (mesh, _) = read_face(outline, tiny);
             let enlarged = triangle_corners(&mesh).into_iter();
-            let areas = enlarged.map(|t| t.map(|corner| corner * 1e200));
-            let all: f64 = areas
-                .map(|[a, b, c]| 0.5 * (b - a).cross(c - a).length())
-                .sum();
-            assert!(
-                (all - area.abs()).abs() < 1e-12 * all,
-                "{name}, tiny: {all}"
-            );
+            let enlarged = enlarged.map(|t| t.map(|corner| corner * 1e200));
+            let areas = enlarged.map(|[a, b, c]| 0.5 * (b - a).cross(c - a).length());
+            let off = (areas.sum::<f64>() - area.abs()).abs();
+            assert!(off < 1e-12 * area.abs(), "{name}, tiny: {off}");
         }
     }
 }
@@ -201,9 +152,9 @@ fn a_warped_face_that_is_not_convex_keeps_its_outline() {
 
 #[test]
 fn convex_faces_are_halved_as_ever() {
-    let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]];
+    let rectangle = outline("0 0, 2 0, 2 1, 0 1");
     for (outline, expected) in [
-        (square.to_vec(), vec![[0, 1, 2], [0, 2, 3]]),
+        (rectangle, vec![[0, 1, 2], [0, 2, 3]]),
         (star(&[1.0; 5]), vec![[0, 1, 2], [0, 2, 4], [2, 3, 4]]),
         (
             star(&[1.0; 7]),
@@ -217,8 +168,8 @@ fn convex_faces_are_halved_as_ever() {
 
 #[test]
 fn faces_that_cross_themselves_are_noted() {
-    let bow_tie = vec![[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
-    let uneven = vec![[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 1.0]];
+    let bow_tie = outline("0 0, 1 1, 1 0, 0 1");
+    let uneven = outline("0 0, 2 2, 2 0, 0 1");
     let pentagram = (0..5).map(|i| star(&[1.0; 5])[2 * i % 5]).collect();
     let eight = (0..40).map(|i| {
         let angle = TAU * f64::from(i) / 40.0;
@@ -227,10 +178,8 @@ fn faces_that_cross_themselves_are_noted() {
     for outline in [bow_tie, uneven, pentagram, eight.collect()] {
         let (mesh, notes) = read_face(&outline, |[x, y]| DVec3::new(x, y, 0.0));
         assert_eq!(notes.len(), 1, "{outline:?}: {notes:?}");
-        assert!(
-            notes[0].starts_with("faces that cross themselves: 1, the first is face 0 (from 0)"),
-            "{notes:?}"
-        );
+        let told = "faces that cross themselves: 1, the first is face 0 (from 0)";
+        assert!(notes[0].starts_with(told), "{notes:?}");
         assert!(!mesh.triangles().is_empty(), "something is left");
     }
 }
@@ -240,12 +189,10 @@ fn a_face_of_too_many_corners_is_refused_unless_it_is_convex() {
     const CORNERS: usize = 40_000;
     let (mesh, _) = read_face(&star(&[1.0; CORNERS]), |[x, y]| DVec3::new(x, y, 0.0));
     assert_eq!(mesh.triangles().len(), CORNERS - 2);
-    let text: String = comb(20_000)
-        .iter()
-        .map(|[x, y]| format!("v {x} {y} 0\n"))
-        .collect();
-    let corners: Vec<String> = (1..=CORNERS + 2).map(|i| i.to_string()).collect();
-    let text = format!("{text}f 1 2 3\nf {}\n", corners.join(" "));
+    let vertex = |[x, y]: [f64; 2]| format!("v {x} {y} 0\n");
+    let vertices: String = comb(20_000).into_iter().map(vertex).collect();
+    let corners: String = (1..=CORNERS + 2).map(|i| format!(" {i}")).collect();
+    let text = format!("{vertices}f 1 2 3\nf{corners}\n");
     let expected =
         "face 1 (from 0) is not convex and has 40002 corners: cut it up, at most 32768 are read";
     assert_eq!(complaint("comb.obj", text), expected);

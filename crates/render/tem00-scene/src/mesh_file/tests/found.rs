@@ -181,28 +181,21 @@ fn what_is_left_out_is_said() {
     }
     let primitive = |mode| format!(r#"{{ "attributes": {{ "POSITION": 0 }}, "mode": {mode} }}"#);
     let with_others = format!("\"indices\": 1 }}, {}, {}", primitive(0), primitive(3));
+    let two_corners = ascii_ply().replace("element edge 1\nproperty int start\n", "");
+    let two_corners = two_corners.replace("7\n", "").replace("3 3 0 4", "2 3 0");
+    let flat = ascii_stl().replacen("2.5e-1 -1.25e-1 1.5e0", "-1e0 -1e0 0e0", 1);
+    let lines = embedded(PLAIN).replace("\"indices\": 1, \"mode\": 4 }", &with_others);
+    let (entry, face) = (
+        "left out: 1 entry that is no vertex, face or triangle strip",
+        "left out: 1 face without area",
+    );
     for (format, content, expected) in [
-        (
-            MeshFormat::Ply,
-            ascii_ply(),
-            "left out: 1 entry that is no vertex, face or triangle strip",
-        ),
-        (
-            MeshFormat::Ply,
-            ascii_ply()
-                .replace("element edge 1\nproperty int start\n", "")
-                .replace("7\n", "")
-                .replace("3 3 0 4", "2 3 0"),
-            "left out: 1 face without area",
-        ),
-        (
-            MeshFormat::Stl,
-            ascii_stl().replacen("2.5e-1 -1.25e-1 1.5e0", "-1e0 -1e0 0e0", 1),
-            "left out: 1 face without area",
-        ),
+        (MeshFormat::Ply, ascii_ply(), entry),
+        (MeshFormat::Ply, two_corners, face),
+        (MeshFormat::Stl, flat, face),
         (
             MeshFormat::Gltf,
-            embedded(PLAIN).replace("\"indices\": 1, \"mode\": 4 }", &with_others),
+            lines,
             "left out: 2 primitives of points or lines",
         ),
     ] {
@@ -217,15 +210,8 @@ fn what_is_left_out_is_said() {
 
 #[test]
 fn a_normal_that_is_no_number_or_zero_is_none() {
-    for bad in [
-        "nan nan nan",
-        "0 0 0",
-        "nan(ind) 0 1",
-        "-nan(ind) 0 1",
-        "-1.#IND 0 0",
-        "1.#QNAN0 0 0",
-        "0 inf 0",
-    ] {
+    let none = "nan nan nan|0 0 0|nan(ind) 0 1|-nan(ind) 0 1|-1.#IND 0 0|1.#QNAN0 0 0|0 inf 0";
+    for bad in none.split('|') {
         let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn {bad}\nvn 0 0 1\nf 1//1 2//2 3//2\n");
         let mesh = read_mesh_bytes(text.as_bytes(), MeshFormat::Obj, 1.0).unwrap();
         assert_eq!(mesh.normals(), [DVec3::ZERO, DVec3::Z, DVec3::Z], "{bad}");
@@ -274,16 +260,9 @@ fn extensions_of_what_is_not_read_do_not_matter() {
     let text = embedded(
         r#"[{ "children": [1, 2], "camera": 7 }, { "mesh": 0 }, { "mesh": 1, "skin": 9 }]"#,
     );
-    for extension in [
-        "KHR_materials_ior",
-        "KHR_materials_variants",
-        "KHR_texture_basisu",
-        "EXT_texture_webp",
-        "KHR_lights_punctual",
-        "KHR_xmp_json_ld",
-        "ADOBE_materials_clearcoat_specular",
-        "KHR_animation_pointer",
-    ] {
+    let passed_over = "KHR_materials_ior KHR_materials_variants KHR_texture_basisu EXT_texture_webp KHR_lights_punctual \
+                       KHR_xmp_json_ld ADOBE_materials_clearcoat_specular KHR_animation_pointer";
+    for extension in passed_over.split(' ') {
         let required = format!(
             r#""scene": 0, "extensionsUsed": ["{extension}"], "extensionsRequired": ["{extension}"],
                "textures": [{{ "extensions": {{ "{extension}": {{ "source": 0 }} }} }}],
@@ -295,12 +274,9 @@ fn extensions_of_what_is_not_read_do_not_matter() {
         let mesh = read_mesh_bytes(content.as_bytes(), MeshFormat::Gltf, 1e-3).unwrap();
         assert_eq!(triangle_corners(&mesh), pyramid(), "{extension}");
     }
-    for extension in [
-        "KHR_draco_mesh_compression",
-        "KHR_mesh_quantization",
-        "EXT_meshopt_compression",
-        "materials",
-    ] {
+    let of_shapes =
+        "KHR_draco_mesh_compression KHR_mesh_quantization EXT_meshopt_compression materials";
+    for extension in of_shapes.split(' ') {
         let required =
             format!(r#""scene": 0, "extensionsRequired": ["KHR_materials_ior", "{extension}"],"#);
         let content = text.replacen("\"scene\": 0,", &required, 1);

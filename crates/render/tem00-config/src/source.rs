@@ -14,6 +14,8 @@ pub(crate) struct Source {
     /// The index among all texts of the document, in which the file itself is the first.
     pub(crate) index: usize,
     pub(crate) path: Option<PathBuf>,
+    /// The canonical path, if the text came from a file.
+    pub(crate) canonical: Option<PathBuf>,
     pub(crate) directory: PathBuf,
     pub(crate) text: String,
     /// It lies outside of the folder of the file, and is therefore not quoted.

@@ -22,8 +22,6 @@ pub(crate) struct Sources {
     order: Vec<usize>,
     /// The texts that are being read, outermost first.
     open: Vec<usize>,
-    /// The canonical paths of the texts that came from files.
-    canonical: Vec<Option<PathBuf>>,
 }
 
 impl Sources {
@@ -36,10 +34,9 @@ impl Sources {
         let text = read_text(path, &format)?;
         let directory = path.parent().unwrap_or(Path::new(""));
         let mut sources = Self::of_text(text, Some(path), (directory, reading.access), format)?;
-        match sources.change(reading.changes) {
-            Ok(()) => Ok(sources),
-            Err(problem) => Err(sources.locate(problem)),
-        }
+        let changed = sources.change(reading.changes);
+        changed.map_err(|problem| sources.locate(problem))?;
+        Ok(sources)
     }
 
     /// Puts values in the place of those that the texts have.
@@ -71,20 +68,18 @@ impl Sources {
             all: Vec::new(),
             order: Vec::new(),
             open: Vec::new(),
-            canonical: Vec::new(),
         };
-        let canonical = path.and_then(|path| fs::canonicalize(path).ok());
         let source = Source {
             index: 0,
             path: path.map(Path::to_path_buf),
+            canonical: path.and_then(|path| fs::canonicalize(path).ok()),
             directory: directory.to_path_buf(),
             text,
             is_outside: false,
         };
-        match sources.add(source, canonical) {
-            Ok(()) => Ok(sources),
-            Err(problem) => Err(sources.locate(problem)),
-        }
+        let added = sources.add(source);
+        added.map_err(|problem| sources.locate(problem))?;
+        Ok(sources)
     }
 
     /// Returns the texts in the order in which they are put together.
@@ -124,29 +119,22 @@ impl Sources {
         &self.folder
     }
 
-    fn add(&mut self, mut source: Source, canonical: Option<PathBuf>) -> Result<(), Problem> {
+    fn add(&mut self, mut source: Source) -> Result<(), Problem> {
         // Some editors begin a text with a byte order mark, which would shift the first line by a
         // column.
         if source.text.starts_with('\u{feff}') {
             source.text.remove(0);
         }
         let index = source.index;
+        let includes = includes_of(&source, &self.format);
         self.all.push(source);
-        self.canonical.push(canonical);
         self.open.push(index);
-        for include in self.includes_of_last()? {
+        for include in includes? {
             self.include(include)?;
         }
         self.open.pop();
         self.order.push(index);
         Ok(())
-    }
-
-    fn includes_of_last(&self) -> Result<Vec<Include>, Problem> {
-        match self.all.last() {
-            Some(source) => includes_of(source, &self.format),
-            None => Ok(Vec::new()),
-        }
     }
 
     fn include(&mut self, include: Include) -> Result<(), Problem> {
@@ -173,16 +161,17 @@ impl Sources {
             index: self.all.len(),
             directory: path.parent().unwrap_or(Path::new("")).to_path_buf(),
             path: Some(include.path),
+            canonical: Some(canonical),
             text,
             is_outside,
         };
-        self.add(source, Some(canonical))
+        self.add(source)
     }
 
     /// Refuses a file that was read before, and one at the end of a long chain.
     fn check_new(&self, canonical: &Path, include: &Include) -> Result<(), Problem> {
-        let mut read = self.canonical.iter();
-        match read.position(|read| read.as_deref() == Some(canonical)) {
+        let mut read = self.all.iter();
+        match read.position(|source| source.canonical.as_deref() == Some(canonical)) {
             Some(index) if self.open.contains(&index) => {
                 Err(include.problem("would include itself"))
             }

@@ -1,4 +1,5 @@
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+use tem00_numerics::check;
 
 use crate::UncertaintyError;
 
@@ -22,15 +23,12 @@ impl CoverageProbability {
     ///
     /// Returns an error unless it is from 0.5 to 0.9999.
     pub fn new(probability: f64) -> Result<Self, UncertaintyError> {
-        if (0.5..=0.9999).contains(&probability) {
-            return Ok(Self(probability));
-        }
-        let allowed = "from 0.5 to 0.9999";
-        Err(UncertaintyError::refused(
+        Ok(Self(check::range(
             "probability",
             probability,
-            allowed,
-        ))
+            [0.5, 0.9999],
+            "",
+        )?))
     }
 
     /// Returns the probability.
@@ -90,6 +88,8 @@ pub fn coverage_factor(degrees_of_freedom: f64, probability: CoverageProbability
 
 #[cfg(test)]
 mod tests {
+    use tem00_testkit::refuses;
+
     use super::*;
 
     #[test]
@@ -130,29 +130,6 @@ mod tests {
     }
 
     #[test]
-    fn the_end_gauge_of_the_guide_has_its_degrees_of_freedom() {
-        // JCGM 100:2008, H.1: contributions in nm with their degrees of freedom, table H.1.
-        let root = |all: &[(f64, f64)]| all.iter().map(|(u, _)| u * u).sum::<f64>().sqrt();
-        let comparator = [(5.8, 24.0), (3.9, 5.0), (6.7, 8.0)];
-        let difference = root(&comparator);
-        assert!((difference - 9.7).abs() < 0.05, "{difference}");
-        let of_comparator = effective_degrees_of_freedom(difference, &comparator);
-        // H.1.6: 25.6 with the unrounded contributions.
-        assert!((of_comparator - 25.6).abs() < 1.0, "{of_comparator}");
-        let contributions = [
-            (25.0, 18.0),
-            (difference, of_comparator),
-            (2.9, 50.0),
-            (16.6, 2.0),
-        ];
-        let combined = root(&contributions);
-        // 32 nm, 16.7 degrees of freedom in H.1.6: there of rounded contributions.
-        assert!((combined - 31.7).abs() < 0.5, "{combined}");
-        let freedom = effective_degrees_of_freedom(combined, &contributions);
-        assert!((freedom - 16.7).abs() < 1.0, "{freedom}");
-    }
-
-    #[test]
     fn known_contributions_have_infinite_degrees_of_freedom() {
         for (combined, contributions) in [
             (0.0, &[][..]),
@@ -169,17 +146,8 @@ mod tests {
 
     #[test]
     fn probabilities_outside_the_range_are_refused() {
-        for probability in [0.499, 0.999_91, 95.0, f64::NAN] {
-            let found = CoverageProbability::new(probability);
-            assert_eq!(
-                found.map_err(|error| error.parameter()),
-                Err("probability"),
-                "{probability}"
-            );
-        }
-        for probability in [0.5, 0.9999] {
-            let found = CoverageProbability::new(probability);
-            assert_eq!(found, Ok(CoverageProbability(probability)));
-        }
+        refuses!(probability = 0.5 => CoverageProbability::new(probability);
+            probability: [0.499, 0.999_91, 95.0, f64::NAN]);
+        assert!(CoverageProbability::new(0.9999).is_ok(), "the largest");
     }
 }

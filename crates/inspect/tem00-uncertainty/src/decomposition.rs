@@ -1,3 +1,5 @@
+use tem00_numerics::{Refusal, check};
+
 use crate::{Inputs, UncertaintyError, trials};
 
 /// Options of a decomposition of the variance.
@@ -94,14 +96,8 @@ impl Decomposition {
             return Err(UncertaintyError::Correlated);
         }
         inputs.check_variances()?;
-        if options.samples < 1000 {
-            let samples = f64::from(options.samples);
-            return Err(UncertaintyError::refused(
-                "samples",
-                samples,
-                "at least 1000",
-            ));
-        }
+        let samples = f64::from(options.samples);
+        check::that(samples >= 1e3, "samples", samples, "", "at least 1000")?;
         let origin = trials::value(&model, &inputs.estimates())?;
         // Products scatter less about the mean, and this is close to it.
         let about_origin = |x: &[f64]| model(x) - origin;
@@ -122,7 +118,7 @@ impl Decomposition {
         let allowed = "of a variance that is positive and finite";
         match found {
             Some(inputs) => Ok(Self { inputs }),
-            None => Err(UncertaintyError::refused("model", origin, allowed)),
+            None => Err(Refusal::new("model", origin, allowed).into()),
         }
     }
 
@@ -134,44 +130,27 @@ impl Decomposition {
 
 /// Sums over samples of a part t and of the variance v, which is the mean of (f(A) − f(B))²/2.
 #[derive(Clone, Copy, Debug, Default)]
-struct Sums {
-    part: f64,
-    variance: f64,
-    part_squared: f64,
-    variance_squared: f64,
-    product: f64,
-}
+struct Sums([f64; 5]);
 
 impl Sums {
     fn of_sample(part: f64, variance: f64) -> Self {
-        Self {
-            part,
-            variance,
-            part_squared: part * part,
-            variance_squared: variance * variance,
-            product: part * variance,
-        }
+        let squares = [part * part, variance * variance, part * variance];
+        Self([part, variance, squares[0], squares[1], squares[2]])
     }
 
     fn and(self, other: Self) -> Self {
-        Self {
-            part: self.part + other.part,
-            variance: self.variance + other.variance,
-            part_squared: self.part_squared + other.part_squared,
-            variance_squared: self.variance_squared + other.variance_squared,
-            product: self.product + other.product,
-        }
+        Self(core::array::from_fn(|i| self.0[i] + other.0[i]))
     }
 
     /// Returns the ratio S = Σt / Σv and its standard error √Σ(t − S v)² / Σv; `None` without a variance.
     fn index(&self) -> Option<SobolIndex> {
-        let value = self.part / self.variance;
-        let square =
-            self.part_squared + value * (value * self.variance_squared - 2.0 * self.product);
+        let [part, variance, part_squared, variance_squared, product] = self.0;
+        let value = part / variance;
+        let square = part_squared + value * (value * variance_squared - 2.0 * product);
         // Rounding may leave less than nothing of it.
         let standard_error = square
             .is_finite()
-            .then(|| square.max(0.0).sqrt() / self.variance)?;
+            .then(|| square.max(0.0).sqrt() / variance)?;
         value.is_finite().then_some(SobolIndex {
             value,
             standard_error,

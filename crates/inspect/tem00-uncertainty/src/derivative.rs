@@ -35,7 +35,7 @@ pub(crate) fn derivative(
         let up = value(model, &x)?;
         x[input] = below;
         // The step that was taken, as the numbers around the estimate are spaced.
-        Ok((up - value(model, &x)?) / (above - below))
+        Ok::<f64, UncertaintyError>((up - value(model, &x)?) / (above - below))
     };
     let mut best = Derivative {
         value: difference(first_step)?,

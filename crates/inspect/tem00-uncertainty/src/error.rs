@@ -1,6 +1,6 @@
 use core::{error, fmt};
 
-use tem00_numerics::Shown;
+use tem00_numerics::{Refusal, Shown};
 
 use crate::Distribution;
 
@@ -9,14 +9,7 @@ use crate::Distribution;
 #[non_exhaustive]
 pub enum UncertaintyError {
     /// A number is outside its range.
-    OutOfRange {
-        /// The name of the parameter.
-        parameter: &'static str,
-        /// The rejected value.
-        value: f64,
-        /// The allowed values.
-        allowed: &'static str,
-    },
+    Refused(Refusal),
     /// A model without inputs has no uncertainty.
     NoInputs,
     /// A correlation is not between two different inputs.
@@ -69,22 +62,10 @@ pub enum UncertaintyError {
 }
 
 impl UncertaintyError {
-    pub(crate) const fn refused(
-        parameter: &'static str,
-        value: f64,
-        allowed: &'static str,
-    ) -> Self {
-        Self::OutOfRange {
-            parameter,
-            value,
-            allowed,
-        }
-    }
-
     /// Returns the name of the argument that was refused.
     pub const fn parameter(&self) -> &'static str {
         match self {
-            Self::OutOfRange { parameter, .. } => parameter,
+            Self::Refused(refusal) => refusal.parameter,
             Self::NoInputs | Self::Correlated => "inputs",
             Self::Between { .. } | Self::Repeated { .. } => "between",
             Self::NotNormal { .. } | Self::ImpossibleDraw { .. } => "distribution",
@@ -97,11 +78,7 @@ impl UncertaintyError {
 impl fmt::Display for UncertaintyError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::OutOfRange {
-                parameter,
-                value,
-                allowed,
-            } => write!(f, "{parameter} must be {allowed}, got {}", Shown(*value)),
+            Self::Refused(refusal) => refusal.fmt(f),
             Self::NoInputs => write!(f, "inputs must number at least one, got none"),
             Self::Between {
                 between: [first, second],
@@ -155,3 +132,9 @@ impl fmt::Display for UncertaintyError {
 }
 
 impl error::Error for UncertaintyError {}
+
+impl From<Refusal> for UncertaintyError {
+    fn from(refusal: Refusal) -> Self {
+        Self::Refused(refusal)
+    }
+}

@@ -2,6 +2,7 @@ use core::f64::consts::TAU;
 
 use rand_core::Rng;
 use rand_distr::{Distribution as _, StandardNormal, StudentT};
+use tem00_numerics::check;
 
 use crate::{Distribution, UncertaintyError};
 
@@ -34,20 +35,9 @@ impl Input {
         uncertainty: f64,
         distribution: Distribution,
     ) -> Result<Self, UncertaintyError> {
-        if !estimate.is_finite() {
-            return Err(UncertaintyError::refused("estimate", estimate, "finite"));
-        }
-        if !(uncertainty > 0.0 && uncertainty.is_finite()) {
-            let allowed = "positive and finite";
-            return Err(UncertaintyError::refused(
-                "uncertainty",
-                uncertainty,
-                allowed,
-            ));
-        }
         Ok(Self {
-            estimate,
-            uncertainty,
+            estimate: check::finite("estimate", estimate, "")?,
+            uncertainty: check::positive("uncertainty", uncertainty, "")?,
             distribution,
             degrees_of_freedom: f64::INFINITY,
         })
@@ -65,14 +55,8 @@ impl Input {
         self,
         degrees_of_freedom: f64,
     ) -> Result<Self, UncertaintyError> {
-        if degrees_of_freedom.is_nan() || degrees_of_freedom < 1.0 {
-            let parameter = "degrees_of_freedom";
-            return Err(UncertaintyError::refused(
-                parameter,
-                degrees_of_freedom,
-                "at least 1",
-            ));
-        }
+        let (name, holds) = ("degrees_of_freedom", degrees_of_freedom >= 1.0);
+        check::that(holds, name, degrees_of_freedom, "", "at least 1")?;
         let distribution = match self.distribution {
             Distribution::Normal if degrees_of_freedom.is_finite() => Distribution::StudentT,
             shape => shape,
@@ -153,7 +137,7 @@ mod tests {
     use core::f64::consts::PI;
 
     use statrs::distribution::{ContinuousCDF, StudentsT};
-    use tem00_statistics::kolmogorov_smirnov;
+    use tem00_testkit::{kolmogorov_smirnov, refuses};
 
     use super::*;
     use crate::trials::stream;
@@ -184,58 +168,41 @@ mod tests {
         let mut inputs: Vec<_> = others.iter().map(|&shape| of_shape(shape)).collect();
         // Both are one statement: 3.5 degrees of freedom of a normal input make a t.
         for shape in [Distribution::StudentT, Distribution::Normal] {
-            inputs.push(of_shape(shape).with_degrees_of_freedom(3.5).unwrap());
-            inputs.push(
-                of_shape(shape)
-                    .with_degrees_of_freedom(f64::INFINITY)
-                    .unwrap(),
-            );
+            let with = |freedom| of_shape(shape).with_degrees_of_freedom(freedom).unwrap();
+            inputs.extend([3.5, f64::INFINITY].map(with));
         }
         for input in inputs {
             let mut random = stream(1, 0);
-            let samples: Vec<f64> = (0..20_000).map(|_| input.draw(&mut random)).collect();
-            let found = kolmogorov_smirnov(&samples, |x| cumulative(&input, x)).unwrap();
+            let mut samples: Vec<f64> = (0..20_000).map(|_| input.draw(&mut random)).collect();
+            let p = kolmogorov_smirnov(&mut samples, |x| cumulative(&input, x));
             // Eight tests of one seed.
-            assert!(found.p_value > 1e-3, "{}: {found:?}", input.distribution());
+            assert!(p > 1e-3, "{}: {p}", input.distribution());
         }
     }
 
     #[test]
     fn a_t_distribution_is_wider_than_its_scale_says() {
         let input = Input::new(0.0, 2.0, Distribution::StudentT).unwrap();
-        let found = input
-            .with_degrees_of_freedom(18.0)
-            .unwrap()
-            .standard_deviation();
-        assert!(
-            (found - 2.0 * (18.0_f64 / 16.0).sqrt()).abs() < 1e-15,
-            "{found}"
-        );
-        assert!(
-            (input.standard_deviation() - 2.0).abs() < 1e-15,
-            "a normal one"
-        );
+        for (freedom, expected) in [(18.0, 2.0 * 1.125_f64.sqrt()), (f64::INFINITY, 2.0)] {
+            let found = input
+                .with_degrees_of_freedom(freedom)
+                .unwrap()
+                .standard_deviation();
+            assert!((found - expected).abs() < 1e-15, "{freedom}: {found}");
+        }
     }
 
     #[test]
     fn impossible_inputs_are_refused() {
-        let new = |estimate, uncertainty| Input::new(estimate, uncertainty, Distribution::Normal);
-        let parameter = |result: Result<Input, UncertaintyError>| result.unwrap_err().parameter();
-        for estimate in [f64::NAN, f64::INFINITY] {
-            assert_eq!(parameter(new(estimate, 1.0)), "estimate", "{estimate}");
-        }
-        for uncertainty in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert_eq!(
-                parameter(new(0.0, uncertainty)),
-                "uncertainty",
-                "{uncertainty}"
-            );
-        }
-        let normal = new(0.0, 1.0).unwrap();
-        for freedom in [0.5, f64::NAN] {
-            let found = normal.with_degrees_of_freedom(freedom);
-            assert_eq!(parameter(found), "degrees_of_freedom", "{freedom}");
-        }
-        assert!(normal.with_degrees_of_freedom(1.0).is_ok(), "one degree");
+        let new = |estimate, uncertainty, freedom| {
+            Input::new(estimate, uncertainty, Distribution::Normal)?
+                .with_degrees_of_freedom(freedom)
+        };
+        refuses!(estimate = 0.0, uncertainty = 1.0, degrees_of_freedom = 1.0
+            => new(estimate, uncertainty, degrees_of_freedom);
+            estimate: [f64::NAN, f64::INFINITY],
+            uncertainty: [0.0, -1.0, f64::NAN, f64::INFINITY],
+            degrees_of_freedom: [0.5, f64::NAN],
+        );
     }
 }

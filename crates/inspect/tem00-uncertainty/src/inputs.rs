@@ -1,4 +1,5 @@
 use rand_core::Rng;
+use tem00_numerics::{Refusal, check, lower_factor};
 
 use crate::{Input, UncertaintyError};
 
@@ -61,7 +62,8 @@ impl Inputs {
             return Ok(independent);
         }
         let coefficients = independent.matrix(correlations)?;
-        let factor = lower_factor(&coefficients)?;
+        let factor = lower_factor(&coefficients, ROUNDING)
+            .map_err(|input| UncertaintyError::Contradiction { input })?;
         Ok(Self {
             joint: Some(Joint {
                 coefficients,
@@ -102,11 +104,10 @@ impl Inputs {
     pub(crate) fn check_variances(&self) -> Result<(), UncertaintyError> {
         let has_none = |input: &&Input| input.standard_deviation().is_infinite();
         match self.inputs.iter().find(has_none) {
-            Some(input) => Err(UncertaintyError::refused(
-                "degrees_of_freedom",
-                input.degrees_of_freedom(),
-                "above 2 for trials: a t distribution has no variance otherwise",
-            )),
+            Some(input) => {
+                let allowed = "above 2 for trials: a t distribution has no variance otherwise";
+                Err(Refusal::new("degrees_of_freedom", input.degrees_of_freedom(), allowed).into())
+            }
             None => Ok(()),
         }
     }
@@ -179,51 +180,16 @@ impl Inputs {
         if between[0] == between[1] || between.iter().any(|&input| input >= inputs) {
             return Err(UncertaintyError::Between { between, inputs });
         }
-        if !(-1.0..=1.0).contains(&coefficient) {
-            let (name, allowed) = ("coefficient", "from −1 to 1");
-            return Err(UncertaintyError::refused(name, coefficient, allowed));
-        }
-        match between
-            .into_iter()
-            .find(|&i| !self.inputs[i].is_exactly_normal())
-        {
-            Some(input) => Err(UncertaintyError::NotNormal { input }),
-            None => Ok(()),
-        }
+        let holds = (-1.0..=1.0).contains(&coefficient);
+        check::that(holds, "coefficient", coefficient, "", "from −1 to 1")?;
+        let is_other = |input: &usize| !self.inputs[*input].is_exactly_normal();
+        let refused = |input| Err(UncertaintyError::NotNormal { input });
+        between.into_iter().find(is_other).map_or(Ok(()), refused)
     }
 }
 
-/// Returns the rows of the lower triangular L with L Lᵀ = R, of a correlation matrix that may be singular.
-///
-/// A pivot below 10⁻¹² is rounding, and its column is left out: of a semi-definite matrix the elements of that
-/// column are at most 10⁻⁶.
-fn lower_factor(matrix: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, UncertaintyError> {
-    const ROUNDING: f64 = 1e-12;
-    let mut factor: Vec<Vec<f64>> = Vec::new();
-    for (i, row) in matrix.iter().enumerate() {
-        let mut lower: Vec<f64> = Vec::new();
-        for j in 0..i {
-            let rest = row[j] - dot(&lower, &factor[j]);
-            let pivot = factor[j][j];
-            if pivot == 0.0 && rest.abs() > ROUNDING.sqrt() {
-                return Err(UncertaintyError::Contradiction { input: i });
-            }
-            lower.push(if pivot > 0.0 { rest / pivot } else { 0.0 });
-        }
-        let pivot = row[i] - dot(&lower, &lower);
-        if pivot < -ROUNDING {
-            return Err(UncertaintyError::Contradiction { input: i });
-        }
-        lower.push(if pivot > ROUNDING { pivot.sqrt() } else { 0.0 });
-        factor.push(lower);
-    }
-    Ok(factor)
-}
-
-/// The sum of products as far as both have elements.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
+/// The largest pivot of a correlation matrix that is taken as 0: the column under it is at most 10⁻⁶.
+const ROUNDING: f64 = 1e-12;
 
 #[cfg(test)]
 mod tests {
@@ -297,19 +263,12 @@ mod tests {
 
     #[test]
     fn correlations_that_no_quantities_have_are_refused() {
-        for contradiction in [
-            // The determinant is 1 + 2 r₁₂ r₁₃ r₂₃ − r₁₂² − r₁₃² − r₂₃² = −0.358 and −4.
-            [0.9, 0.9, 0.4],
-            [1.0, 1.0, -1.0],
-        ] {
-            let [first, second, third] = contradiction;
+        // The determinant is 1 + 2 r₁₂ r₁₃ r₂₃ − r₁₂² − r₁₃² − r₂₃² = −0.358 and −4.
+        for [first, second, third] in [[0.9, 0.9, 0.4], [1.0, 1.0, -1.0]] {
             let given = correlations(&[([0, 1], first), ([0, 2], second), ([1, 2], third)]);
             let found = Inputs::correlated(normals(3), &given);
-            assert_eq!(
-                found,
-                Err(UncertaintyError::Contradiction { input: 2 }),
-                "{given:?}"
-            );
+            let expected = UncertaintyError::Contradiction { input: 2 };
+            assert_eq!(found, Err(expected), "{given:?}");
         }
     }
 
@@ -347,16 +306,14 @@ mod tests {
             let expected = UncertaintyError::NotNormal { input };
             assert_eq!(refused(&[([0, input], 0.5)]), expected, "{input}");
         }
-        for coefficient in [-1.001, 1.0_f64.next_up(), f64::INFINITY] {
-            let expected = UncertaintyError::refused("coefficient", coefficient, "from −1 to 1");
-            assert_eq!(refused(&[([0, 1], coefficient)]), expected);
+        for coefficient in [-1.001, 1.0_f64.next_up(), f64::INFINITY, f64::NAN] {
+            let told = refused(&[([0, 1], coefficient)]).to_string();
+            assert!(
+                told.starts_with("coefficient must be from −1 to 1"),
+                "{told}"
+            );
         }
-        let nan = refused(&[([0, 1], f64::NAN)]).to_string();
-        assert!(nan.contains("from −1 to 1, got NaN"), "{nan}");
-        assert_eq!(
-            Inputs::independent(Vec::new()),
-            Err(UncertaintyError::NoInputs),
-            "none"
-        );
+        let none = Inputs::independent(Vec::new());
+        assert_eq!(none, Err(UncertaintyError::NoInputs), "none");
     }
 }

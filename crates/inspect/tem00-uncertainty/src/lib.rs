@@ -45,3 +45,6 @@ pub use input::Input;
 pub use inputs::{Correlation, Inputs};
 pub use interval::{CoverageInterval, IntervalKind};
 pub use propagation::{Propagation, PropagationOptions, Validation};
+
+/// The refusal of a number.
+pub use tem00_numerics::Refusal;

@@ -1,4 +1,4 @@
-use tem00_numerics::cast::to_usize;
+use tem00_numerics::{Refusal, cast::to_usize, check};
 
 use crate::{
     CoverageInterval, CoverageProbability, FirstOrder, Inputs, IntervalKind, UncertaintyError,
@@ -143,11 +143,7 @@ impl Propagation {
         };
         if !self.uncertainty().is_finite() {
             let allowed = "of finite variance";
-            return Err(UncertaintyError::refused(
-                "model",
-                self.uncertainty(),
-                allowed,
-            ));
+            return Err(Refusal::new("model", self.uncertainty(), allowed).into());
         }
         self.largest_error = 2.0 * largest_deviation_of_averages(summaries);
         Ok(())
@@ -216,23 +212,19 @@ impl Propagation {
 impl PropagationOptions {
     /// Returns the number of trials of a block.
     fn checked_block(&self) -> Result<usize, UncertaintyError> {
-        let refused = UncertaintyError::refused;
-        if !(1..=4).contains(&self.digits) {
-            return Err(refused("digits", f64::from(self.digits), "from 1 to 4"));
-        }
+        check::range("digits", f64::from(self.digits), [1.0, 4.0], "")?;
         let divisor = self.tolerance_divisor;
-        if !(divisor >= 1.0 && divisor.is_finite()) {
-            return Err(refused(
-                "tolerance_divisor",
-                divisor,
-                "at least 1 and finite",
-            ));
-        }
+        let (holds, allowed) = (
+            (1.0..f64::INFINITY).contains(&divisor),
+            "at least 1 and finite",
+        );
+        check::that(holds, "tolerance_divisor", divisor, "", allowed)?;
         let trials = (100.0 / (1.0 - self.probability.value())).ceil().max(1e4);
-        if (self.max_trials as f64) < 2.0 * trials {
-            let allowed = "at least two blocks of 10⁴, or of 100/(1 − p) if that is more";
-            return Err(refused("max_trials", self.max_trials as f64, allowed));
-        }
+        let (most, allowed) = (
+            self.max_trials as f64,
+            "at least two blocks of 10⁴, or of 100/(1 − p) if that is more",
+        );
+        check::that(most >= 2.0 * trials, "max_trials", most, "", allowed)?;
         Ok(to_usize(trials))
     }
 

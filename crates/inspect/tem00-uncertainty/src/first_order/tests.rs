@@ -1,3 +1,5 @@
+use tem00_testkit::assert_absolute;
+
 use super::*;
 use crate::{Correlation, Distribution};
 
@@ -23,34 +25,28 @@ fn sensitivities_are_the_derivatives() {
         libm::sin(0.7) * exp,
         1e-3 / 0.7,
     ];
-    for ((contribution, c), u) in found
-        .contributions()
-        .iter()
-        .zip(expected)
-        .zip(uncertainties)
-    {
+    let found = found.contributions().iter().zip(expected);
+    for ((contribution, c), u) in found.zip(uncertainties) {
         // Rounding of values of 140 over steps of at least 1/20 of 0.02; over one of 1/20 the second would err
         // by 4e-5 without extrapolation.
-        let error = (contribution.sensitivity - c).abs();
-        assert!(error < 1e-9, "{contribution:?}, {c}: {error:e}");
-        let error = (contribution.uncertainty - c.abs() * u).abs();
-        assert!(error < 1e-9, "{contribution:?}, {c}: {error:e}");
+        assert_absolute(contribution.sensitivity, c, 1e-9);
+        assert_absolute(contribution.uncertainty, c.abs() * u, 1e-9);
     }
 }
 
 #[test]
 fn a_falling_model_has_a_sensitivity_between_the_numbers_there_are() {
     // Numbers lie 1.5e-8 apart, which is 1.5 % of the uncertainty, and differences are exact.
-    let found = FirstOrder::new(&independent(&[input(1e8, 1e-6)]), |x| -4.0 * x[0]);
-    let contribution = found.unwrap().contributions()[0];
-    assert!(
-        (contribution.sensitivity + 4.0).abs() < 1e-12,
-        "{contribution:?}"
+    let sensitivity = |x: f64, u: f64, model: fn(f64) -> f64| {
+        let found = FirstOrder::new(&independent(&[input(x, u)]), |x| model(x[0]));
+        found.unwrap().contributions()[0].sensitivity
+    };
+    assert_absolute(sensitivity(1e8, 1e-6, |x| -4.0 * x), -4.0, 1e-12);
+    assert_absolute(
+        sensitivity(0.5, 0.1, |x| -libm::exp(x)),
+        -libm::exp(0.5),
+        1e-9,
     );
-    let found = FirstOrder::new(&independent(&[input(0.5, 0.1)]), |x| -libm::exp(x[0]));
-    let contribution = found.unwrap().contributions()[0];
-    let error = (contribution.sensitivity + libm::exp(0.5)).abs();
-    assert!(error < 1e-9, "{contribution:?}");
 }
 
 #[test]
@@ -64,17 +60,10 @@ fn fractions_of_the_variance_add_up_to_one() {
     let found = FirstOrder::new(&inputs, |x| x[0] + 2.0 * x[1] + x[2]).unwrap();
     // 0.3² + 0.2² + 0.2² − 2 · 0.8 · 0.3 · 0.2
     let variance: f64 = 0.09 + 0.04 + 0.04 - 0.096;
-    assert!(
-        (found.combined() - variance.sqrt()).abs() < 1e-12,
-        "{found:?}"
-    );
-    let fractions = found
-        .contributions()
-        .iter()
-        .map(|part| part.variance_fraction);
+    assert_absolute(found.combined(), variance.sqrt(), 1e-12);
     let expected = [0.042, -0.008, 0.04].map(|part| part / variance);
-    for (fraction, part) in fractions.zip(expected) {
-        assert!((fraction - part).abs() < 1e-11, "{fraction}, {part}");
+    for (found, part) in found.contributions().iter().zip(expected) {
+        assert_absolute(found.variance_fraction, part, 1e-11);
     }
 }
 

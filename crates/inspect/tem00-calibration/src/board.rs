@@ -1,5 +1,6 @@
 use glam::DVec3;
 
+use tem00_numerics::check;
 use tem00_triangulation::TriangulationError;
 
 /// The maximum number of corners along a side of a board.
@@ -23,22 +24,12 @@ impl Checkerboard {
     ///
     /// Returns an error if a number is below 3 or above 50, or if the side is not positive and finite.
     pub fn new(corners: [usize; 2], square: f64) -> Result<Self, TriangulationError> {
-        if !(square > 0.0 && square.is_finite()) {
-            return Err(TriangulationError::OutOfRange {
-                parameter: "square_size",
-                value: square,
-                allowed: "positive and finite, in metres",
-            });
+        check::positive("square_size", square, "m")?;
+        for number in corners {
+            let allowed = "from 3 to 50 inner corners per side";
+            check::that((3..=MOST).contains(&number), "corners", number, "", allowed)?;
         }
-        let bad = corners.into_iter().find(|n| !(3..=MOST).contains(n));
-        match bad {
-            None => Ok(Self { corners, square }),
-            Some(number) => Err(TriangulationError::OutOfRange {
-                parameter: "corners",
-                value: number as f64,
-                allowed: "from 3 to 50 inner corners per side",
-            }),
-        }
+        Ok(Self { corners, square })
     }
 
     /// Returns the numbers of inner corners along the rows and along the columns.
@@ -79,6 +70,8 @@ impl Checkerboard {
 
 #[cfg(test)]
 mod tests {
+    use tem00_testkit::refuses;
+
     use super::*;
 
     #[test]
@@ -95,16 +88,7 @@ mod tests {
 
     #[test]
     fn impossible_boards_are_refused() {
-        for (corners, square) in [
-            ([2, 5], 1e-3),
-            ([5, 900], 1e-3),
-            ([5, 5], 0.0),
-            ([5, 5], f64::NAN),
-        ] {
-            assert!(
-                Checkerboard::new(corners, square).is_err(),
-                "{corners:?}, {square}"
-            );
-        }
+        refuses!(corners = [5, 5], square_size = 1e-3 => Checkerboard::new(corners, square_size);
+            corners: [[2, 5], [5, 900]], square_size: [0.0, f64::NAN]);
     }
 }

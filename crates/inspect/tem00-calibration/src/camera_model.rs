@@ -1,3 +1,4 @@
+use tem00_numerics::check;
 use tem00_triangulation::TriangulationError;
 
 /// Known parameters of a camera before its calibration, and the choice of those that are sought.
@@ -25,29 +26,16 @@ pub struct CameraModel {
 
 impl CameraModel {
     pub(super) fn check(&self) -> Result<(), TriangulationError> {
-        let focal_length = self.focal_length.unwrap_or(1.0);
-        let lengths = [
-            ("pixel_pitch", self.pixel_pitch),
-            ("focal_length", focal_length),
-        ];
-        let bad = lengths
-            .into_iter()
-            .find(|(_, value)| !(*value > 0.0 && value.is_finite()));
-        if let Some((parameter, value)) = bad {
-            return Err(TriangulationError::OutOfRange {
-                parameter,
-                value,
-                allowed: "positive and finite, in metres",
-            });
-        }
-        if self.radial > 3 {
-            return Err(TriangulationError::OutOfRange {
-                parameter: "radial",
-                value: self.radial as f64,
-                allowed: "from 0 to 3 coefficients of distortion",
-            });
-        }
-        Ok(())
+        check::positive("pixel_pitch", self.pixel_pitch, "m")?;
+        check::positive("focal_length", self.focal_length.unwrap_or(1.0), "m")?;
+        let allowed = "from 0 to 3 coefficients of distortion";
+        Ok(check::that(
+            self.radial <= 3,
+            "radial",
+            self.radial,
+            "",
+            allowed,
+        )?)
     }
 
     /// Returns the distance at which the image is sharp: by the lens equation if the focal length is

@@ -1,5 +1,5 @@
 use glam::{DMat2, DVec2};
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, Refusal};
 
 use crate::{Checkerboard, flat_field::flattened, lattice::ordered, ring::corner_candidates};
 use tem00_triangulation::TriangulationError;
@@ -65,11 +65,7 @@ pub fn find_corners(
     board: &Checkerboard,
 ) -> Result<Vec<DVec2>, TriangulationError> {
     if let Some(value) = image.values().iter().find(|value| !value.is_finite()) {
-        return Err(TriangulationError::OutOfRange {
-            parameter: "grey value",
-            value: f64::from(*value),
-            allowed: "finite",
-        });
+        return Err(Refusal::new("grey value", f64::from(*value), "finite").into());
     }
     let mut coarse = image.clone();
     let mut found = 0;
@@ -218,6 +214,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_core::SeedableRng;
     use rand_distr::{Distribution, Normal};
+    use tem00_numerics::cast::to_f32;
 
     use super::*;
 
@@ -241,7 +238,6 @@ mod tests {
     }
 
     /// The means of 8 × 8 points per pixel.
-    #[expect(clippy::cast_possible_truncation, reason = "pixels are stored as f32")]
     fn image(noise: f64, blur: f64) -> Grid<f32> {
         let grey = |point: DVec2| {
             let on_board = on_board(point);
@@ -258,10 +254,10 @@ mod tests {
                 let position = DVec2::new(x as f64, y as f64) + 0.5 + (1.0 + blur) * (inside - 0.5);
                 grey(position)
             });
-            (sums.sum::<f64>() / 64.0) as f32
+            to_f32(sums.sum::<f64>() / 64.0)
         });
         let values = image.values_mut().iter_mut();
-        values.for_each(|value| *value += normal.sample(&mut rng) as f32);
+        values.for_each(|value| *value += to_f32(normal.sample(&mut rng)));
         image
     }
 
@@ -302,7 +298,6 @@ mod tests {
         let turned = DVec2::from_angle(0.2);
         let middle = DVec2::new(52.3, 48.9);
         let slope = 2e-3;
-        #[expect(clippy::cast_possible_truncation, reason = "pixels are stored as f32")]
         let image = Grid::from_fn(110, 100, |x, y| {
             let sums = (0..256_u32).map(|i| {
                 let inside = DVec2::new(f64::from(i % 16), f64::from(i / 16)) / 16.0 + 0.03125;
@@ -314,7 +309,7 @@ mod tests {
                 let grey = if inside && even { 20.0 } else { 200.0 };
                 grey * (1.0 + slope * offset.x)
             });
-            (sums.sum::<f64>() / 256.0) as f32
+            to_f32(sums.sum::<f64>() / 256.0)
         });
         let found = find_corners(&image, &board).unwrap();
         let corners = (0..9_u32).map(|i| DVec2::new(f64::from(i % 3), f64::from(i / 3)) - 1.0);
@@ -342,28 +337,13 @@ mod tests {
             let board = Checkerboard::new(corners, 1.0).unwrap();
             find_corners(image, &board).unwrap_err()
         };
-        let image = image(0.0, 0.0);
-        assert_eq!(
-            refused(&image, [6, 4]),
-            TriangulationError::NoBoard {
-                corners: [6, 4],
-                found: 20
-            }
-        );
-        let flat = Grid::filled(100, 80, 7.0);
-        assert!(matches!(
-            refused(&flat, [5, 4]),
-            TriangulationError::NoBoard { found: 0, .. }
-        ));
-        let tiny = Grid::filled(1, 1, 7.0);
-        assert!(matches!(
-            refused(&tiny, [5, 4]),
-            TriangulationError::NoBoard { .. }
-        ));
-        let holes = Grid::filled(100, 80, f32::NAN);
-        assert!(matches!(
-            refused(&holes, [5, 4]),
-            TriangulationError::OutOfRange { .. }
-        ));
+        let none = |found, corners| TriangulationError::NoBoard { corners, found };
+        assert_eq!(refused(&image(0.0, 0.0), [6, 4]), none(20, [6, 4]));
+        for (width, height) in [(100, 80), (1, 1)] {
+            let flat = Grid::filled(width, height, 7.0);
+            assert_eq!(refused(&flat, [5, 4]), none(0, [5, 4]), "{width}");
+        }
+        let holes = refused(&Grid::filled(100, 80, f32::NAN), [5, 4]);
+        assert_eq!(holes.parameter(), Some("grey value"));
     }
 }

@@ -2,6 +2,7 @@ use glam::DVec3;
 use nalgebra::{SMatrix, SymmetricEigen};
 use tem00_decorrelation::RigidMotion;
 
+use tem00_numerics::Refusal;
 use tem00_triangulation::TriangulationError;
 
 /// The number of parameters.
@@ -70,11 +71,8 @@ impl CalibrationCovariance {
         rows: &[[f64; PARAMETERS.len()]; PARAMETERS.len()],
     ) -> Result<Self, TriangulationError> {
         let matrix = SMatrix::<f64, COUNT, COUNT>::from_fn(|i, j| rows[i][j]);
-        let refused = |value| TriangulationError::OutOfRange {
-            parameter: "covariance",
-            value,
-            allowed: "finite, symmetric and without negative variances",
-        };
+        let allowed = "finite, symmetric and without negative variances";
+        let refused = |value: f64| Refusal::new("covariance", value, allowed).into();
         let numbers = matrix.iter().copied().chain(origin.to_array());
         if let Some(value) = numbers.into_iter().find(|value| !value.is_finite()) {
             return Err(refused(value));

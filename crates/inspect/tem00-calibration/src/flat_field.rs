@@ -1,6 +1,6 @@
 use glam::DVec2;
 use nalgebra::{DMatrix, DVector};
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, cast::to_f32};
 
 /// The minimum illumination that an image is divided by, as a fraction of its mean on the board.
 const LEAST: f64 = 0.1;
@@ -55,9 +55,7 @@ pub(super) fn flattened(
             .map(|(c, term)| c * term)
             .sum();
         let relative = (light / level).max(LEAST);
-        #[expect(clippy::cast_possible_truncation, reason = "images are f32")]
-        let value = (f64::from(image[(x, y)]) / relative) as f32;
-        value
+        to_f32(f64::from(image[(x, y)]) / relative)
     })
 }
 
@@ -96,13 +94,12 @@ mod tests {
     use super::*;
 
     #[test]
-    #[expect(clippy::cast_possible_truncation, reason = "pixels are stored as f32")]
     fn uneven_light_is_divided_out() {
         let light = |x: f64, y: f64| 100.0 + 0.3 * x - 0.2 * y - 0.002 * x * y;
         let image = Grid::from_fn(120, 100, |x, y| {
             let even = (x / 20 + y / 20) % 2 == 0;
             let light = light(x as f64 + 0.5, y as f64 + 0.5);
-            (if even { light } else { 0.2 * light }) as f32
+            to_f32(if even { light } else { 0.2 * light })
         });
         let cells = (1..5_u32).flat_map(|j| (1..6_u32).map(move |i| (i, j)));
         let corners: Vec<_> = cells

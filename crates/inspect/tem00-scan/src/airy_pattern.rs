@@ -1,7 +1,7 @@
 use core::f64::consts::PI;
 use std::sync::LazyLock;
 
-use tem00_numerics::jinc;
+use tem00_numerics::{cast::to_usize, jinc};
 
 /// Values per unit of the distance.
 const STEPS: usize = 128;
@@ -23,12 +23,7 @@ pub(super) fn airy_pattern(distance: f64) -> f64 {
         steps.map(|step| exact(step / STEPS as f64)).collect()
     });
     let steps = distance * STEPS as f64;
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "it saturates, and what lies beyond the table is not looked up"
-    )]
-    let step = steps as usize;
+    let step = to_usize(steps);
     let Some(&[a, b, c, d]) = TABLE.get(step..).and_then(|values| values.first_chunk()) else {
         return exact(distance);
     };

@@ -8,6 +8,7 @@ use glam::{DMat3, DVec2, DVec3};
 use tem00_calibration::{BoardSettings, Checkerboard};
 use tem00_camera::Camera;
 use tem00_geometry::{MeshInstance, Shape, TriangleMesh};
+use tem00_numerics::Refusal;
 use tem00_tracer::{
     Laser, Light, Material, Relief, RigidMotion, Scene, Surface, SurfaceSpeckle, TracerError,
     Trajectory,
@@ -68,12 +69,9 @@ impl BoardPlan {
             Some(square) => {
                 let board = Checkerboard::new(settings.corners, square)?;
                 let poses = stage.poses(&board, settings.boards)?;
-                let poses = poses.ok_or(TriangulationError::OutOfRange {
-                    parameter: "square_size",
-                    value: square,
-                    allowed: "so small that the whole board is in the image (in metres)",
-                })?;
-                (board, poses)
+                let allowed = "so small that the whole board is in the image";
+                let refused = || Refusal::new("square_size", square, allowed).in_unit("m");
+                (board, poses.ok_or_else(refused)?)
             }
             None => stage.largest(settings)?,
         };
@@ -206,11 +204,7 @@ impl Stage {
             .filter(|poses| poses.iter().all(|pose| self.sees(board, pose))))
     }
 
-    fn pose(
-        &self,
-        board: &Checkerboard,
-        number: usize,
-    ) -> Result<RigidMotion, tem00_decorrelation::Refusal> {
+    fn pose(&self, board: &Checkerboard, number: usize) -> Result<RigidMotion, Refusal> {
         let step = number as f64;
         let angle = TURN * step;
         // The first board is not tilted and stands in the middle. The depths of the others, from −1 to 1, go

@@ -1,5 +1,9 @@
 use glam::DVec3;
-use tem00_numerics::{Grid, cast::to_f32};
+use tem00_numerics::{
+    Grid, Refusal,
+    cast::{to_f32, to_usize},
+    check,
+};
 use tem00_triangulation::TriangulationError;
 
 use crate::{frame::MeasuredPoint, quantised::range};
@@ -151,14 +155,7 @@ impl HeightMap {
 
 /// Makes sure that cells have a size.
 pub(super) fn check_pitch(pitch: f64) -> Result<(), TriangulationError> {
-    if pitch > 0.0 && pitch.is_finite() {
-        return Ok(());
-    }
-    Err(TriangulationError::OutOfRange {
-        parameter: "pitch",
-        value: pitch,
-        allowed: "positive and finite (in metres)",
-    })
+    Ok(check::positive("pitch", pitch, "m").map(drop)?)
 }
 
 /// The lower corner of a grid that begins half a cell below all positions, in metres, and its number
@@ -186,19 +183,10 @@ fn extent(
     let cells = [0, 1].map(|axis| cell((high[axis] - origin[axis]) / pitch) + 1.0);
     let count = cells[0] * cells[1];
     if count.is_nan() || count > MAX_CELLS {
-        return Err(TriangulationError::OutOfRange {
-            parameter: "pitch",
-            value: pitch,
-            allowed: "so large that the height map has at most 2²⁴ cells (in metres)",
-        });
+        let allowed = "so large that the height map has at most 2²⁴ cells";
+        return Err(Refusal::new("pitch", pitch, allowed).in_unit("m").into());
     }
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "at most 2²⁴"
-    )]
-    let size = cells.map(|cells| cells as usize);
-    Ok((origin, size))
+    Ok((origin, cells.map(to_usize)))
 }
 
 /// The cell of a position, in cells from the lower edge of the first.
@@ -212,11 +200,5 @@ fn cell(position: f64) -> f64 {
 
 /// The index of the [`cell`] of a position.
 fn index(position: f64, size: usize) -> usize {
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "positions lie in the grid"
-    )]
-    let index = cell(position) as usize;
-    index.min(size - 1)
+    to_usize(cell(position)).min(size - 1)
 }

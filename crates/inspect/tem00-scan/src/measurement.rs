@@ -5,11 +5,13 @@ use glam::{DVec2, DVec3};
 use tem00_calibration::Calibration;
 use tem00_camera::Camera;
 use tem00_engine::{ReferencePoint, SpeckleChange, SpeckleModel, render_frame};
-use tem00_numerics::seed::{Purpose, derived};
-use tem00_tracer::{BeamShape, Filter, Frame, Laser, Method, Scene, SurfaceSpeckle};
-use tem00_triangulation::{
-    DetectorSettings, LineDetector, Sensor, SensorDescription, TriangulationError,
+use tem00_numerics::{
+    cast::to_usize,
+    check,
+    seed::{Purpose, derived},
 };
+use tem00_tracer::{BeamShape, Filter, Frame, Laser, Method, Scene, SurfaceSpeckle};
+use tem00_triangulation::{DetectorSettings, LineDetector, Sensor, SensorDescription};
 
 use crate::{ScanError, laser_plane::plane_of};
 use crate::{
@@ -77,7 +79,7 @@ impl Measurement {
             scene,
             sensor,
             calibration,
-            height_uncertainty: checked_uncertainty(settings.uncertainty)?,
+            height_uncertainty: check::not_negative("uncertainty", settings.uncertainty, "m")?,
             motion,
             scan,
             speckle,
@@ -251,12 +253,7 @@ impl Measurement {
         rendered: &Frame,
     ) -> Option<ReferencePoint> {
         let middle = middle(&measured.points)?;
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "lines are found inside of the image"
-        )]
-        let row = (middle.seen.pixel.y as usize).min(rendered.lights.height() - 1);
+        let row = to_usize(middle.seen.pixel.y).min(rendered.lights.height() - 1);
         let at = (middle.seen.column, row);
         let [x, y, z] = [0, 1, 2].map(|axis| f64::from(rendered.normal[axis][at]));
         let world = self.motion.head_at(measured.frame);
@@ -266,18 +263,6 @@ impl Measurement {
             normal: DVec3::new(x, y, z).try_normalize()?,
         })
     }
-}
-
-fn checked_uncertainty(uncertainty: f64) -> Result<f64, ScanError> {
-    if (0.0..f64::INFINITY).contains(&uncertainty) {
-        return Ok(uncertainty);
-    }
-    let negative = TriangulationError::OutOfRange {
-        parameter: "uncertainty",
-        value: uncertainty,
-        allowed: "at least 0 and finite (in metres)",
-    };
-    Err(negative.into())
 }
 
 /// The laser that draws the line.

@@ -1,4 +1,5 @@
 use glam::DVec3;
+use tem00_numerics::check;
 use tem00_triangulation::TriangulationError;
 
 use crate::height_map::check_pitch;
@@ -50,16 +51,17 @@ impl Default for Averaging {
 impl ScanSettings {
     /// Checks what does not depend on a scene.
     pub(super) fn check(&self) -> Result<(), TriangulationError> {
-        let counts = [
-            ("frames", f64::from(self.average.frames)),
-            ("columns", self.average.columns as f64),
-        ];
-        if let Some((parameter, value)) = counts.into_iter().find(|(_, count)| *count < 1.0) {
-            return Err(TriangulationError::OutOfRange {
+        for (parameter, count) in [
+            ("frames", self.average.frames as usize),
+            ("columns", self.average.columns),
+        ] {
+            check::that(
+                count > 0,
                 parameter,
-                value,
-                allowed: "at least 1 to average over",
-            });
+                count,
+                "",
+                "at least 1 to average over",
+            )?;
         }
         if !self.height.is_normalized() {
             return Err(TriangulationError::Direction {

@@ -9,7 +9,7 @@ use tem00_engine::render_frame;
 use tem00_geometry::{Rectangle, Shape as Surface, Sphere, TriangleMesh};
 use tem00_numerics::{
     Grid,
-    cast::to_f32,
+    cast::{to_f32, to_usize},
     seed::{Purpose, derived},
 };
 use tem00_topography::{Artefact, Axis, DVec3, Field, Groove, ProfileSensor, Shape, SurfacePoint};
@@ -310,13 +310,8 @@ fn middle_height(artefact: &Artefact, place: DVec3) -> f64 {
 }
 
 /// A number of pixels, rounded up; at least 0.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "at least 0 and small"
-)]
 fn whole(pixels: f64) -> usize {
-    pixels.max(0.0).ceil() as usize
+    to_usize(pixels.ceil())
 }
 
 /// The shape of an artefact about its origin.

@@ -1,5 +1,6 @@
 use glam::DVec2;
 use rayon::prelude::*;
+use tem00_numerics::cast::to_usize;
 
 use crate::sensor_speckle::SensorSpeckle;
 use tem00_triangulation::PixelCovariance;
@@ -103,15 +104,9 @@ impl SpeckleTable {
     /// The index of a displacement along one axis.
     fn index(&self, axis: usize, displacement: f64) -> Option<usize> {
         let steps = (displacement - self.offset[axis]).round() + self.reach[axis] as f64;
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "the steps lie in the table"
-        )]
-        let index = (0.0..=2.0 * self.reach[axis] as f64)
+        (0.0..=2.0 * self.reach[axis] as f64)
             .contains(&steps)
-            .then_some(steps as usize);
-        index
+            .then(|| to_usize(steps))
     }
 }
 
@@ -127,13 +122,7 @@ impl PixelCovariance for SpeckleTable {
 }
 
 fn pixels_within_reach(size: f64) -> usize {
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "between 2 and 256"
-    )]
-    let pixels = (REACH * size).ceil().clamp(2.0, MOST as f64) as usize;
-    pixels
+    to_usize((REACH * size).ceil().clamp(2.0, MOST as f64))
 }
 
 #[cfg(test)]

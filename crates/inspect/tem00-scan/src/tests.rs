@@ -5,8 +5,9 @@ use core::sync::atomic::AtomicBool;
 use glam::DVec3;
 use ply_rs_bw::{parser::Parser, ply::DefaultElement, ply::Property};
 use tem00_numerics::Grid;
+use tem00_testkit::refuses;
 use tem00_tracer::{Environment, Light, Rotation, Trajectory};
-use tem00_triangulation::{Sensor, SensorDescription, TriangulationError, Validity};
+use tem00_triangulation::{Sensor, SensorDescription, Validity};
 
 use crate::ScanError;
 use crate::{
@@ -369,31 +370,17 @@ fn a_mean_is_not_better_than_one_over_independent_frames() {
 
 #[test]
 fn settings_that_no_scan_has_are_refused() {
-    let refused = |change: fn(&mut ScanSettings)| {
-        let mut measured = measured(SCENE);
-        change(&mut measured.scan);
-        matches!(
-            Measurement::new(measured),
-            Err(ScanError::Triangulation(
-                TriangulationError::OutOfRange { .. } | TriangulationError::Direction { .. }
-            ))
-        )
+    let measure = |scan: ScanSettings| {
+        Measurement::new(MeasurementScene {
+            scan,
+            ..measured(SCENE)
+        })
     };
-    assert!(refused(|scan| scan.average.frames = 0), "no frames");
-    assert!(refused(|scan| scan.average.columns = 0), "no columns");
-    for pitch in [0.0, -1e-3, f64::NAN, f64::INFINITY] {
-        let mut measured = measured(SCENE);
-        measured.scan.pitch = Some(pitch);
-        assert!(Measurement::new(measured).is_err(), "a pitch of {pitch}");
-    }
-    assert!(refused(|scan| scan.height = DVec3::ZERO), "no direction");
-    assert!(
-        refused(|scan| scan.height = DVec3::splat(f64::NAN)),
-        "no numbers"
-    );
-    assert!(
-        refused(|scan| scan.height = 2.0 * DVec3::Z),
-        "a length of 2"
+    refuses!(scan = ScanSettings::default() => measure(scan);
+        scan.average.frames: [0],
+        scan.average.columns: [0],
+        scan.pitch: [Some(0.0), Some(-1e-3), Some(f64::NAN), Some(f64::INFINITY)],
+        scan.height: [DVec3::ZERO, DVec3::splat(f64::NAN), 2.0 * DVec3::Z],
     );
 }
 

@@ -1,4 +1,4 @@
-use tem00_numerics::quadrature::integrate;
+use tem00_numerics::{cast::to_usize, quadrature::integrate};
 
 /// Result with its standard uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,12 +53,7 @@ pub(crate) fn mean(values: &[f64]) -> f64 {
 /// Returns the length of the shortest interval that holds a part of the values, from 0 to 1.
 pub(crate) fn shortest_interval(mut values: Vec<f64>, part: f64) -> Option<f64> {
     values.sort_by(f64::total_cmp);
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "at most the number of values"
-    )]
-    let held = (part * values.len() as f64).ceil() as usize;
+    let held = to_usize((part * values.len() as f64).ceil());
     let windows = values.windows(held.max(1));
     windows
         .map(|window| window[window.len() - 1] - window[0])

@@ -1,4 +1,5 @@
 use glam::DVec3;
+use tem00_numerics::cast::to_usize;
 
 use crate::{
     Artefact, Estimate, Extreme, Field, ProfileSensor, Shape, SurfacePoint,
@@ -91,12 +92,7 @@ fn at_places(points: &[SurfacePoint], field: &Field) -> [f64; PLACES] {
     for point in points {
         let part = (point.position.x / (PART * field.width) + 0.5) * PLACES as f64;
         if (0.0..PLACES as f64).contains(&part) {
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "within the number of places"
-            )]
-            let [sum, count] = &mut sums[part as usize];
+            let [sum, count] = &mut sums[to_usize(part)];
             *sum += point.position.z;
             *count += 1.0;
         }

@@ -1,4 +1,5 @@
 use glam::DVec3;
+use tem00_numerics::cast::to_usize;
 
 use crate::{
     Artefact, Axis, Estimate, Extreme, Field, Groove, ProfileSensor, Shape, SurfacePoint,
@@ -183,12 +184,7 @@ impl Comb {
     /// As many copies as a profile has room for; `None` if there is none.
     fn across_profile(field: &Field) -> Option<Self> {
         let one = Self::one_across_profile(field);
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a small number"
-        )]
-        let room = (PART * field.width / one.length) as usize;
+        let room = to_usize(PART * field.width / one.length);
         (room > 0).then(|| Self::new(Axis::X, field.column, room.min(MAX_COPIES)))
     }
 

@@ -8,7 +8,7 @@ use tem00_uncertainty::{CoverageProbability, coverage_factor, effective_degrees_
 
 use crate::{Dorsch, ImagedLine, LightLevel, Setup, TriangulationError};
 
-pub(crate) use self::monte_carlo::{Outcome, Simulator, estimate, invalid};
+pub(crate) use self::monte_carlo::{Outcome, Simulator, estimate, in_parallel, invalid};
 pub use self::{
     monte_carlo::{MonteCarloEstimate, Simulation, SimulationOptions, simulate},
     term::{BudgetTerm, ErrorDistribution, Evaluation, UncertaintySource},
@@ -90,14 +90,13 @@ impl Budget {
         let contrast = d.surface.contrast();
         let law = contrast * line.centroid_deviation(d.average.columns);
         let terms = first_order::terms(setup, line, law)?;
-        let frames = if d.average.independent_speckle {
-            f64::from(d.average.frames)
-        } else {
-            1.0
+        let frames = match d.average.independent_speckle {
+            true => f64::from(d.average.frames),
+            false => 1.0,
         };
         let speckles = line.projected_thickness / line.speckle_size[1];
         let bandwidth = line.bandwidth;
-        let position = contrast * line.centroid_deviation(d.average.columns) / frames.sqrt();
+        let position = law / frames.sqrt();
         Some(Self {
             height,
             terms,

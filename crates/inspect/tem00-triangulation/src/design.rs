@@ -12,6 +12,7 @@ mod tests;
 use core::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
+use tem00_numerics::{Refusal, check};
 
 pub use self::{
     constraint::{Constraint, DesignFigure},
@@ -102,14 +103,10 @@ impl DesignSearch {
             ..
         } = &question;
         check_sweeps(sweeps)?;
-        for constraint in constraints {
-            if !(constraint.bound > 0.0 && constraint.bound.is_finite()) {
-                return Err(TriangulationError::OutOfRange {
-                    parameter: constraint.figure.name(),
-                    value: constraint.bound,
-                    allowed: "a bound that is positive and finite",
-                });
-            }
+        for &Constraint { figure, bound } in constraints {
+            let holds = bound > 0.0 && bound.is_finite();
+            let allowed = "a bound that is positive and finite";
+            check::that(holds, figure.name(), bound, "", allowed)?;
         }
         let most = (*max_setups).min(Self::MAX_SETUPS);
         let product = |count: usize, sweep: &Sweep| count.checked_mul(sweep.values().len());
@@ -180,15 +177,12 @@ impl DesignSearch {
     fn candidate(&self, index: usize) -> Candidate {
         let description = self.description(index);
         let figures = DesignFigures::evaluate(&description);
-        let broken = figures.as_ref().map_or_else(
-            |_| Vec::new(),
-            |figures| {
-                let constraints = self.question.constraints.iter().copied();
-                constraints
-                    .filter(|constraint| !constraint.is_kept(figures))
-                    .collect()
-            },
-        );
+        let broken = |figures: &DesignFigures| {
+            let mut constraints = self.question.constraints.clone();
+            constraints.retain(|constraint| !constraint.is_kept(figures));
+            constraints
+        };
+        let broken = figures.as_ref().map(broken).unwrap_or_default();
         Candidate {
             index,
             description,
@@ -207,28 +201,15 @@ fn check_sweeps(sweeps: &[Sweep]) -> Result<(), TriangulationError> {
         });
     }
     for (index, sweep) in sweeps.iter().enumerate() {
-        let parameter = sweep.parameter();
-        if sweeps[..index]
-            .iter()
-            .any(|other| other.parameter() == parameter)
-        {
-            return Err(TriangulationError::OutOfRange {
-                parameter: parameter.key(),
-                value: 2.0,
-                allowed: "varied once",
-            });
-        }
+        let is_same = |other: &Sweep| other.parameter() == sweep.parameter();
+        let twice = sweeps[..index].iter().any(is_same);
+        check::that(!twice, sweep.parameter().key(), "twice", "", "varied once")?;
     }
     Ok(())
 }
 
 fn too_many(sweeps: &[Sweep]) -> TriangulationError {
-    TriangulationError::OutOfRange {
-        parameter: "max_setups",
-        value: sweeps
-            .iter()
-            .map(|sweep| sweep.values().len() as f64)
-            .product(),
-        allowed: "at least the number of combinations, and at most 200000; try fewer steps",
-    }
+    let counts = sweeps.iter().map(|sweep| sweep.values().len() as f64);
+    let allowed = "at least the number of combinations, and at most 200000; try fewer steps";
+    Refusal::new("max_setups", counts.product::<f64>(), allowed).into()
 }

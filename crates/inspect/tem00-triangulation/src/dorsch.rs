@@ -1,5 +1,7 @@
 use core::f64::consts::{FRAC_PI_2, TAU};
 
+use tem00_numerics::{Refusal, check};
+
 use crate::TriangulationError;
 
 /// A triangulation sensor as the classical limit of its uncertainty sees it.
@@ -63,48 +65,30 @@ impl Dorsch {
         Ok(self.contrast * self.wavelength / (TAU * sines))
     }
 
-    fn check(&self) -> Result<(), TriangulationError> {
-        let angle = |value: f64| value > 0.0 && value <= FRAC_PI_2;
-        let right_angle = "positive and at most π/2 radians";
-        let rows = [
-            (
-                "wavelength",
-                self.wavelength,
-                self.wavelength > 0.0 && self.wavelength.is_finite(),
-                "positive and finite, in metres",
-            ),
-            (
-                "contrast",
-                self.contrast,
-                (0.0..=1.0).contains(&self.contrast),
-                "from 0 to 1",
-            ),
-            (
-                "aperture_angle",
-                self.aperture_angle,
-                angle(self.aperture_angle),
-                right_angle,
-            ),
-            (
-                "triangulation_angle",
-                self.triangulation_angle,
-                angle(self.triangulation_angle),
-                right_angle,
-            ),
-        ];
-        match rows.into_iter().find(|row| !row.2) {
-            Some((parameter, value, _, allowed)) => Err(TriangulationError::OutOfRange {
+    fn check(&self) -> Result<(), Refusal> {
+        check::positive("wavelength", self.wavelength, "m")?;
+        check::range("contrast", self.contrast, [0.0, 1.0], "")?;
+        for (parameter, angle) in [
+            ("aperture_angle", self.aperture_angle),
+            ("triangulation_angle", self.triangulation_angle),
+        ] {
+            let holds = angle > 0.0 && angle <= FRAC_PI_2;
+            check::that(
+                holds,
                 parameter,
-                value,
-                allowed,
-            }),
-            None => Ok(()),
+                angle,
+                "",
+                "positive and at most π/2 radians",
+            )?;
         }
+        Ok(())
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use tem00_testkit::refuses;
+
     use super::*;
 
     const SENSOR: Dorsch = Dorsch {
@@ -130,36 +114,11 @@ mod tests {
 
     #[test]
     fn sensors_that_cannot_be_are_refused() {
-        let refused = [
-            Dorsch {
-                wavelength: f64::NAN,
-                ..SENSOR
-            },
-            Dorsch {
-                contrast: 1.1,
-                ..SENSOR
-            },
-            Dorsch {
-                aperture_angle: 0.0,
-                ..SENSOR
-            },
-            Dorsch {
-                triangulation_angle: 1.6,
-                ..SENSOR
-            },
-        ];
-        let names = [
-            "wavelength",
-            "contrast",
-            "aperture_angle",
-            "triangulation_angle",
-        ];
-        for (sensor, name) in refused.into_iter().zip(names) {
-            let error = sensor.distance_deviation();
-            assert!(
-                matches!(error, Err(TriangulationError::OutOfRange { parameter, .. }) if parameter == name),
-                "{name}: {error:?}"
-            );
-        }
+        refuses!(sensor = SENSOR => sensor.distance_deviation();
+            sensor.wavelength: [f64::NAN, 0.0],
+            sensor.contrast: [1.1, -0.1],
+            sensor.aperture_angle: [0.0],
+            sensor.triangulation_angle: [1.6],
+        );
     }
 }

@@ -8,15 +8,6 @@ use tem00_uncertainty::{Distribution, UncertaintyError};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum TriangulationError {
-    /// A quantity is outside its range.
-    OutOfRange {
-        /// The name of the parameter.
-        parameter: &'static str,
-        /// The rejected value.
-        value: f64,
-        /// The allowed values, with the unit.
-        allowed: &'static str,
-    },
     /// A vector that must point somewhere is zero, not finite or parallel to its partner.
     Direction {
         /// The name of the parameter.
@@ -54,7 +45,7 @@ pub enum TriangulationError {
         /// A change that helps.
         advice: &'static str,
     },
-    /// An argument of the camera or of the laser's spectrum is refused.
+    /// A quantity is outside its range.
     Refused(Refusal),
     /// A speckle pattern is not possible.
     Speckle(SpeckleError),
@@ -77,9 +68,7 @@ impl TriangulationError {
     /// Returns the name of the parameter that was rejected, where there is one.
     pub fn parameter(&self) -> Option<&'static str> {
         match self {
-            Self::OutOfRange { parameter, .. } | Self::Direction { parameter, .. } => {
-                Some(parameter)
-            }
+            Self::Direction { parameter, .. } => Some(parameter),
             Self::Refused(source) => Some(source.parameter),
             Self::Uncertainty(source) => Some(source.parameter()),
             _ => None,
@@ -90,11 +79,6 @@ impl TriangulationError {
 impl fmt::Display for TriangulationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::OutOfRange {
-                parameter,
-                value,
-                allowed,
-            } => write!(f, "{parameter} must be {allowed}, got {value}"),
             Self::Direction { parameter, allowed } => write!(f, "{parameter} must be {allowed}"),
             Self::TooFew { what, got, needed } => {
                 write!(f, "there must be at least {needed} {what}, got {got}")

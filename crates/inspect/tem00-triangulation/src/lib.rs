@@ -18,6 +18,7 @@ mod file;
 mod geometry;
 mod line_image;
 mod measurement;
+mod named;
 mod position_noise;
 mod sensor;
 mod setup;

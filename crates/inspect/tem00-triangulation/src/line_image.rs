@@ -1,7 +1,10 @@
 mod bandwidth;
 mod strip;
 
-use tem00_numerics::{Grid, cast::to_usize};
+use tem00_numerics::{
+    Grid, Refusal,
+    cast::{to_f32, to_usize},
+};
 use tem00_speckle::{PupilField, SpeckleError, incoherent_fractions};
 
 use self::{
@@ -10,7 +13,7 @@ use self::{
 };
 use crate::{
     ImagedLine, Setup, TriangulationError,
-    setup::{LensedLine, LineProfile, within},
+    setup::{LensedLine, LineProfile, SPECKLE_SIZES, within},
 };
 
 /// Minimum number of samples of a speckle along each axis.
@@ -100,11 +103,8 @@ impl LineImage {
         let period = [0, 1].map(|axis| pattern_side(data.size[axis], dark[axis]));
         let [wide, high] = [0, 1].map(|axis| period[axis].saturating_mul(samples[axis]));
         if wide.saturating_mul(high) > MAXIMUM_SAMPLES {
-            return Err(TriangulationError::OutOfRange {
-                parameter: "speckle_size",
-                value: data.speckle_size[0],
-                allowed: "so large that at most 2^25 samples resolve the speckle of the image",
-            });
+            let allowed = "so large that at most 2^25 samples resolve the speckle of the image";
+            return Err(Refusal::new("speckle_size", data.speckle_size[0], allowed).into());
         }
         Ok(Self {
             data,
@@ -163,7 +163,6 @@ impl LineImage {
 
     /// Returns the mean numbers of electrons, without speckle. `centre` gives the position of the line
     /// along the column at a position along the rows, both in pixels.
-    #[expect(clippy::cast_possible_truncation, reason = "images are f32")]
     pub fn mean(&self, centre: impl Fn(f64) -> f64 + Sync) -> Grid<f32> {
         let LineImageData {
             size: [columns, rows],
@@ -185,7 +184,7 @@ impl LineImage {
         let mut image = Grid::filled(columns, rows, 0.0_f32);
         image.for_each_row_mut(|y, pixels| {
             for (pixel, centre) in pixels.iter_mut().zip(&centres) {
-                *pixel = (column_electrons * profile.at(y as f64 + 0.5 - centre)) as f32;
+                *pixel = to_f32(column_electrons * profile.at(y as f64 + 0.5 - centre));
             }
         });
         image
@@ -196,13 +195,12 @@ impl LineImage {
     /// # Errors
     ///
     /// None for images that [`new`](Self::new) accepted.
-    #[expect(clippy::cast_possible_truncation, reason = "images are f32")]
     pub fn speckled(
         &self,
         seed: u64,
         centre: impl Fn(f64) -> f64 + Sync,
     ) -> Result<Grid<f32>, TriangulationError> {
-        let even = self.even as f32;
+        let even = to_f32(self.even);
         let image = if even > 0.0 {
             self.mean(&centre).map(|electrons| even * electrons)
         } else {
@@ -234,11 +232,9 @@ impl LineImage {
         let [columns, rows] = self.data.size;
         let parts = light.width() / columns;
         if parts == 0 || [light.width(), light.height()] != [parts * columns, parts * rows] {
-            return Err(TriangulationError::OutOfRange {
-                parameter: "light",
-                value: light.width() as f64 / columns as f64,
-                allowed: "as large as the image, times the same whole number along both sides",
-            });
+            let allowed = "as large as the image, times the same whole number along both sides";
+            let times = light.width() as f64 / columns as f64;
+            return Err(Refusal::new("light", times, allowed).into());
         }
         let strip = self.strip();
         let mut image = self.dark();
@@ -299,7 +295,6 @@ impl LineImage {
     }
 
     /// Adds the mean of a pattern, of so many samples in a pixel, over the sensitive part of each pixel, times `scale`.
-    #[expect(clippy::cast_possible_truncation, reason = "images are f32")]
     fn add_pixels(
         &self,
         image: &mut Grid<f32>,
@@ -315,7 +310,7 @@ impl LineImage {
                 for (pixel, samples) in pixels.iter_mut().zip(row.chunks_exact(nx)) {
                     let sum = samples.iter().zip(&across);
                     let sum: f64 = sum.map(|(&i, width)| f64::from(i) * width).sum();
-                    *pixel += (scale / (side * side) * sum * height) as f32;
+                    *pixel += to_f32(scale / (side * side) * sum * height);
                 }
             }
         });
@@ -345,23 +340,13 @@ fn samples_per_pixel([along, across]: [f64; 2]) -> [usize; 2] {
     let candidates = (0..8).map(|more| mismatch(least + f64::from(more)));
     let matched = candidates.reduce(|best, next| if next.0 < best.0 - 1e-9 { next } else { best });
     let (_, nx, ny) = matched.unwrap_or((0.0, least, least));
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "small positive whole numbers"
-    )]
-    [nx as usize, ny as usize]
+    [nx, ny].map(to_usize)
 }
 
 /// Returns the side of a pattern of `needed` pixels, and `dark` ones beside them, that is fast to
 /// transform: the smallest number without prime factors above 5.
 fn pattern_side(needed: usize, dark: f64) -> usize {
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a valid speckle is at most 64 pixels wide, a blur 10⁵"
-    )]
-    let least = needed.saturating_add(dark.ceil() as usize);
+    let least = needed.saturating_add(to_usize(dark.ceil()));
     let smooth = |&n: &usize| {
         let mut rest = n;
         for factor in [2, 3, 5] {
@@ -376,33 +361,52 @@ fn pattern_side(needed: usize, dark: f64) -> usize {
 }
 
 fn check(data: &LineImageData) -> Result<(), TriangulationError> {
-    let LineImageData { size, .. } = *data;
-    let pixels = size[0].saturating_mul(size[1]) as f64;
-    within(
-        "size",
-        pixels,
-        (1.0, MAXIMUM_SAMPLES as f64),
-        "from 1 to 2^25 pixels",
-    )?;
-    let allowed = "from 0.01 to 1e5 pixels";
-    within("width", data.width, (0.01, 1e5), allowed)?;
-    within("blur", data.blur, (0.0, 1e5), "from 0 to 1e5 pixels")?;
-    let allowed = "from 0 to 1e12";
-    within(
-        "column_electrons",
-        data.column_electrons,
-        (0.0, 1e12),
-        allowed,
-    )?;
-    for speckle in data.speckle_size {
-        let allowed = "from 1/16 to 64 pixels";
-        within("speckle_size", speckle, (1.0 / 16.0, 64.0), allowed)?;
+    let [columns, rows] = data.size;
+    let pixels = columns.saturating_mul(rows) as f64;
+    for (name, value, range, allowed) in [
+        (
+            "size",
+            pixels,
+            (1.0, MAXIMUM_SAMPLES as f64),
+            "from 1 to 2^25 pixels",
+        ),
+        ("width", data.width, (0.01, 1e5), "from 0.01 to 1e5 pixels"),
+        ("blur", data.blur, (0.0, 1e5), "from 0 to 1e5 pixels"),
+        (
+            "column_electrons",
+            data.column_electrons,
+            (0.0, 1e12),
+            "from 0 to 1e12",
+        ),
+        (
+            "speckle_size",
+            data.speckle_size[0],
+            SPECKLE_SIZES,
+            "from 1/16 to 64 pixels",
+        ),
+        (
+            "speckle_size",
+            data.speckle_size[1],
+            SPECKLE_SIZES,
+            "from 1/16 to 64 pixels",
+        ),
+        (
+            "sensitive_side",
+            data.sensitive_side,
+            (0.01, 1.0),
+            "from 0.01 to 1 pixel",
+        ),
+        (
+            "patterns",
+            data.patterns.into(),
+            (1.0, 64.0),
+            "from 1 to 64",
+        ),
+        ("polarisation", data.polarisation, (0.0, 1.0), "from 0 to 1"),
+    ] {
+        within(name, value, range, allowed)?;
     }
-    let allowed = "from 0.01 to 1 pixel";
-    within("sensitive_side", data.sensitive_side, (0.01, 1.0), allowed)?;
-    let patterns = f64::from(data.patterns);
-    within("patterns", patterns, (1.0, 64.0), "from 1 to 64")?;
-    within("polarisation", data.polarisation, (0.0, 1.0), "from 0 to 1")
+    Ok(())
 }
 
 #[cfg(test)]

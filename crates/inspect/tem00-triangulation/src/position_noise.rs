@@ -1,3 +1,4 @@
+use tem00_numerics::cast::to_usize;
 use tem00_statistics::laws::PixelAutocovariance;
 
 use crate::SensorDescription;
@@ -86,12 +87,7 @@ pub struct ColumnSpeckle<'a> {
 impl PixelCovariance for ColumnSpeckle<'_> {
     /// Returns the covariance of two pixels of the column, a whole number of rows apart.
     fn covariance(&self, [_, rows]: [f64; 2]) -> f64 {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "rows are counted in whole numbers"
-        )]
-        let lag = rows.abs().round() as usize;
+        let lag = to_usize(rows.abs().round());
         self.variance * self.autocovariance.covariance(lag)
     }
 }
@@ -145,13 +141,18 @@ impl PositionNoise {
     /// Returns every term, multiplied by a factor.
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
+        self.with(self, |term, _| factor * term)
+    }
+
+    /// Returns what becomes of two noises, term by term.
+    pub(crate) fn with(self, other: Self, of: impl Fn(f64, f64) -> f64) -> Self {
         Self {
-            speckle: factor * self.speckle,
-            shot: factor * self.shot,
-            dark: factor * self.dark,
-            quantisation: factor * self.quantisation,
-            prnu: factor * self.prnu,
-            dsnu: factor * self.dsnu,
+            speckle: of(self.speckle, other.speckle),
+            shot: of(self.shot, other.shot),
+            dark: of(self.dark, other.dark),
+            quantisation: of(self.quantisation, other.quantisation),
+            prnu: of(self.prnu, other.prnu),
+            dsnu: of(self.dsnu, other.dsnu),
         }
     }
 }

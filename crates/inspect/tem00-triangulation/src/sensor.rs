@@ -5,7 +5,7 @@ mod response;
 #[cfg(test)]
 mod tests;
 
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, cast::to_f32};
 
 use crate::TriangulationError;
 
@@ -88,10 +88,9 @@ impl Sensor {
 
     /// Returns the mean numbers of electrons that light frees in all pixels, for their irradiance in W/m²
     /// at a vacuum wavelength in metres.
-    #[expect(clippy::cast_possible_truncation, reason = "images are f32")]
     pub fn electron_image(&self, irradiance: &Grid<f32>, wavelength: f64) -> Grid<f32> {
         let per_irradiance = self.electrons(1.0, wavelength);
-        irradiance.map(|&e| (per_irradiance * f64::from(e)) as f32)
+        irradiance.map(|&e| to_f32(per_irradiance * f64::from(e)))
     }
 
     /// Returns the mean number of electrons of the dark current in a pixel during the exposure.

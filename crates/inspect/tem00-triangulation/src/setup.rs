@@ -32,7 +32,7 @@ pub use self::{
 };
 
 /// The speckle sizes, in pixels, whose patterns and covariances can be computed in reasonable time.
-const SPECKLE_SIZES: (f64, f64) = (1.0 / 16.0, 64.0);
+pub(crate) const SPECKLE_SIZES: (f64, f64) = (1.0 / 16.0, 64.0);
 
 /// A laser-triangulation set-up: a laser line on a flat part, and a camera that looks from the side.
 ///
@@ -194,10 +194,9 @@ impl Setup {
         let [width, height] = self.description.camera.resolution;
         let rows = height as f64;
         let per_pixel = self.line.speckle_size;
-        let (least, greatest) = SPECKLE_SIZES;
         let allowed = "such that the speckle size λ F (1 + m) is from 1/16 to 64 pixels";
-        within("f_number", per_pixel[0], (least, greatest), allowed)?;
-        within("f_number", per_pixel[1], (least, greatest), allowed)?;
+        within("f_number", per_pixel[0], SPECKLE_SIZES, allowed)?;
+        within("f_number", per_pixel[1], SPECKLE_SIZES, allowed)?;
         let allowed = "such that the line is from 0.1 pixel to a third of the image wide in it; its \
                        width there, in pixels, is the value";
         within(
@@ -223,7 +222,7 @@ const NOT_SEEN: TriangulationError = TriangulationError::Direction {
 /// Returns the grey value from which on a pixel of the sensor is saturated.
 fn saturation(sensor: &Sensor) -> f64 {
     let d = sensor.description();
-    let full = ((1_u64 << d.bit_depth) - 1) as f64;
+    let full = d.largest_value();
     full.min((d.black_level + d.gain * d.full_well).floor())
 }
 

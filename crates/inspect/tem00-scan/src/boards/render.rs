@@ -2,7 +2,10 @@ use std::sync::atomic::AtomicBool;
 
 use tem00_calibration::{BoardSettings, BoardView, Calibration, CameraModel, calibrate};
 use tem00_engine::{SpeckleModel, SpecklePlan, render_frame};
-use tem00_numerics::Grid;
+use tem00_numerics::{
+    Grid,
+    cast::{to_f32, to_usize},
+};
 use tem00_tracer::{Filter, RenderOptions, Scene};
 use tem00_triangulation::{LineDetector, RawFrame, Sensor};
 
@@ -159,17 +162,11 @@ fn electrons(
 /// Returns the electrons for the exposure at which the image is bright without being saturated.
 fn scaled(electrons: &Grid<f32>, sensor: &Sensor) -> Grid<f32> {
     let mut values = electrons.values().to_vec();
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a part of the number of pixels"
-    )]
-    let brighter = (BRIGHTER * values.len() as f64) as usize;
+    let brighter = to_usize(BRIGHTER * values.len() as f64);
     let (_, bright, _) = values.select_nth_unstable_by(brighter, |a, b| b.total_cmp(a));
     let description = sensor.description();
     let scale = f64::from(description.bit_depth).exp2() - 1.0 - description.black_level;
     let full = description.full_well.min(scale / description.gain);
-    #[expect(clippy::cast_possible_truncation, reason = "images are f32")]
-    let factor = (AIM * full / f64::from(bright.max(f32::MIN_POSITIVE))) as f32;
+    let factor = to_f32(AIM * full / f64::from(bright.max(f32::MIN_POSITIVE)));
     electrons.map(|value| value * factor)
 }

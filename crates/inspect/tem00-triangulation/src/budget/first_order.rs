@@ -1,3 +1,4 @@
+use tem00_numerics::cast::{to_f32, to_usize};
 use tem00_statistics::laws::{PixelAutocovariance, PixelColumn};
 
 use super::{BudgetTerm, ErrorDistribution, Evaluation, UncertaintySource};
@@ -28,7 +29,6 @@ pub(super) struct NoiseFreeColumn {
 
 impl NoiseFreeColumn {
     /// Returns the column whose line is `phase` of a pixel behind its middle.
-    #[expect(clippy::cast_possible_truncation, reason = "images are f32")]
     pub(super) fn new(setup: &Setup, line: &ColumnProfile, phase: f64) -> Self {
         let centre = (line.rows / 2) as f64 + phase;
         let sensor = setup.description().sensor;
@@ -36,7 +36,7 @@ impl NoiseFreeColumn {
         let electrons: Vec<f64> = (0..line.rows)
             .map(|y| line.electrons * line.profile.at(y as f64 + 0.5 - centre))
             .collect();
-        let grey = |&e: &f64| (sensor.black_level + sensor.gain * (e + dark)) as f32;
+        let grey = |&e: &f64| to_f32(sensor.black_level + sensor.gain * (e + dark));
         Self {
             values: electrons.iter().map(grey).collect(),
             electrons,
@@ -95,14 +95,9 @@ pub(super) fn brightest(points: Vec<LinePoint>) -> Option<LinePoint> {
 
 /// Returns the number of rows that a column needs: the line, the window wherever the line is, and as
 /// much again for the background; but no more than the image has.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "lines are at most a third of an image wide"
-)]
 pub(super) fn rows(description: &SetupDescription, line: &ImagedLine) -> usize {
     let [_, height] = description.camera.resolution;
-    let wide = (3.0 * line.width).ceil() as usize;
+    let wide = to_usize((3.0 * line.width).ceil());
     let needed = (2 * description.detector.window).max(description.detector.window + wide) + 16;
     needed.min(height)
 }
@@ -117,17 +112,20 @@ pub(super) fn terms(setup: &Setup, line: &ImagedLine, law: f64) -> Option<Vec<Bu
     let bias = detector_bias(setup, &profile)?;
     let calibration = setup.description().calibration_uncertainty;
     let terms = UncertaintySource::ALL.map(|source| {
-        let (distribution, variance) = match source {
-            UncertaintySource::Speckle => (ErrorDistribution::Normal, noise.speckle),
-            UncertaintySource::ShotNoise => (ErrorDistribution::Normal, noise.shot),
-            UncertaintySource::DarkNoise => (ErrorDistribution::Normal, noise.dark),
-            UncertaintySource::Quantisation => (ErrorDistribution::Rectangular, noise.quantisation),
-            UncertaintySource::Prnu => (ErrorDistribution::Normal, noise.prnu),
-            UncertaintySource::Dsnu => (ErrorDistribution::Normal, noise.dsnu),
-            UncertaintySource::DetectorBias => (ErrorDistribution::Periodic, bias * bias),
-            UncertaintySource::Calibration => {
-                (ErrorDistribution::Normal, calibration * calibration)
-            }
+        let variance = match source {
+            UncertaintySource::Speckle => noise.speckle,
+            UncertaintySource::ShotNoise => noise.shot,
+            UncertaintySource::DarkNoise => noise.dark,
+            UncertaintySource::Quantisation => noise.quantisation,
+            UncertaintySource::Prnu => noise.prnu,
+            UncertaintySource::Dsnu => noise.dsnu,
+            UncertaintySource::DetectorBias => bias * bias,
+            UncertaintySource::Calibration => calibration * calibration,
+        };
+        let distribution = match source {
+            UncertaintySource::Quantisation => ErrorDistribution::Rectangular,
+            UncertaintySource::DetectorBias => ErrorDistribution::Periodic,
+            _ => ErrorDistribution::Normal,
         };
         BudgetTerm {
             source,
@@ -168,7 +166,8 @@ fn position_noise(
         let point = column.found(setup)?;
         let by_detector = setup.detector().sensitivities(&column.values, &point);
         let light = column.light(&by_detector);
-        sum = plus(sum, PositionNoise::of_column(&d.sensor, &speckle, &light));
+        let noise = PositionNoise::of_column(&d.sensor, &speckle, &light);
+        sum = sum.with(noise, |sum, term| sum + term);
         let by_centroid = column.centroid_sensitivities(d.sensor.gain);
         let light = column.light(&by_centroid);
         of_all_light += speckle_covariance(&d.sensor, &speckle, [&light; 2], [0.0; 2]);
@@ -180,17 +179,6 @@ fn position_noise(
     Some(averaged(d, mean))
 }
 
-fn plus(a: PositionNoise, b: PositionNoise) -> PositionNoise {
-    PositionNoise {
-        speckle: a.speckle + b.speckle,
-        shot: a.shot + b.shot,
-        dark: a.dark + b.dark,
-        quantisation: a.quantisation + b.quantisation,
-        prnu: a.prnu + b.prnu,
-        dsnu: a.dsnu + b.dsnu,
-    }
-}
-
 /// Divides by the numbers of columns and frames that each source is independent in; of the columns,
 /// those of speckle are counted already.
 fn averaged(d: &SetupDescription, noise: PositionNoise) -> PositionNoise {
@@ -199,33 +187,25 @@ fn averaged(d: &SetupDescription, noise: PositionNoise) -> PositionNoise {
     let sensor = &d.sensor;
     let dark = sensor.dark_noise.powi(2) + sensor.dark_current * sensor.exposure_time;
     let dithered = sensor.gain * dark.sqrt() >= DITHER;
-    PositionNoise {
-        speckle: noise.speckle
-            / if d.average.independent_speckle {
-                frames
-            } else {
-                1.0
-            },
-        shot: noise.shot / (columns * frames),
-        dark: noise.dark / (columns * frames),
-        quantisation: noise.quantisation / (columns * if dithered { frames } else { 1.0 }),
-        prnu: noise.prnu / columns,
-        dsnu: noise.dsnu / columns,
-    }
+    let frames_if = |averages: bool| if averages { frames } else { 1.0 };
+    let counts = PositionNoise {
+        speckle: frames_if(d.average.independent_speckle),
+        shot: columns * frames,
+        dark: columns * frames,
+        quantisation: columns * frames_if(dithered),
+        prnu: columns,
+        dsnu: columns,
+    };
+    noise.with(counts, |variance, count| variance / count)
 }
 
 /// Returns the autocovariance of speckle in the mean of the columns that are averaged, of the first 4000 speckles of them.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "positive numbers of pixels, at most 64 times 4000"
-)]
 fn autocovariance(d: &SetupDescription, line: &ImagedLine) -> Option<PixelAutocovariance> {
     let [along, across] = line.speckle_size;
     let side = line.sensitive_height;
-    let most = |size: f64| (LONGEST * size).floor().max(1.0) as usize;
+    let most = |size: f64| to_usize((LONGEST * size).floor().max(1.0));
     // Farther apart, both see little light or hardly the same speckle: 10⁻³ of its variance or less.
-    let reach = (2.5 * line.width).ceil() as usize + 2;
+    let reach = to_usize((2.5 * line.width).ceil()) + 2;
     PixelAutocovariance::new(&PixelColumn {
         size: [side / along, side / across],
         pitch: [1.0 / along, 1.0 / across],

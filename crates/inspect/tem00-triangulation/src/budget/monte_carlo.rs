@@ -102,7 +102,7 @@ impl Simulation {
 /// Results of a trial.
 struct Trial {
     /// Source by source; the last is everything at once.
-    outcomes: [Outcome; SIMULATED.len() + 1],
+    outcomes: [Outcome; SIMULATED + 1],
     /// The errors of heights by everything at once and the calibration, without their signs, in metres.
     errors: Vec<f64>,
 }
@@ -117,16 +117,8 @@ pub(crate) struct Outcome {
     pub(crate) invalid: f64,
 }
 
-/// The sources that are simulated.
-const SIMULATED: [UncertaintySource; 7] = [
-    UncertaintySource::Speckle,
-    UncertaintySource::ShotNoise,
-    UncertaintySource::DarkNoise,
-    UncertaintySource::Quantisation,
-    UncertaintySource::Prnu,
-    UncertaintySource::Dsnu,
-    UncertaintySource::DetectorBias,
-];
+/// The number of the sources that are simulated: all but the last, the calibration.
+const SIMULATED: usize = UncertaintySource::ALL.len() - 1;
 
 /// Finds the uncertainty of a height at the reference plane by trials: frames with speckle, exposed by
 /// the sensor, in which the detector finds the line; and frames with one source of noise alone.
@@ -149,21 +141,33 @@ pub fn simulate(
     progress: impl Fn(u64) + Sync,
     cancel: &AtomicBool,
 ) -> Result<Simulation, TriangulationError> {
-    let trials = f64::from(options.trials);
-    within("trials", trials, (10.0, 1e6), "from 10 to a million")?;
     let simulator = Simulator::new(setup, *setup.line())?;
+    let trial = |index| simulator.trial(options.seed, index);
+    let trials = in_parallel(options, trial, progress, cancel)?;
+    Ok(simulator.summary(options, &trials))
+}
+
+/// Returns the results of the trials, which are done on all threads of the current pool.
+///
+/// `progress` is told, from any thread, the number of trials done.
+pub(crate) fn in_parallel<T: Send>(
+    options: SimulationOptions,
+    trial: impl Fn(u32) -> Result<T, TriangulationError> + Sync,
+    progress: impl Fn(u64) + Sync,
+    cancel: &AtomicBool,
+) -> Result<Vec<T>, TriangulationError> {
+    let count = f64::from(options.trials);
+    within("trials", count, (10.0, 1e6), "from 10 to a million")?;
     let done = AtomicU64::new(0);
     let trial = |index: u32| {
         if cancel.load(Ordering::Relaxed) {
             return Err(TriangulationError::Cancelled);
         }
-        let trial = simulator.trial(options.seed, index);
+        let result = trial(index);
         progress(done.fetch_add(1, Ordering::Relaxed) + 1);
-        trial
+        result
     };
-    let trials = (0..options.trials).into_par_iter().map(trial);
-    let trials: Vec<Trial> = trials.collect::<Result<_, _>>()?;
-    Ok(simulator.summary(options, &trials))
+    (0..options.trials).into_par_iter().map(trial).collect()
 }
 
 /// Trials of a set-up with a line on a flat surface.
@@ -216,8 +220,9 @@ impl<'a> Simulator<'a> {
             square: Some((position - centre).powi(2)),
             invalid: 0.0,
         };
-        let mut outcomes = [bias; SIMULATED.len() + 1];
-        for (outcome, source) in outcomes.iter_mut().zip(SIMULATED) {
+        let mut outcomes = [bias; SIMULATED + 1];
+        let simulated = UncertaintySource::ALL.into_iter().take(SIMULATED);
+        for (outcome, source) in outcomes.iter_mut().zip(simulated) {
             let reference = match source {
                 UncertaintySource::DetectorBias => continue,
                 UncertaintySource::Quantisation => positions(&self.unlimited, &frames.unrounded()),
@@ -228,7 +233,7 @@ impl<'a> Simulator<'a> {
         }
         let found = positions(self.setup.detector(), &frames.exposed()?);
         let deviations = self.group_deviations(&found, &Positions::uniform(centre));
-        outcomes[SIMULATED.len()] = outcome_of(&deviations, found.invalid());
+        outcomes[SIMULATED] = outcome_of(&deviations, found.invalid());
         let per_pixel = self.setup.line().height_per_pixel;
         let calibration = self.setup.description().calibration_uncertainty;
         let error = |deviation: f64| {
@@ -282,7 +287,7 @@ impl<'a> Simulator<'a> {
         let per_pixel = self.setup.line().height_per_pixel.abs();
         let of = |index: usize| trials.iter().map(move |trial| trial.outcomes[index]);
         let estimate = |index: usize| estimate(of(index), per_pixel);
-        let total = estimate(SIMULATED.len());
+        let total = estimate(SIMULATED);
         let mut errors: Vec<f64> = trials
             .iter()
             .flat_map(|trial| &trial.errors)
@@ -292,10 +297,13 @@ impl<'a> Simulator<'a> {
         let held = to_usize((CoverageProbability::P95.value() * errors.len() as f64).ceil());
         Simulation {
             options,
-            terms: SIMULATED.into_iter().zip((0..).map(estimate)).collect(),
+            terms: UncertaintySource::ALL
+                .into_iter()
+                .zip((0..SIMULATED).map(estimate))
+                .collect(),
             total,
             expanded: total.and_then(|_| errors.get(held.max(1) - 1).copied()),
-            invalid: invalid(of(SIMULATED.len())),
+            invalid: invalid(of(SIMULATED)),
         }
     }
 }

@@ -1,54 +1,29 @@
-use core::fmt;
+use crate::named::named;
 
-/// Source of the uncertainty of a height.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum UncertaintySource {
-    /// Speckle in the light of the line.
-    Speckle,
-    /// The Poisson noise of the light.
-    ShotNoise,
-    /// The temporal dark noise of the sensor and the noise of its dark current.
-    DarkNoise,
-    /// The rounding to whole grey values.
-    Quantisation,
-    /// The different response of the pixels.
-    Prnu,
-    /// The different dark signal of the pixels.
-    Dsnu,
-    /// The systematic error of the detector, which varies with the position of the line in a pixel.
-    DetectorBias,
-    /// The calibration of camera and laser plane.
-    Calibration,
+named! {
+    /// Source of the uncertainty of a height.
+    #[non_exhaustive]
+    UncertaintySource {
+        /// Speckle in the light of the line.
+        Speckle = "speckle",
+        /// The Poisson noise of the light.
+        ShotNoise = "shot noise",
+        /// The temporal dark noise of the sensor and the noise of its dark current.
+        DarkNoise = "dark noise",
+        /// The rounding to whole grey values.
+        Quantisation = "quantisation",
+        /// The different response of the pixels.
+        Prnu = "PRNU",
+        /// The different dark signal of the pixels.
+        Dsnu = "DSNU",
+        /// The systematic error of the detector, which varies with the position of the line in a pixel.
+        DetectorBias = "detector bias",
+        /// The calibration of camera and laser plane.
+        Calibration = "calibration",
+    }
 }
 
 impl UncertaintySource {
-    /// All sources, in the order of a budget.
-    pub const ALL: [Self; 8] = [
-        Self::Speckle,
-        Self::ShotNoise,
-        Self::DarkNoise,
-        Self::Quantisation,
-        Self::Prnu,
-        Self::Dsnu,
-        Self::DetectorBias,
-        Self::Calibration,
-    ];
-
-    /// Returns its name in a table.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Speckle => "speckle",
-            Self::ShotNoise => "shot noise",
-            Self::DarkNoise => "dark noise",
-            Self::Quantisation => "quantisation",
-            Self::Prnu => "PRNU",
-            Self::Dsnu => "DSNU",
-            Self::DetectorBias => "detector bias",
-            Self::Calibration => "calibration",
-        }
-    }
-
     /// Returns a measure that lowers it.
     pub const fn remedy(self) -> &'static str {
         match self {
@@ -70,12 +45,6 @@ impl UncertaintySource {
     }
 }
 
-impl fmt::Display for UncertaintySource {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
 /// Evaluation of a standard uncertainty, by the types of the GUM.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Evaluation {
@@ -85,26 +54,16 @@ pub enum Evaluation {
     B,
 }
 
-/// The distribution of an error.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum ErrorDistribution {
-    /// Normal, if only as the sum of many.
-    Normal,
-    /// Rectangular in each pixel.
-    Rectangular,
-    /// That of a periodic error at a position that is even over the period.
-    Periodic,
-}
-
-impl ErrorDistribution {
-    /// Returns its name in a table.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Normal => "normal",
-            Self::Rectangular => "rectangular",
-            Self::Periodic => "periodic",
-        }
+named! {
+    /// The distribution of an error.
+    #[non_exhaustive]
+    ErrorDistribution {
+        /// Normal, if only as the sum of many.
+        Normal = "normal",
+        /// Rectangular in each pixel.
+        Rectangular = "rectangular",
+        /// That of a periodic error at a position that is even over the period.
+        Periodic = "periodic",
     }
 }
 

@@ -1,3 +1,5 @@
+use tem00_numerics::check;
+
 use crate::{SetupQuantity, TriangulationError};
 
 /// The values that a search tries of one parameter.
@@ -32,7 +34,7 @@ impl Sweep {
             });
         }
         for &value in &values {
-            check(parameter.key(), value)?;
+            check::positive(parameter.key(), value, "")?;
         }
         Ok(Self { parameter, values })
     }
@@ -56,16 +58,12 @@ impl Sweep {
         steps: u32,
         spacing: Spacing,
     ) -> Result<Self, TriangulationError> {
-        check(parameter.key(), from)?;
-        check(parameter.key(), to)?;
-        if steps < 2 {
-            return Err(TriangulationError::OutOfRange {
-                parameter: "steps",
-                value: f64::from(steps),
-                allowed: "at least 2, the two ends",
-            });
+        for end in [from, to] {
+            check::positive(parameter.key(), end, "")?;
         }
-        let last = f64::from(steps - 1);
+        let count = f64::from(steps);
+        check::that(steps >= 2, "steps", count, "", "at least 2, the two ends")?;
+        let last = count - 1.0;
         let value = |step: u32| match (step, spacing) {
             (0, _) => from,
             (step, _) if step == steps - 1 => to,
@@ -100,17 +98,6 @@ fn rounded(parameter: SetupQuantity, exact: &[f64]) -> Vec<f64> {
         *value = unit.dimension.rounded(around[1], 0.01 * step, unit.symbol);
     }
     values
-}
-
-fn check(parameter: &'static str, value: f64) -> Result<(), TriangulationError> {
-    if value > 0.0 && value.is_finite() {
-        return Ok(());
-    }
-    Err(TriangulationError::OutOfRange {
-        parameter,
-        value,
-        allowed: "positive and finite",
-    })
 }
 
 #[cfg(test)]

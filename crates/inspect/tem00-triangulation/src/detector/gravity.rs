@@ -1,5 +1,7 @@
 use core::ops::ControlFlow;
 
+use tem00_numerics::cast::to_usize;
+
 use super::profile::Profile;
 
 /// The centre of gravity over the window.
@@ -50,16 +52,11 @@ pub(super) fn iterated(profile: &Profile<'_>) -> Option<f64> {
 
 /// The centre of gravity of the grey values, constant over each pixel, from `centre − half` to
 /// `centre + half`, as far as the line's own pixels reach.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "positions below the first pixel become 0, those beyond the last are cut to it"
-)]
 fn about(profile: &Profile<'_>, centre: f64, half: f64) -> Option<f64> {
     let (zone, origin) = (&profile.line.zone, profile.line.greatest as f64);
     let (from, to) = (centre - half, centre + half);
-    let first = ((from + origin).floor() as usize).max(zone.start);
-    let end = ((to + origin).ceil() as usize + 1).min(zone.end);
+    let first = to_usize((from + origin).floor()).max(zone.start);
+    let end = (to_usize((to + origin).ceil()) + 1).min(zone.end);
     let (mut sum, mut moment) = (0.0, 0.0);
     for i in first..end {
         let y = i as f64 - origin;

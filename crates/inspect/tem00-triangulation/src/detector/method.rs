@@ -1,6 +1,6 @@
 use core::fmt;
 
-use crate::TriangulationError;
+use tem00_numerics::{Refusal, cast::to_usize, check};
 
 /// Estimator of the position of a line in a column.
 ///
@@ -162,30 +162,21 @@ impl LineMethod {
     }
 
     /// Complains about a parameter that is outside its range.
-    pub(super) fn validate(&self) -> Result<(), TriangulationError> {
-        let (parameter, value, good, allowed) = match *self {
-            Self::ThresholdedCentreOfGravity { threshold } => (
-                "threshold",
-                threshold,
-                (0.0..1.0).contains(&threshold),
-                "from 0 to below 1, a fraction of the peak",
-            ),
-            Self::Steger { sigma } => (
-                "sigma",
-                sigma,
-                (0.5..=100.0).contains(&sigma),
-                "from 0.5 to 100 pixels",
-            ),
-            _ => return Ok(()),
-        };
-        if good {
-            return Ok(());
+    pub(super) fn validate(&self) -> Result<(), Refusal> {
+        match *self {
+            Self::ThresholdedCentreOfGravity { threshold } => {
+                let (holds, allowed) = (
+                    (0.0..1.0).contains(&threshold),
+                    "from 0 to below 1, a fraction of the peak",
+                );
+                check::that(holds, "threshold", threshold, "", allowed)
+            }
+            Self::Steger { sigma } => {
+                let holds = (0.5..=100.0).contains(&sigma);
+                check::that(holds, "sigma", sigma, "", "from 0.5 to 100 pixels")
+            }
+            _ => Ok(()),
         }
-        Err(TriangulationError::OutOfRange {
-            parameter,
-            value,
-            allowed,
-        })
     }
 }
 
@@ -196,11 +187,6 @@ impl fmt::Display for LineMethod {
 }
 
 /// The pixels that a Gaussian of Steger's reaches to either side: beyond 4 σ is 6e−5 of it.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a valid σ is from 0.5 to 100 pixels, and any other saturates"
-)]
 pub(super) fn kernel_radius(sigma: f64) -> usize {
-    (4.0 * sigma).ceil().min(400.0) as usize
+    to_usize((4.0 * sigma).ceil().min(400.0))
 }

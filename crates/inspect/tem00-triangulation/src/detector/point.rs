@@ -1,3 +1,5 @@
+use crate::named::named;
+
 /// A line where it crosses a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinePoint {
@@ -21,39 +23,24 @@ pub struct LinePoint {
     pub line: usize,
 }
 
-/// Validity of a point of a line, with the reason if it cannot be trusted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Validity {
-    /// Nothing speaks against it.
-    Valid,
-    /// A pixel of the window is saturated.
-    Saturated,
-    /// The window reaches beyond the image.
-    Cut,
-    /// The window was cut where the next line of the column begins.
-    Crowded,
-    /// A pixel of the window is not a finite number; it counts as background.
-    Missing,
-    /// The estimate did not converge or lies outside of the window; the position is that of the peak.
-    Failed,
-    /// An edge of the part cuts the line, of which but a sliver is seen: its position is that of the edge. Or
-    /// there is no line but by noise. Only who knows the line without noise can tell; a detector does not.
-    Sliver,
-}
-
-impl Validity {
-    /// Returns its name in a table: `valid`, `saturated`, `cut`, `crowded`, `missing`,
-    /// `failed` or `sliver`.
-    pub const fn name(&self) -> &'static str {
-        match self {
-            Self::Valid => "valid",
-            Self::Saturated => "saturated",
-            Self::Cut => "cut",
-            Self::Crowded => "crowded",
-            Self::Missing => "missing",
-            Self::Failed => "failed",
-            Self::Sliver => "sliver",
-        }
+named! {
+    /// Validity of a point of a line, with the reason if it cannot be trusted.
+    #[non_exhaustive]
+    Validity {
+        /// Nothing speaks against it.
+        Valid = "valid",
+        /// A pixel of the window is saturated.
+        Saturated = "saturated",
+        /// The window reaches beyond the image.
+        Cut = "cut",
+        /// The window was cut where the next line of the column begins.
+        Crowded = "crowded",
+        /// A pixel of the window is not a finite number; it counts as background.
+        Missing = "missing",
+        /// The estimate did not converge or lies outside of the window; the position is that of the peak.
+        Failed = "failed",
+        /// An edge of the part cuts the line, of which but a sliver is seen: its position is that of the edge. Or
+        /// there is no line but by noise. Only who knows the line without noise can tell; a detector does not.
+        Sliver = "sliver",
     }
 }

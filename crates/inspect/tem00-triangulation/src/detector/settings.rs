@@ -1,3 +1,5 @@
+use tem00_numerics::check;
+
 use super::LineMethod;
 use crate::TriangulationError;
 
@@ -41,38 +43,24 @@ impl DetectorSettings {
     pub const MAX_LINES: usize = 100;
 
     pub(super) fn validate(&self) -> Result<(), TriangulationError> {
-        let refuse = |parameter, value, allowed| {
-            Err(TriangulationError::OutOfRange {
-                parameter,
-                value,
-                allowed,
-            })
-        };
         self.method.validate()?;
-        if self.window.is_multiple_of(2) || !(3..=Self::MAX_WINDOW).contains(&self.window) {
-            return refuse(
-                "window",
-                self.window as f64,
-                "an odd number of pixels from 3 to 1001",
-            );
-        }
-        if self.window < self.method.min_window() {
+        let (window, odd) = (self.window, !self.window.is_multiple_of(2));
+        let holds = odd && (3..=Self::MAX_WINDOW).contains(&window);
+        let allowed = "an odd number of pixels from 3 to 1001";
+        check::that(holds, "window", window, "", allowed)?;
+        if window < self.method.min_window() {
             return Err(TriangulationError::TooFew {
                 what: "pixels in the window of this method",
-                got: self.window,
+                got: window,
                 needed: self.method.min_window(),
             });
         }
-        if !(0.0..f64::INFINITY).contains(&self.min_peak) {
-            let allowed = "zero or more grey values, and finite";
-            return refuse("min_peak", self.min_peak, allowed);
-        }
-        if !(1..=Self::MAX_LINES).contains(&self.max_lines) {
-            return refuse("max_lines", self.max_lines as f64, "from 1 to 100");
-        }
-        if self.saturation.is_nan() || self.saturation <= 0.0 {
-            return refuse("saturation", self.saturation, "positive, infinite if none");
-        }
-        Ok(())
+        let (least, allowed) = (self.min_peak, "zero or more grey values, and finite");
+        let holds = (0.0..f64::INFINITY).contains(&least);
+        check::that(holds, "min_peak", least, "", allowed)?;
+        let lines = self.max_lines as f64;
+        check::range("max_lines", lines, [1.0, Self::MAX_LINES as f64], "")?;
+        let (level, allowed) = (self.saturation, "positive, infinite if none");
+        Ok(check::that(level > 0.0, "saturation", level, "", allowed)?)
     }
 }

@@ -1,4 +1,5 @@
 use tem00_config::{Document, LENGTH, NUMBER, Problem, Section, Value, nearest};
+use tem00_numerics::Refusal;
 use tem00_uncertainty::{Correlation, Distribution, Input, Inputs, UncertaintyError};
 
 use crate::{HeightRange, Setup, SetupQuantity, SetupUncertainty, TriangulationError};
@@ -104,9 +105,9 @@ fn read_quantity(
 /// The problem that there is no set-up one standard uncertainty on a side of the value.
 fn impossible(table: &Section<'_>, side: &str, error: &TriangulationError) -> Problem {
     let wanted = match error {
-        TriangulationError::OutOfRange {
+        TriangulationError::Refused(Refusal {
             parameter, allowed, ..
-        } => format!("{parameter} must be {allowed}"),
+        }) => format!("{parameter} must be {allowed}"),
         error => error.to_string(),
     };
     let message = format!("one `uncertainty` {side} its value, {wanted}");

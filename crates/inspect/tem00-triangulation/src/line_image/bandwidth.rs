@@ -1,7 +1,10 @@
 //! Images of a line in light that is not of one wavelength.
 
 use tem00_coherence::{PatternSum, PolychromaticSpeckle, Rows, SourceExtent};
-use tem00_numerics::{Grid, cast::to_usize};
+use tem00_numerics::{
+    Grid,
+    cast::{to_c32, to_usize},
+};
 use tem00_speckle::Complex;
 
 use crate::Setup;
@@ -121,7 +124,6 @@ impl Bandwidth {
 
     /// Returns the pupil of each wave number. `strip` makes one from the number of its random stream and its
     /// displacement.
-    #[expect(clippy::cast_possible_truncation, reason = "pupils are f32")]
     pub(super) fn pupils(&self, part: u64, strip: impl Fn(u64, f64) -> Pupil) -> Vec<Pupil> {
         let streams = part * self.paths.len() as u64..;
         let of_wave = |&[tilt, kappa]: &[f64; 2]| {
@@ -131,8 +133,7 @@ impl Bandwidth {
                 .zip(streams.clone())
                 .map(|([path, root], stream)| {
                     let (mut pupil, lit) = strip(stream, tilt);
-                    let factor = Complex::from_polar(*root, kappa * path);
-                    let factor = Complex::new(factor.re as f32, factor.im as f32);
+                    let factor = to_c32(Complex::from_polar(*root, kappa * path));
                     pupil
                         .values_mut()
                         .iter_mut()

@@ -3,7 +3,10 @@ use core::f64::consts::{PI, TAU};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
-use tem00_numerics::{Fft2, Grid, cast::to_usize};
+use tem00_numerics::{
+    Fft2, Grid,
+    cast::{to_c32, to_f32, to_i64, to_usize},
+};
 use tem00_speckle::Complex;
 
 use crate::setup::transfer;
@@ -54,12 +57,7 @@ impl Strip {
 
     /// Returns the odd number of lattice points that cover the pupil along an axis.
     fn lattice(&self, axis: usize) -> usize {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "speckles in an image, at most some ten thousand"
-        )]
-        let half = (0.5 * self.period[axis] / self.speckle_size[axis]).ceil() as usize;
+        let half = to_usize((0.5 * self.period[axis] / self.speckle_size[axis]).ceil());
         2 * half + 1
     }
 
@@ -115,10 +113,6 @@ impl Strip {
     /// `light` in parts of pixels, and the mean of that light per pixel of the period.
     ///
     /// A scatterer lies in the middle of each part.
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "the transform works in f32"
-    )]
     pub(super) fn pupil_of_light(
         &self,
         light: &Grid<f32>,
@@ -137,7 +131,7 @@ impl Strip {
             let turns = tilt * place(index / light.width()) / self.speckle_size[1];
             let wave = Complex::new(normal(), normal()) * Complex::cis(TAU * turns);
             let wave = wave * (0.5 * f64::from(electrons)).sqrt();
-            *amplitude = Complex::new(wave.re as f32, wave.im as f32);
+            *amplitude = to_c32(wave);
         }
         let electrons: f64 = light.values().iter().map(|&e| f64::from(e)).sum();
         let [wide, high] = self.period.map(|side| to_usize(side) * parts);
@@ -157,7 +151,7 @@ impl Strip {
                 let at = (mirrored(x, columns, wide), mirrored(y, rows, high));
                 let [fx, fy] = [(x, columns), (y, rows)].map(|(i, n)| i as f64 - (n / 2) as f64);
                 let phase = Complex::cis(TAU * (fx * start[0] + fy * start[1]));
-                *amplitude = spectrum[at] * Complex::new(phase.re as f32, phase.im as f32);
+                *amplitude = spectrum[at] * to_c32(phase);
             }
         });
         self.defocus(&mut pupil);
@@ -165,7 +159,6 @@ impl Strip {
     }
 
     /// Returns light in parts of pixels as the lens blurs it without speckle, over the whole period.
-    #[expect(clippy::cast_possible_truncation, reason = "images are f32")]
     pub(super) fn blurred(&self, light: &Grid<f32>, parts: usize) -> Grid<f32> {
         let [wide, high] = self.period.map(|side| to_usize(side) * parts);
         let planned = Fft2::with_aperture(wide, high, light.width(), light.height());
@@ -190,14 +183,13 @@ impl Strip {
         let sharp = light.map(|&electrons| Complex::new(electrons, 0.0));
         // The transform of the conjugate is that back.
         let blurred = forward.on_one_thread().forward(&sharp, |kx, ky, value| {
-            value.conj() * ((lens(kx, ky) / all) as f32)
+            value.conj() * to_f32(lens(kx, ky) / all)
         });
         back.on_one_thread()
             .forward(&blurred, |_, _, value| value.re)
     }
 
     /// Multiplies by the phase of defocus, exp(iπ b ρ²/h) at ρ diameters from the middle of the pupil.
-    #[expect(clippy::cast_possible_truncation, reason = "pupils are f32")]
     fn defocus(&self, pupil: &mut Grid<Complex<f32>>) {
         if self.defocus == 0.0 {
             return;
@@ -211,7 +203,7 @@ impl Strip {
             for (x, amplitude) in amplitudes.iter_mut().enumerate() {
                 let squared = place(x, 0).powi(2) + place(y, 1).powi(2);
                 let phase = Complex::cis(PI * self.defocus * squared);
-                *amplitude *= Complex::new(phase.re as f32, phase.im as f32);
+                *amplitude *= to_c32(phase);
             }
         });
     }
@@ -226,11 +218,7 @@ impl Strip {
         let [low, high] = self.dark();
         let from = (low - range(f64::NEG_INFINITY, f64::max)).max(-REACH * radius);
         let to = (high - range(f64::INFINITY, f64::min)).min(REACH * radius);
-        #[expect(
-            clippy::cast_possible_truncation,
-            reason = "scatterers in the period of an image, at most some ten thousand"
-        )]
-        let [first, last] = [(from / spacing).ceil(), (to / spacing).floor()].map(|end| end as i64);
+        let [first, last] = [(from / spacing).ceil(), (to / spacing).floor()].map(to_i64);
         let peak = spacing / radius * core::f64::consts::FRAC_2_PI.sqrt();
         let scatterer = |index: i64| {
             let distance = index as f64 * spacing;
@@ -276,10 +264,6 @@ fn mirrored(index: usize, side: usize, length: usize) -> usize {
 
 /// Transforms each row, with the frequency zero in the middle: positions along the line become those in
 /// the pupil.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "the transform works in f32"
-)]
 fn along(columns: &Grid<Complex<f64>>) -> Grid<Complex<f32>> {
     let (width, height) = (columns.width(), columns.height());
     let mut pupil = Grid::filled(width, height, Complex::default());
@@ -291,9 +275,7 @@ fn along(columns: &Grid<Complex<f64>>) -> Grid<Complex<f32>> {
         .rows()
         .zip(pupil.values_mut().chunks_exact_mut(width))
     {
-        let of_row = Grid::from_fn(width, 1, |x, _| {
-            Complex::new(row[x].re as f32, row[x].im as f32)
-        });
+        let of_row = Grid::from_fn(width, 1, |x, _| to_c32(row[x]));
         let spectrum = transform.forward(&of_row, |_, _, value| value);
         for (x, amplitude) in amplitudes.iter_mut().enumerate() {
             // The image is the transform of the pupil: this is the inverse one, of the other sign.

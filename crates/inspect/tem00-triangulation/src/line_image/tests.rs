@@ -4,6 +4,7 @@ use tem00_statistics::{
     laws::{PixelAutocovariance, PixelColumn},
     rectangular_pixel_contrast,
 };
+use tem00_testkit::refuses;
 
 use super::*;
 
@@ -182,29 +183,21 @@ fn a_seed_gives_the_same_bits_for_any_number_of_threads() {
 
 #[test]
 fn impossible_images_are_rejected_by_name() {
-    type Change = fn(&mut LineImageData);
-    let bad: [(&str, Change); 9] = [
-        ("size", |d| d.size = [0, 10]),
-        ("size", |d| d.size = [usize::MAX; 2]),
-        ("width", |d| d.width = f64::NAN),
-        ("column_electrons", |d| d.column_electrons = -1.0),
-        ("speckle_size", |d| d.speckle_size[1] = 0.01),
-        ("speckle_size", |d| {
-            (d.speckle_size, d.size) = ([0.07; 2], [4000, 100]);
-        }),
-        ("sensitive_side", |d| d.sensitive_side = 0.0),
-        ("patterns", |d| d.patterns = 0),
-        ("polarisation", |d| d.polarisation = f64::INFINITY),
-    ];
-    for (name, change) in bad {
-        let mut data = DATA;
-        change(&mut data);
-        let error = LineImage::new(data).unwrap_err();
-        let TriangulationError::OutOfRange { parameter, .. } = error else {
-            panic!("{name}: {error:?}");
-        };
-        assert_eq!(parameter, name, "{error}");
-    }
+    refuses!(data = DATA => LineImage::new(data);
+        data.size: [[0, 10], [usize::MAX; 2]],
+        data.width: [f64::NAN],
+        data.column_electrons: [-1.0],
+        data.speckle_size: [[1.6, 0.01]],
+        data.sensitive_side: [0.0],
+        data.patterns: [0],
+        data.polarisation: [f64::INFINITY],
+    );
+    refuses!(speckle_size = [1.6; 2] => LineImage::new(LineImageData {
+            size: [4000, 100],
+            speckle_size,
+            ..DATA
+        });
+        speckle_size: [[0.07; 2]]);
 }
 
 /// The light of a line as a sharp lens would image it, in parts of pixels.

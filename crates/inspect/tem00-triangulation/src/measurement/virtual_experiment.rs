@@ -1,15 +1,13 @@
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
-use rayon::prelude::*;
 use tem00_uncertainty::{CoverageInterval, CoverageProbability, IntervalKind};
 
 use super::{Measurement, MeasurementInput, height_at};
 use crate::{
     MonteCarloEstimate, Setup, SimulationOptions, TriangulationError, UncertaintySource,
-    budget::{Outcome, Simulator, estimate, invalid},
-    setup::within,
+    budget::{Outcome, Simulator, estimate, in_parallel, invalid},
 };
 
 /// Heights that a set-up measures in a virtual experiment.
@@ -74,19 +72,8 @@ impl Measurement {
         progress: impl Fn(u64) + Sync,
         cancel: &AtomicBool,
     ) -> Result<VirtualExperiment, TriangulationError> {
-        let trials = f64::from(options.trials);
-        within("trials", trials, (10.0, 1e6), "from 10 to a million")?;
-        let done = AtomicU64::new(0);
-        let trial = |index: u32| {
-            if cancel.load(Ordering::Relaxed) {
-                return Err(TriangulationError::Cancelled);
-            }
-            let trial = self.trial(options.seed, index);
-            progress(done.fetch_add(1, Ordering::Relaxed) + 1);
-            trial
-        };
-        let trials = (0..options.trials).into_par_iter().map(trial);
-        let trials: Vec<Heights> = trials.collect::<Result<_, _>>()?;
+        let trial = |index| self.trial(options.seed, index);
+        let trials = in_parallel(options, trial, progress, cancel)?;
         let outcomes = trials.iter().map(|trial| trial.outcome);
         let (error, invalid) = (estimate(outcomes.clone(), 1.0), invalid(outcomes));
         let mut heights: Vec<f64> = trials.into_iter().flat_map(|trial| trial.heights).collect();

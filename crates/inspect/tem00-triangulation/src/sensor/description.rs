@@ -1,3 +1,5 @@
+use tem00_numerics::check;
+
 use crate::{SetupDescription, SetupQuantity, TriangulationError, setup::within};
 
 /// Data sheet of a sensor after EMVA 1288 (linear model), and the settings that it is used with.
@@ -76,30 +78,28 @@ impl SensorDescription {
     }
 
     /// Returns the largest grey value, `2^bits − 1`, in DN.
-    pub(crate) fn largest_value(&self) -> f64 {
+    pub fn largest_value(&self) -> f64 {
         f64::from(self.bit_depth).exp2() - 1.0
     }
 
     /// Returns the first quantity that is outside its range as an error.
     pub(super) fn check(&self) -> Result<(), TriangulationError> {
-        if !matches!(self.bit_depth, 8 | 10 | 12 | 14 | 16) {
-            return Err(TriangulationError::OutOfRange {
-                parameter: "bit_depth",
-                value: f64::from(self.bit_depth),
-                allowed: "8, 10, 12, 14 or 16",
-            });
-        }
+        let (bits, holds) = (
+            f64::from(self.bit_depth),
+            matches!(self.bit_depth, 8 | 10 | 12 | 14 | 16),
+        );
+        check::that(holds, "bit_depth", bits, "", "8, 10, 12, 14 or 16")?;
         let setup = SetupDescription {
             sensor: *self,
             ..SetupDescription::default()
         };
         SetupQuantity::of_section("sensor").try_for_each(|quantity| quantity.check(&setup))?;
-        let pitch = (f64::MIN_POSITIVE, 1.0);
+        let allowed = "above 0 and at most 1, in metres";
         within(
             "pixel_pitch",
             self.pixel_pitch,
-            pitch,
-            "above 0 and at most 1, in metres",
+            (f64::MIN_POSITIVE, 1.0),
+            allowed,
         )
     }
 }

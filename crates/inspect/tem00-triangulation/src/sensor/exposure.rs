@@ -2,7 +2,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rand_distr::{Distribution, Poisson, StandardNormal};
 use rayon::prelude::*;
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, Refusal};
 
 use super::{Sensor, SensorDescription};
 use crate::TriangulationError;
@@ -62,11 +62,8 @@ impl Sensor {
     /// Returns an error if a number of electrons is negative or NaN.
     pub fn expose(&self, electrons: &Grid<f32>, seed: u64) -> Result<RawFrame, TriangulationError> {
         if let Some(&bad) = electrons.values().iter().find(|&&e| e.is_nan() || e < 0.0) {
-            return Err(TriangulationError::OutOfRange {
-                parameter: "electrons",
-                value: bad.into(),
-                allowed: "at least 0 in every pixel",
-            });
+            let bad = f64::from(bad);
+            return Err(Refusal::new("electrons", bad, "at least 0 in every pixel").into());
         }
         let (width, height) = (electrons.width(), electrons.height());
         let mut pixels = Grid::filled(width, height, (0, false));

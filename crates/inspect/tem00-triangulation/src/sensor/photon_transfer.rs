@@ -1,4 +1,4 @@
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, cast::to_f32};
 
 use super::{RawFrame, Sensor};
 use crate::TriangulationError;
@@ -10,7 +10,6 @@ impl Sensor {
     /// # Errors
     ///
     /// Returns an error if the number of electrons is negative or NaN, or if a side is zero.
-    #[expect(clippy::cast_possible_truncation, reason = "images are f32")]
     pub fn uniform_frame(
         &self,
         [width, height]: [usize; 2],
@@ -24,7 +23,7 @@ impl Sensor {
                 needed: 1,
             });
         }
-        self.expose(&Grid::filled(width, height, electrons as f32), seed)
+        self.expose(&Grid::filled(width, height, to_f32(electrons)), seed)
     }
 }
 

@@ -1,6 +1,7 @@
 use glam::DVec3;
 use tem00_beam::GaussianBeam;
 use tem00_coherence::{LaserLight, Relief};
+use tem00_numerics::{Refusal, check};
 
 use crate::{DetectorSettings, LaserPlane, SensorDescription, SetupQuantity, TriangulationError};
 
@@ -139,11 +140,8 @@ impl SetupDescription {
     pub fn line_beam(&self) -> Result<GaussianBeam, TriangulationError> {
         let laser = &self.laser;
         let beam = GaussianBeam::from_waist(laser.light.wavelength, 0.5 * laser.line_thickness);
-        beam.map_err(|_| TriangulationError::OutOfRange {
-            parameter: "line_thickness",
-            value: laser.line_thickness,
-            allowed: "at least 4 λ / π: a finer line is no beam",
-        })
+        let allowed = "at least 4 λ / π: a finer line is no beam";
+        beam.map_err(|_| Refusal::new("line_thickness", laser.line_thickness, allowed).into())
     }
 
     /// Returns the full thickness of the line on a flat part at a height, in metres.
@@ -249,31 +247,30 @@ impl SetupDescription {
         let quantities = SetupQuantity::ALL.iter();
         let checks = quantities.map(|quantity| quantity.check(self));
         let average = &self.average;
-        let counts = [
-            (
+        let [patterns, columns, frames] =
+            [self.surface.patterns, average.columns, average.frames].map(f64::from);
+        let to_average = "a number from 1 to 10000 to average over";
+        let certain = "from 0 to 1 m, the standard uncertainty of the calibration";
+        let whole_image = (0.0, self.camera.resolution[0] as f64);
+        let of_image = "at most the number of columns of the image";
+        let others = [
+            within(
+                "uncertainty",
+                self.calibration_uncertainty,
+                (0.0, 1.0),
+                certain,
+            ),
+            within(
                 "patterns",
-                self.surface.patterns,
-                64,
+                patterns,
+                (1.0, 64.0),
                 "from 1 to 64 independent patterns",
             ),
-            ("columns", average.columns, 10_000, TO_AVERAGE),
-            ("frames", average.frames, 10_000, TO_AVERAGE),
+            within("columns", columns, (1.0, 1e4), to_average),
+            within("frames", frames, (1.0, 1e4), to_average),
+            within("columns", columns, whole_image, of_image),
         ];
-        let counts = counts.into_iter().map(|(parameter, count, most, allowed)| {
-            within(parameter, f64::from(count), (1.0, f64::from(most)), allowed)
-        });
-        let allowed = "from 0 to 1 m, the standard uncertainty of the calibration";
-        let calibration = within(
-            "uncertainty",
-            self.calibration_uncertainty,
-            (0.0, 1.0),
-            allowed,
-        );
-        let columns = (0.0, self.camera.resolution[0] as f64);
-        let allowed = "at most the number of columns of the image";
-        let of_image = within("columns", f64::from(average.columns), columns, allowed);
-        let all = checks.chain([calibration]).chain(counts).chain([of_image]);
-        let found: Vec<_> = all.filter_map(Result::err).collect();
+        let found: Vec<_> = checks.chain(others).filter_map(Result::err).collect();
         if !found.is_empty() {
             return found;
         }
@@ -290,8 +287,6 @@ impl SetupDescription {
     }
 }
 
-const TO_AVERAGE: &str = "a number from 1 to 10000 to average over";
-
 /// Checks that a quantity lies in a closed range.
 pub(crate) fn within(
     parameter: &'static str,
@@ -299,12 +294,6 @@ pub(crate) fn within(
     (least, greatest): (f64, f64),
     allowed: &'static str,
 ) -> Result<(), TriangulationError> {
-    if (least..=greatest).contains(&value) {
-        return Ok(());
-    }
-    Err(TriangulationError::OutOfRange {
-        parameter,
-        value,
-        allowed,
-    })
+    let holds = (least..=greatest).contains(&value);
+    Ok(check::that(holds, parameter, value, "", allowed)?)
 }

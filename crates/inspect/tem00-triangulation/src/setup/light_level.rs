@@ -1,34 +1,26 @@
 use tem00_config::DURATION;
+use tem00_numerics::check;
 use tem00_statistics::rectangular_pixel_contrast;
 
 use super::{ImagedLine, Setup};
-use crate::TriangulationError;
+use crate::{TriangulationError, named::named};
 
-/// Verdict on the amount of light that the sensor gets.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum LightLevel {
-    /// The line hardly stands out of the dark noise, or is below the least peak of the detector.
-    Dark,
-    /// All is well.
-    Good,
-    /// The mean of the brightest pixels fits, single bright grains of speckle do not.
-    SaturatedGrains,
-    /// The mean of the brightest pixels exceeds what the sensor can hold or tell.
-    Saturated,
+named! {
+    /// Verdict on the amount of light that the sensor gets.
+    #[non_exhaustive]
+    LightLevel {
+        /// The line hardly stands out of the dark noise, or is below the least peak of the detector.
+        Dark = "too dark",
+        /// All is well.
+        Good = "good",
+        /// The mean of the brightest pixels fits, single bright grains of speckle do not.
+        SaturatedGrains = "bright grains saturate",
+        /// The mean of the brightest pixels exceeds what the sensor can hold or tell.
+        Saturated = "saturated",
+    }
 }
 
 impl LightLevel {
-    /// Returns its name in a table.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Dark => "too dark",
-            Self::Good => "good",
-            Self::SaturatedGrains => "bright grains saturate",
-            Self::Saturated => "saturated",
-        }
-    }
-
     /// Returns an explanation and a change that helps.
     pub const fn advice(self) -> &'static str {
         match self {
@@ -137,14 +129,13 @@ impl Setup {
         let sensor = &self.description().sensor;
         let grains = self.line().peak_electrons() * (1.0 + BRIGHT_GRAINS * self.contrast());
         let rate = (grains + self.sensor().dark_electrons()) / sensor.exposure_time;
-        let full = ((1_u64 << sensor.bit_depth) - 1) as f64;
-        if sensor.black_level >= CHOSEN_GRAIN_SATURATION * full {
-            return Err(TriangulationError::OutOfRange {
-                parameter: "black_level",
-                value: sensor.black_level,
-                allowed: "below 0.9 of the largest grey value, for an exposure that is \"auto\"",
-            });
-        }
+        let full = sensor.largest_value();
+        let (level, holds) = (
+            sensor.black_level,
+            sensor.black_level < CHOSEN_GRAIN_SATURATION * full,
+        );
+        let allowed = "below 0.9 of the largest grey value, for an exposure that is \"auto\"";
+        check::that(holds, "black_level", level, "", allowed)?;
         let digital = (CHOSEN_GRAIN_SATURATION * full - sensor.black_level) / sensor.gain;
         let longest = digital.min(CHOSEN_GRAIN_SATURATION * sensor.full_well) / rate;
         let step = libm::exp10(libm::floor(libm::log10(longest)) - 1.0);
@@ -167,8 +158,7 @@ impl Setup {
     /// Returns a number of electrons as a part of what the sensor can hold or tell.
     fn saturation_of(&self, electrons: f64) -> f64 {
         let sensor = &self.description().sensor;
-        let full = ((1_u64 << sensor.bit_depth) - 1) as f64;
-        let grey = (sensor.black_level + sensor.gain * electrons) / full;
+        let grey = (sensor.black_level + sensor.gain * electrons) / sensor.largest_value();
         grey.max(electrons / sensor.full_well)
     }
 }

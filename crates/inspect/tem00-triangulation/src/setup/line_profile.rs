@@ -1,6 +1,6 @@
 use core::f64::consts::PI;
 
-use tem00_numerics::{disc_overlap, quadrature::integrate, sinc};
+use tem00_numerics::{cast::to_usize, disc_overlap, quadrature::integrate, sinc};
 
 /// The period of the sum, in units of what is looked at: copies of the line stay that far away.
 const PERIOD: f64 = 4.0;
@@ -53,19 +53,14 @@ impl LineProfile {
         let period = PERIOD * reach.max(4.0 * (width + blur + speckle_size));
         // Beyond 5.5/W the Gaussian is 10⁻¹⁶.
         let end = speckle_size.recip().min(5.5 / width);
-        let at = |index: u32| {
-            let f = f64::from(index) / period;
+        let at = |index: usize| {
+            let f = index as f64 / period;
             let gaussian = (-(PI * width * f).powi(2) / 8.0).exp();
             let half = if index == 0 { 0.5 } else { 1.0 };
             let lens = transfer(speckle_size * f, blur * f);
             2.0 / period * half * gaussian * lens * sinc(PI * pixel * f)
         };
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a positive number of steps, at most 2^31"
-        )]
-        let steps = (end * period).ceil() as u32;
+        let steps = to_usize((end * period).ceil());
         Self {
             period,
             speckle_size,

@@ -1,7 +1,7 @@
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rand_distr::{Distribution, Poisson, StandardNormal};
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, cast::to_f32};
 
 use crate::{
     LineImage, SensorDescription, Setup, TriangulationError, UncertaintySource,
@@ -111,9 +111,8 @@ impl<'a> Frames<'a> {
         (0..count).map(pattern).collect()
     }
 
-    #[expect(clippy::cast_possible_truncation, reason = "images are f32")]
     fn speckled(&self) -> Result<Vec<Grid<f32>>, TriangulationError> {
-        let grey = |&electrons: &f32| self.grey(f64::from(electrons)) as f32;
+        let grey = |&electrons: &f32| to_f32(self.grey(f64::from(electrons)));
         let patterns = self.patterns()?;
         Ok(patterns.iter().map(|frame| frame.map(grey)).collect())
     }
@@ -149,14 +148,13 @@ impl<'a> Frames<'a> {
     }
 
     /// Returns a frame whose pixels hold what `electrons` makes of the mean electrons.
-    #[expect(clippy::cast_possible_truncation, reason = "images are f32")]
     fn frame(&self, mut electrons: impl FnMut(f64) -> f64) -> Grid<f32> {
         let [columns, rows] = self.image.data().size;
         let mut frame = Grid::filled(columns, rows, 0.0_f32);
         let pixels = frame.values_mut().chunks_mut(columns);
         for (row, &mean) in pixels.zip(&self.column.electrons) {
             for pixel in row {
-                *pixel = self.grey(electrons(mean)) as f32;
+                *pixel = to_f32(self.grey(electrons(mean)));
             }
         }
         frame

@@ -219,4 +219,4 @@ fn dorsch(setup: &Setup, contrast: f64) -> Option<f64> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -14,4 +14,4 @@ pub use self::setup::{parse_setup, parse_setup_with, read_setup, read_setup_with
 pub use self::uncertainty::read_uncertainty;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -164,27 +164,20 @@ impl LineImage {
     /// Returns the mean numbers of electrons, without speckle. `centre` gives the position of the line
     /// along the column at a position along the rows, both in pixels.
     pub fn mean(&self, centre: impl Fn(f64) -> f64 + Sync) -> Grid<f32> {
-        let LineImageData {
-            size: [columns, rows],
-            width,
-            blur,
-            speckle_size: [_, speckle_size],
-            sensitive_side: pixel,
-            column_electrons,
-            ..
-        } = self.data;
+        let data = &self.data;
+        let [columns, rows] = data.size;
         let line = LensedLine {
-            width,
-            blur,
-            speckle_size,
-            pixel,
+            width: data.width,
+            blur: data.blur,
+            speckle_size: data.speckle_size[1],
+            pixel: data.sensitive_side,
         };
         let profile = LineProfile::new(&line, rows as f64);
         let centres: Vec<f64> = (0..columns).map(|x| centre(x as f64 + 0.5)).collect();
         let mut image = Grid::filled(columns, rows, 0.0_f32);
         image.for_each_row_mut(|y, pixels| {
             for (pixel, centre) in pixels.iter_mut().zip(&centres) {
-                *pixel = to_f32(column_electrons * profile.at(y as f64 + 0.5 - centre));
+                *pixel = to_f32(data.column_electrons * profile.at(y as f64 + 0.5 - centre));
             }
         });
         image
@@ -360,49 +353,28 @@ fn pattern_side(needed: usize, dark: f64) -> usize {
     (least..).find(smooth).unwrap_or(least)
 }
 
-fn check(data: &LineImageData) -> Result<(), TriangulationError> {
-    let [columns, rows] = data.size;
-    let pixels = columns.saturating_mul(rows) as f64;
+fn check(d: &LineImageData) -> Result<(), TriangulationError> {
+    const SPECKLE: &str = "from 1/16 to 64 pixels";
+    let [columns, rows] = d.size;
+    let (pixels, most) = (columns.saturating_mul(rows) as f64, MAXIMUM_SAMPLES as f64);
+    let [along, across] = d.speckle_size;
+    let electrons = d.column_electrons;
+    let patterns = d.patterns.into();
     for (name, value, range, allowed) in [
-        (
-            "size",
-            pixels,
-            (1.0, MAXIMUM_SAMPLES as f64),
-            "from 1 to 2^25 pixels",
-        ),
-        ("width", data.width, (0.01, 1e5), "from 0.01 to 1e5 pixels"),
-        ("blur", data.blur, (0.0, 1e5), "from 0 to 1e5 pixels"),
-        (
-            "column_electrons",
-            data.column_electrons,
-            (0.0, 1e12),
-            "from 0 to 1e12",
-        ),
-        (
-            "speckle_size",
-            data.speckle_size[0],
-            SPECKLE_SIZES,
-            "from 1/16 to 64 pixels",
-        ),
-        (
-            "speckle_size",
-            data.speckle_size[1],
-            SPECKLE_SIZES,
-            "from 1/16 to 64 pixels",
-        ),
+        ("size", pixels, (1.0, most), "from 1 to 2^25 pixels"),
+        ("width", d.width, (0.01, 1e5), "from 0.01 to 1e5 pixels"),
+        ("blur", d.blur, (0.0, 1e5), "from 0 to 1e5 pixels"),
+        ("column_electrons", electrons, (0.0, 1e12), "from 0 to 1e12"),
+        ("speckle_size", along, SPECKLE_SIZES, SPECKLE),
+        ("speckle_size", across, SPECKLE_SIZES, SPECKLE),
         (
             "sensitive_side",
-            data.sensitive_side,
+            d.sensitive_side,
             (0.01, 1.0),
             "from 0.01 to 1 pixel",
         ),
-        (
-            "patterns",
-            data.patterns.into(),
-            (1.0, 64.0),
-            "from 1 to 64",
-        ),
-        ("polarisation", data.polarisation, (0.0, 1.0), "from 0 to 1"),
+        ("patterns", patterns, (1.0, 64.0), "from 1 to 64"),
+        ("polarisation", d.polarisation, (0.0, 1.0), "from 0 to 1"),
     ] {
         within(name, value, range, allowed)?;
     }

@@ -1,6 +1,6 @@
 /// Declares an enum whose variants have names.
 macro_rules! named {
-    ($(#[$attribute:meta])* $name:ident { $($(#[$doc:meta])* $variant:ident = $text:literal,)+ }) => {
+    ($(#[$attribute:meta])* $name:ident { $($(#[$doc:meta])* $variant:ident = $text:expr,)+ }) => {
         $(#[$attribute])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum $name {
@@ -11,7 +11,7 @@ macro_rules! named {
             /// All of them, in order.
             pub const ALL: [Self; [$($text),+].len()] = [$(Self::$variant),+];
 
-            /// Returns the name, as tables have it.
+            /// Returns the name, as tables and set-up files have it.
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $text,)+

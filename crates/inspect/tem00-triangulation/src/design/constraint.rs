@@ -1,133 +1,72 @@
-use core::fmt;
-
 use super::DesignFigures;
 use crate::{
     QuantityUnit,
+    named::named,
     setup::{
         MAX_GRAIN_SATURATION, MIN_SIGNAL,
         unit::{MICROMETRES, MILLIMETRES, MILLISECONDS, MILLIWATTS, PERCENT, PLAIN},
     },
 };
 
-/// A figure of merit of a set-up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum DesignFigure {
-    /// The combined standard uncertainty of a height on the reference plane, in metres.
-    Uncertainty,
-    /// The expanded uncertainty of a height on the reference plane, in metres.
-    ExpandedUncertainty,
-    /// The length of the range of heights that can be measured, in metres.
-    Range,
-    /// The depth of field of camera and laser line together, in metres of height.
-    DepthOfField,
-    /// The width of the field, in metres.
-    FieldWidth,
-    /// The power in the line, in watts.
-    Power,
-    /// The exposure time, in seconds.
-    Exposure,
-    /// The mean of the brightest pixel as a part of what the sensor can hold.
-    Saturation,
-    /// The bright grains of speckle as a part of what the sensor can hold.
-    GrainSaturation,
-    /// The mean of the brightest pixel by its noise in the dark.
-    Signal,
-}
-
-/// Declaration of a figure.
-struct Row {
-    name: &'static str,
-    value: fn(&DesignFigures) -> f64,
-    /// True if more of it is better.
-    is_gain: bool,
-    unit: &'static QuantityUnit,
-}
-
-const fn row(
-    name: &'static str,
-    value: fn(&DesignFigures) -> f64,
-    is_gain: bool,
-    unit: &'static QuantityUnit,
-) -> Row {
-    Row {
-        name,
-        value,
-        is_gain,
-        unit,
-    }
-}
-
-/// The figures, in their order.
-const ROWS: [Row; DesignFigure::ALL.len()] = [
-    row("uncertainty", |f| f.uncertainty, false, &MICROMETRES),
-    row(
-        "expanded_uncertainty",
-        |f| f.expanded_uncertainty,
-        false,
-        &MICROMETRES,
-    ),
-    row("range", |f| f.range, true, &MILLIMETRES),
-    row("depth_of_field", |f| f.depth_of_field, true, &MILLIMETRES),
-    row("field_width", |f| f.field_width, true, &MILLIMETRES),
-    row("power", |f| f.power, false, &MILLIWATTS),
-    row("exposure", |f| f.exposure, false, &MILLISECONDS),
-    row("saturation", |f| f.saturation, false, &PERCENT),
-    row("grain_saturation", |f| f.grain_saturation, false, &PERCENT),
-    row("signal", |f| f.signal, true, &PLAIN),
-];
-
-impl DesignFigure {
-    /// All of them.
-    pub const ALL: [Self; 10] = [
-        Self::Uncertainty,
-        Self::ExpandedUncertainty,
-        Self::Range,
-        Self::DepthOfField,
-        Self::FieldWidth,
-        Self::Power,
-        Self::Exposure,
-        Self::Saturation,
-        Self::GrainSaturation,
-        Self::Signal,
-    ];
-
-    /// The names of all of them.
-    pub(crate) const NAMES: [&str; Self::ALL.len()] = {
-        let mut names = [""; Self::ALL.len()];
-        let mut index = 0;
-        while index < names.len() {
-            names[index] = ROWS[index].name;
-            index += 1;
+/// Declares the figures, whose names are the fields of [`DesignFigures`] with their values.
+macro_rules! figures {
+    ($($(#[$doc:meta])* $figure:ident = $field:ident, is_gain: $gain:literal, $unit:expr;)+) => {
+        named! {
+            /// A figure of merit of a set-up.
+            #[derive(Hash)]
+            #[non_exhaustive]
+            DesignFigure { $($(#[$doc])* $figure = stringify!($field),)+ }
         }
-        names
+
+        impl DesignFigure {
+            /// The names of all of them.
+            pub(crate) const NAMES: [&str; Self::ALL.len()] = [$(stringify!($field)),+];
+
+            /// Returns the value of a set-up, in SI units.
+            pub const fn value_in(self, figures: &DesignFigures) -> f64 {
+                match self {
+                    $(Self::$figure => figures.$field,)+
+                }
+            }
+
+            /// Returns true if more of it is better: such a figure is bounded from below, others from above.
+            pub const fn is_gain(self) -> bool {
+                match self {
+                    $(Self::$figure => $gain,)+
+                }
+            }
+
+            /// Returns the unit that it is usually read and written in.
+            pub const fn unit(self) -> &'static QuantityUnit {
+                match self {
+                    $(Self::$figure => &$unit,)+
+                }
+            }
+        }
     };
-
-    /// Returns the name, as set-up files have it.
-    pub const fn name(self) -> &'static str {
-        ROWS[self as usize].name
-    }
-
-    /// Returns the value of a set-up, in SI units.
-    pub fn value_in(self, figures: &DesignFigures) -> f64 {
-        (ROWS[self as usize].value)(figures)
-    }
-
-    /// Returns true if more of it is better: such a figure is bounded from below, others from above.
-    pub const fn is_gain(self) -> bool {
-        ROWS[self as usize].is_gain
-    }
-
-    /// Returns the unit that it is usually read and written in.
-    pub const fn unit(self) -> &'static QuantityUnit {
-        ROWS[self as usize].unit
-    }
 }
 
-impl fmt::Display for DesignFigure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
+figures! {
+    /// The combined standard uncertainty of a height on the reference plane, in metres.
+    Uncertainty = uncertainty, is_gain: false, MICROMETRES;
+    /// The expanded uncertainty of a height on the reference plane, in metres.
+    ExpandedUncertainty = expanded_uncertainty, is_gain: false, MICROMETRES;
+    /// The length of the range of heights that can be measured, in metres.
+    Range = range, is_gain: true, MILLIMETRES;
+    /// The depth of field of camera and laser line together, in metres of height.
+    DepthOfField = depth_of_field, is_gain: true, MILLIMETRES;
+    /// The width of the field, in metres.
+    FieldWidth = field_width, is_gain: true, MILLIMETRES;
+    /// The power in the line, in watts.
+    Power = power, is_gain: false, MILLIWATTS;
+    /// The exposure time, in seconds.
+    Exposure = exposure, is_gain: false, MILLISECONDS;
+    /// The mean of the brightest pixel as a part of what the sensor can hold.
+    Saturation = saturation, is_gain: false, PERCENT;
+    /// The bright grains of speckle as a part of what the sensor can hold.
+    GrainSaturation = grain_saturation, is_gain: false, PERCENT;
+    /// The mean of the brightest pixel by its noise in the dark.
+    Signal = signal, is_gain: true, PLAIN;
 }
 
 /// A bound that a set-up must keep.

@@ -3,16 +3,15 @@
 //! Lines are Gaussians with the standard deviation σ = w/2, in pixels. Their pixels are `f32`: a part of
 //! 6e−8 of the peak is rounding everywhere.
 
-#![expect(clippy::cast_possible_truncation, reason = "pixels are f32")]
-
 mod bias;
 mod lines_of_an_image;
 mod noise;
 mod properties;
 mod sensitivities;
-mod speckle;
 
 use core::f64::consts::{FRAC_1_SQRT_2, TAU};
+
+use tem00_numerics::cast::to_f32;
 
 use super::*;
 
@@ -20,10 +19,11 @@ use super::*;
 const PEAK: f64 = 1000.0;
 
 fn detector(method: LineMethod, window: usize) -> LineDetector {
+    let usual = DetectorSettings::default();
     LineDetector::new(DetectorSettings {
         method,
         window,
-        ..DetectorSettings::default()
+        ..usual
     })
     .unwrap()
 }
@@ -54,15 +54,14 @@ fn cumulative(u: f64, sigma: f64) -> f64 {
 fn integrated(length: usize, centre: f64, sigma: f64) -> Vec<f32> {
     let area = PEAK * TAU.sqrt() * sigma;
     let edge = |i: usize| cumulative(i as f64 - centre, sigma);
-    (0..length)
-        .map(|i| (area * (edge(i + 1) - edge(i))) as f32)
-        .collect()
+    let pixel = |i: usize| to_f32(area * (edge(i + 1) - edge(i)));
+    (0..length).map(pixel).collect()
 }
 
 /// A line sampled in the middle of the pixels of a column.
 fn sampled(length: usize, centre: f64, sigma: f64) -> Vec<f32> {
     let value = |i: usize| (-0.5 * ((i as f64 + 0.5 - centre) / sigma).powi(2)).exp();
-    (0..length).map(|i| (PEAK * value(i)) as f32).collect()
+    (0..length).map(|i| to_f32(PEAK * value(i))).collect()
 }
 
 /// The one line of a column.

@@ -116,6 +116,7 @@ mod tests {
     use std::path::Path;
 
     use tem00_config::{ConfigError, Format, parse_document};
+    use tem00_testkit::rows;
 
     use super::*;
 
@@ -160,36 +161,24 @@ mod tests {
 
     #[test]
     fn what_cannot_be_is_refused_where_it_stands() {
-        let cases = [
-            ("method = \"parabla\"", "did you mean", 10),
-            ("window = 30", "`window` must be odd", 10),
-            ("window = 1", "from 3 to 1001", 10),
-            ("threshold = 0.5", "belongs to the method", 13),
-            (
-                "method = \"thresholded_centre_of_gravity\"\nthreshold = 1",
-                "below 1",
-                13,
-            ),
-            ("method = \"blais_rioux\"\norder = 6", "2, 4 or 8", 9),
-            (
-                "method = \"blais_rioux\"\norder = 8\nwindow = 9",
-                "from 11 to 1001",
-                10,
-            ),
-            ("min_peak = -1", "zero or more", 12),
-            ("max_lines = 0", "from 1 to 100", 13),
-            ("windows = 3", "did you mean `window`?", 1),
-        ];
-        for (text, expected, column) in cases {
-            let error = read(text).unwrap_err();
+        let table = r#"
+            method = "parabla" => did you mean => 10
+            window = 30 => `window` must be odd => 10
+            window = 1 => from 3 to 1001 => 10
+            threshold = 0.5 => belongs to the method => 13
+            method = "thresholded_centre_of_gravity"\nthreshold = 1 => below 1 => 13
+            method = "blais_rioux"\norder = 6 => 2, 4 or 8 => 9
+            method = "blais_rioux"\norder = 8\nwindow = 9 => from 11 to 1001 => 10
+            min_peak = -1 => zero or more => 12
+            max_lines = 0 => from 1 to 100 => 13
+            windows = 3 => did you mean `window`? => 1
+        "#;
+        for [text, expected, column] in rows(table) {
+            let error = read(&text).unwrap_err();
             let message = format!("{error} {}", error.help().unwrap_or_default());
-            assert!(message.contains(expected), "{text}: {message}");
-            let line = text.lines().count() + 1;
-            assert_eq!(
-                error.line_column(),
-                Some((line, column)),
-                "{text}: {message}"
-            );
+            assert!(message.contains(&expected), "{text}: {message}");
+            let place = (text.lines().count() + 1, column.parse().unwrap());
+            assert_eq!(error.line_column(), Some(place), "{text}: {message}");
         }
     }
 }

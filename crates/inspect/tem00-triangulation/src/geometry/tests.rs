@@ -1,5 +1,6 @@
 use proptest::prelude::*;
 use tem00_camera::{CameraDescription, RadialDistortion, SensorTilt};
+use tem00_testkit::refuses;
 
 use super::*;
 use crate::{LinePoint, Validity};
@@ -11,12 +12,9 @@ const FOCAL_LENGTH: f64 = 25e-3;
 /// A camera at `angle` to the vertical laser plane, sharp over the plane if `scheimpflug`.
 fn description(angle: f64, scheimpflug: bool) -> CameraDescription {
     let magnification = FOCAL_LENGTH / (DISTANCE - FOCAL_LENGTH);
-    let tilt = if scheimpflug {
-        // The plane in focus turns by τ′ with tan τ′ = tan τ / m; it must turn to the laser plane.
-        -(magnification / angle.tan()).atan()
-    } else {
-        0.0
-    };
+    // The plane in focus turns by τ′ with tan τ′ = tan τ / m; it must turn to the laser plane.
+    let tilt = -(magnification / angle.tan()).atan();
+    let tilt = if scheimpflug { tilt } else { 0.0 };
     CameraDescription {
         position: DISTANCE * DVec3::new(0.0, -angle.sin(), angle.cos()),
         look_at: DVec3::ZERO,
@@ -139,13 +137,10 @@ fn a_plane_behind_the_camera_or_through_it_has_no_points() {
 
 #[test]
 fn planes_need_a_normal() {
-    for (point, normal) in [
-        (DVec3::ZERO, DVec3::ZERO),
-        (DVec3::ZERO, DVec3::NAN),
-        (DVec3::INFINITY, DVec3::X),
-    ] {
-        assert!(LaserPlane::new(point, normal).is_err(), "{point}, {normal}");
-    }
+    refuses!(point = DVec3::ZERO, normal = DVec3::X => LaserPlane::new(point, normal);
+        normal: [DVec3::ZERO, DVec3::NAN],
+        point: [DVec3::INFINITY],
+    );
 }
 
 #[test]
@@ -176,12 +171,8 @@ fn profiles_keep_what_the_detector_found() {
         vec![],
         vec![found(100.0, 0), found(300.5, 1)],
     ];
-    let profile = triangulator.profile(
-        &columns,
-        |column, point| {
-            if column == 0 { 0.1 } else { point.position }
-        },
-    );
+    let uncertainty = |column, point: &LinePoint| if column == 0 { 0.1 } else { point.position };
+    let profile = triangulator.profile(&columns, uncertainty);
     let positions: Vec<_> = profile.iter().map(|p| (p.column, p.line)).collect();
     assert_eq!(positions, [(0, 0), (2, 0), (2, 1)]);
     for point in &profile {

@@ -1,20 +1,20 @@
 use tem00_uncertainty::PropagationOptions;
 
 use super::*;
-use crate::{SetupEnvironment, SimulationOptions, setup::tests::description};
+use crate::{SetupEnvironment, SimulationOptions, setup::tests::setup_of};
 
 const HEIGHT: f64 = 4e-3;
 
 /// A warm set-up whose laser plane stands beside the axis, and leans.
 fn setup() -> Setup {
-    let mut description = description();
-    (description.laser.offset, description.laser.tilt) = (1e-3, -0.05);
-    description.environment = SetupEnvironment {
-        temperature_change: 5.0,
-        base_expansion: 24e-6,
-        mount_expansion: 12e-6,
-    };
-    Setup::new(description).unwrap()
+    setup_of(|d| {
+        (d.laser.offset, d.laser.tilt) = (1e-3, -0.05);
+        d.environment = SetupEnvironment {
+            temperature_change: 5.0,
+            base_expansion: 24e-6,
+            mount_expansion: 12e-6,
+        };
+    })
 }
 
 fn input(setup: &Setup, quantity: SetupQuantity, relative: f64) -> (SetupQuantity, Input) {
@@ -96,15 +96,6 @@ fn sensitivities_are_those_of_the_line_of_sight() {
 }
 
 #[test]
-fn a_principal_row_shifts_what_the_position_of_the_line_does() {
-    let found = measurement(&[(SetupQuantity::PrincipalRow, 1e-3)])
-        .first_order()
-        .unwrap();
-    let [row, speckle] = [0, 1].map(|index: usize| found.contributions()[index].sensitivity);
-    assert!((row / speckle + 1.0).abs() < 1e-8, "{row}, {speckle}");
-}
-
-#[test]
 fn an_exact_set_up_has_the_uncertainty_of_its_budget() {
     let measurement = measurement(&[]);
     let budget = Budget::at_height(&measurement.setup, HEIGHT).unwrap();
@@ -133,10 +124,9 @@ fn light_changes_noise_and_no_height() {
         .unwrap();
     let mut values = measurement.inputs().estimates();
     values[shot] = 1e-3;
-    let shift = |measurement: &Measurement, values: &[f64]| measurement.height_of(values) - HEIGHT;
-    let before = shift(&measurement, &values);
+    let before = measurement.height_of(&values) - HEIGHT;
     values[0] *= 1.02;
-    let after = shift(&measurement, &values);
+    let after = measurement.height_of(&values) - HEIGHT;
     // Shot noise falls with the root of the power: 0.99 for 1.02, to first order; dark electrons and the
     // difference over ± 1 % leave 10⁻⁴.
     assert!((after / before - 0.99).abs() < 2e-4, "{before}, {after}");
@@ -204,11 +194,11 @@ fn an_input_whose_tail_is_not_possible_is_named() {
                 .virtual_experiment(options, |_| (), &false.into())
                 .map(drop),
         ];
+        let start = format!(
+            "the distribution of `{quantity}` must reach possible values only: it is normal"
+        );
         for refused in refused {
             let told = refused.unwrap_err().to_string();
-            let start = format!(
-                "the distribution of `{quantity}` must reach possible values only: it is normal"
-            );
             assert!(told.starts_with(&start), "{told}");
         }
     }
@@ -217,31 +207,41 @@ fn an_input_whose_tail_is_not_possible_is_named() {
 #[test]
 fn impossible_measurements_are_refused() {
     let setup = setup();
-    let refused =
-        |uncertainty: &SetupUncertainty| Measurement::new(&setup, uncertainty).unwrap_err();
-    let high = SetupUncertainty {
-        height: Some(1.0),
-        ..SetupUncertainty::default()
+    let usual = SetupUncertainty::default();
+    let angle = |relative| vec![input(&setup, SetupQuantity::Angle, relative)];
+    let with_itself = Correlation {
+        between: [0, 0],
+        coefficient: 1.0,
     };
-    assert_eq!(refused(&high).parameter(), Some("height"), "too high");
-    let wide = SetupUncertainty {
-        quantities: vec![input(&setup, SetupQuantity::Angle, 3.0)],
-        ..SetupUncertainty::default()
-    };
-    assert_eq!(refused(&wide).parameter(), Some("angle"), "more than 89°");
-    let correlated = SetupUncertainty {
-        quantities: vec![input(&setup, SetupQuantity::Angle, 0.01)],
-        correlations: vec![Correlation {
-            between: [0, 0],
-            coefficient: 1.0,
-        }],
-        ..SetupUncertainty::default()
-    };
-    assert_eq!(
-        refused(&correlated).parameter(),
-        Some("between"),
-        "with itself"
-    );
+    let correlations = vec![with_itself];
+    for (uncertainty, name) in [
+        (
+            SetupUncertainty {
+                height: Some(1.0),
+                ..usual.clone()
+            },
+            "height",
+        ),
+        // More than 89°.
+        (
+            SetupUncertainty {
+                quantities: angle(3.0),
+                ..usual.clone()
+            },
+            "angle",
+        ),
+        (
+            SetupUncertainty {
+                quantities: angle(0.01),
+                correlations,
+                ..usual
+            },
+            "between",
+        ),
+    ] {
+        let refused = Measurement::new(&setup, &uncertainty).unwrap_err();
+        assert_eq!(refused.parameter(), Some(name), "{refused}");
+    }
 }
 
 #[test]

@@ -1,4 +1,4 @@
-use approx::assert_relative_eq;
+use tem00_testkit::{assert_relative, refuses};
 
 use super::*;
 use crate::SensorDescription;
@@ -13,14 +13,19 @@ pub(crate) fn description() -> SetupDescription {
     description
 }
 
+/// Returns the set-up of the description with changes.
+pub(crate) fn setup_of(change: impl Fn(&mut SetupDescription)) -> Setup {
+    let mut description = description();
+    change(&mut description);
+    Setup::new(description).unwrap()
+}
+
 fn setup() -> Setup {
-    Setup::new(description()).unwrap()
+    setup_of(|_| ())
 }
 
 fn scheimpflug() -> Setup {
-    let mut description = description();
-    description.camera.scheimpflug = true;
-    Setup::new(description).unwrap()
+    setup_of(|d| d.camera.scheimpflug = true)
 }
 
 #[test]
@@ -46,13 +51,9 @@ fn the_height_per_pixel_is_that_of_the_pinhole() {
         let depth: f64 = distance - height * cos;
         let slope = principal * sin * distance / (depth * depth) / 3.45e-6;
         // Central differences of 1e−5 L err by its square.
-        assert_relative_eq!(line.height_per_pixel, 1.0 / slope, max_relative = 1e-9);
+        assert_relative(line.height_per_pixel, 1.0 / slope, 1e-9);
     }
-    assert_relative_eq!(
-        setup().magnification(),
-        principal / distance,
-        max_relative = 1e-12
-    );
+    assert_relative(setup().magnification(), principal / distance, 1e-12);
 }
 
 #[test]
@@ -79,14 +80,14 @@ fn light_through_the_pupil_frees_the_electrons_of_a_column() {
     let photon = 6.626_070_15e-34 * 299_792_458.0 / d.laser.light.wavelength;
     let electrons = power * d.sensor.exposure_time / photon * d.sensor.quantum_efficiency;
     // The width of the line in perspective differs by (W/2L)² from the first-order one.
-    assert_relative_eq!(line.column_electrons, electrons, max_relative = 1e-6);
+    assert_relative(line.column_electrons, electrons, 1e-6);
     let pixels: f64 = (-200..200)
         .map(|y| line.pixel_electrons(f64::from(y), 0.3))
         .sum();
     // Beyond are the wings of the lens, 4h/(π³ Y), to 3σ²/Y² of them.
     let wings = 4.0 * line.speckle_size[1] / (core::f64::consts::PI.powi(3) * 200.0);
     let inside = (1.0 - wings) * line.column_electrons;
-    assert_relative_eq!(pixels, inside, max_relative = 1e-6);
+    assert_relative(pixels, inside, 1e-6);
 }
 
 #[test]
@@ -95,13 +96,13 @@ fn the_line_is_as_wide_as_its_projection_the_lens_and_defocus_make_it() {
     let magnification = setup().magnification();
     let flat = magnification * 0.2e-3 * 0.75_f64.sqrt() / 3.45e-6;
     // To second order in W/L = 7e−4.
-    assert_relative_eq!(line.projected_thickness, flat, max_relative = 1e-6);
+    assert_relative(line.projected_thickness, flat, 1e-6);
     let speckle = 650e-9 * 8.0 * (1.0 + magnification) / 3.45e-6;
-    assert_relative_eq!(line.speckle_size[0], speckle, max_relative = 1e-12);
-    assert_relative_eq!(line.speckle_size[1], speckle, max_relative = 1e-12);
+    assert_relative(line.speckle_size[0], speckle, 1e-12);
+    assert_relative(line.speckle_size[1], speckle, 1e-12);
     // 1 − v²/4 of [2 J₁(v)/v]² with v = π r/h equals 1 − r²/2σ² for σ = √2 h/π.
     let airy = 4.0 * core::f64::consts::SQRT_2 * speckle / core::f64::consts::PI;
-    assert_relative_eq!(line.diffraction_width, airy, max_relative = 1e-12);
+    assert_relative(line.diffraction_width, airy, 1e-12);
     assert!(
         line.blur < 1e-9,
         "in focus at the reference plane: {}",
@@ -116,16 +117,9 @@ fn at_the_ends_of_the_depth_of_field_the_line_is_wider_by_a_root_of_two() {
     let range = setup.depth_of_field();
     for height in [range.low, range.high] {
         let blur = setup.line_at(height).unwrap().blur * 3.45e-6;
-        assert_relative_eq!(blur, in_focus, max_relative = 1e-9);
+        assert_relative(blur, in_focus, 1e-9);
     }
-    let smaller = Setup::new(SetupDescription {
-        camera: SetupCamera {
-            f_number: 16.0,
-            ..description().camera
-        },
-        ..description()
-    });
-    let smaller = smaller.unwrap().depth_of_field();
+    let smaller = setup_of(|d| d.camera.f_number = 16.0).depth_of_field();
     assert!(
         smaller.length() > 2.0 * range.length(),
         "{smaller:?}, {range:?}"
@@ -139,19 +133,16 @@ fn a_line_that_is_all_in_focus_is_measured_where_it_has_spread_by_a_root_of_two(
     let HeightRange { low, high } = setup.depth_of_field();
     let waist = 0.5 * d.laser.line_thickness;
     let rayleigh_range = core::f64::consts::PI * waist * waist / 650e-9;
-    assert_relative_eq!(high, rayleigh_range, max_relative = 1e-12);
-    assert_relative_eq!(low, -high);
+    assert_relative(high, rayleigh_range, 1e-12);
+    assert_relative(low, -high, 1e-15);
     let row = |beside: f64| {
-        setup
-            .camera()
-            .project(DVec3::new(0.0, beside, high))
-            .unwrap()
-            .y
+        let point = DVec3::new(0.0, beside, high);
+        setup.camera().project(point).unwrap().y
     };
     let spread = core::f64::consts::SQRT_2 * waist;
     let width = row(-spread) - row(spread);
     let line = setup.line_at(high).unwrap();
-    assert_relative_eq!(line.projected_thickness, width.abs(), max_relative = 1e-9);
+    assert_relative(line.projected_thickness, width.abs(), 1e-9);
     // The light is the same.
     let electrons = line.column_electrons / setup.line().column_electrons;
     assert!((0.9..1.1).contains(&electrons), "{electrons}");
@@ -159,9 +150,7 @@ fn a_line_that_is_all_in_focus_is_measured_where_it_has_spread_by_a_root_of_two(
 
 #[test]
 fn a_line_on_a_leaning_plane_is_blurred_by_its_depth() {
-    let mut leaning = description();
-    (leaning.laser.offset, leaning.laser.tilt) = (2e-3, 0.1);
-    let setup = Setup::new(leaning).unwrap();
+    let setup = setup_of(|d| (d.laser.offset, d.laser.tilt) = (2e-3, 0.1));
     let camera = setup.camera();
     let disc = |height: f64| {
         let point = DVec3::new(0.0, 2e-3 + height * libm::tan(0.1), height);
@@ -171,46 +160,44 @@ fn a_line_on_a_leaning_plane_is_blurred_by_its_depth() {
     };
     for height in [-4e-3, 0.0, 5e-3] {
         let blur = setup.line_at(height).unwrap().blur * 3.45e-6;
-        assert_relative_eq!(blur, disc(height), max_relative = 1e-9);
+        assert_relative(blur, disc(height), 1e-9);
     }
     let width = setup.line().width * 3.45e-6;
     let range = setup.depth_of_field();
     for height in [range.low, range.high] {
-        assert_relative_eq!(disc(height), width, max_relative = 1e-9);
+        assert_relative(disc(height), width, 1e-9);
     }
 }
 
 /// The set-up with a laser that leans, by degrees, and stands beside the axis, at an angle of the camera.
 fn leaning(tilt: f64, offset: f64, angle: f64, scheimpflug: bool) -> Setup {
-    let mut description = description();
-    (description.laser.tilt, description.laser.offset) = (tilt.to_radians(), offset);
-    description.camera.angle = angle.to_radians();
-    description.camera.scheimpflug = scheimpflug;
-    Setup::new(description).unwrap()
+    setup_of(|d| {
+        (d.laser.tilt, d.laser.offset) = (tilt.to_radians(), offset);
+        (d.camera.angle, d.camera.scheimpflug) = (angle.to_radians(), scheimpflug);
+    })
 }
 
-/// The tilt of the laser counts from the upright, not from the optical axis: by the law of sines a height z on a plane
-/// that leans by τ is seen as z sin(θ + τ)/cos τ of a plane across the axis would be.
 #[test]
 fn a_leaning_laser_is_seen_under_the_sum_of_both_angles() {
-    for (tilt, angle) in [
+    let pairs = [
         (20.0, 30.0_f64),
         (-20.0, 30.0),
         (-40.0, 30.0),
         (40.0, 60.0),
         (44.0, 80.0),
-    ] {
+    ];
+    for (tilt, angle) in pairs {
         let found = leaning(tilt, 0.0, angle, false).line().height_per_pixel;
         let magnification = setup().magnification();
         let [theta, tau] = [angle.to_radians(), tilt.to_radians()];
         let expected = 3.45e-6 / magnification * tau.cos() / (theta + tau).sin();
         // Central differences of 1e−5 L err by its square.
-        assert_relative_eq!(found, expected, max_relative = 1e-8);
+        assert_relative(found, expected, 1e-8);
     }
     // As the data sheet of 75.9 µm per pixel at 30° under a laser that leans by 20°.
     let ratio =
         leaning(20.0, 0.0, 30.0, false).line().height_per_pixel / setup().line().height_per_pixel;
-    assert_relative_eq!(75.9 * ratio, 46.55, max_relative = 1e-3);
+    assert_relative(75.9 * ratio, 46.55, 1e-3);
 }
 
 #[test]
@@ -231,7 +218,7 @@ fn a_sensor_after_scheimpflug_has_a_leaning_laser_in_focus_if_it_stands_on_the_a
         let setup = Setup::new(description).unwrap();
         let HeightRange { high, .. } = setup.lens_range();
         let blur = setup.line_at(high).unwrap().blur;
-        assert_relative_eq!(blur, setup.line().width, max_relative = 1e-9);
+        assert_relative(blur, setup.line().width, 1e-9);
         assert!(
             setup.line_at(0.9 * high).unwrap().blur < blur,
             "{tilt}°, {offset} m"
@@ -244,11 +231,12 @@ fn ranges_of_leaning_lasers_are_not_empty() {
     for (tilt, angle) in [(-40.0, 30.0), (40.0, 60.0), (-20.0, 10.0), (44.0, 85.0)] {
         for scheimpflug in [false, true] {
             let setup = leaning(tilt, 0.0, angle, scheimpflug);
-            for range in [
+            let ranges = [
                 setup.seen_range(),
                 setup.lens_range(),
                 setup.measuring_range(),
-            ] {
+            ];
+            for range in ranges {
                 let holds = range.low < 0.0 && range.high > 0.0;
                 assert!(holds, "{tilt}°, {angle}°: {range:?}");
             }
@@ -260,17 +248,12 @@ fn ranges_of_leaning_lasers_are_not_empty() {
 fn the_measuring_range_is_seen_with_half_a_window_about_it() {
     for setup in [setup(), scheimpflug()] {
         let HeightRange { low, high } = setup.seen_range();
-        let top = setup.line_at(high).unwrap().position;
-        let bottom = setup.line_at(low).unwrap().position;
-        assert!(
-            (top - 15.5).abs() < 1e-9 && (bottom - 464.5).abs() < 1e-9,
-            "{top}, {bottom}"
-        );
+        let [top, bottom] = [high, low].map(|height| setup.line_at(height).unwrap().position);
+        assert_relative(top, 15.5, 1e-10);
+        assert_relative(bottom, 464.5, 1e-10);
         let range = setup.measuring_range();
-        assert!(
-            range.low >= low && range.high <= high && range.length() > 0.0,
-            "{range:?}"
-        );
+        let is_seen = range.low >= low && range.high <= high;
+        assert!(is_seen && range.length() > 0.0, "{range:?}");
     }
 }
 
@@ -283,15 +266,12 @@ fn a_chosen_exposure_leaves_room_for_bright_grains_and_not_much_more() {
         (11.0, 1.0, 8),
         (5.6, 1e-6, 12),
     ] {
-        let mut description = description();
-        description.camera.f_number = f_number;
-        description.laser.power = power;
-        description.sensor = SensorDescription {
-            exposure_time: f64::NAN,
-            ..SensorDescription::typical(bits)
-        };
-        description.auto_exposure = true;
-        let setup = Setup::new(description).unwrap();
+        let setup = setup_of(|d| {
+            (d.camera.f_number, d.laser.power) = (f_number, power);
+            d.sensor = SensorDescription::typical(bits);
+            d.sensor.exposure_time = f64::NAN;
+            d.auto_exposure = true;
+        });
         // Grains three standard deviations above the mean, as drawn by nobody: in electrons, and in DN.
         let d = setup.description().sensor;
         let dark = d.dark_current * d.exposure_time;
@@ -368,22 +348,13 @@ fn each_quantity_is_the_field_of_its_key_in_values_and_in_text() {
     let text = d.to_toml();
     for ((&quantity, (path, value)), number) in SetupQuantity::ALL.iter().zip(fields).zip(1_u32..) {
         assert_eq!(quantity.to_string(), path, "the order of a file");
-        assert_eq!(
-            value.to_bits(),
-            (1e-7 * f64::from(number)).to_bits(),
-            "{path}"
-        );
-        assert_eq!(value.to_bits(), quantity.value_in(&d).to_bits(), "{path}");
-        let unit = quantity.unit();
-        let line = format!(
-            "{} = {}",
-            quantity.key(),
-            unit.dimension.text(value, unit.symbol)
-        );
-        assert!(
-            text.lines().any(|found| found.starts_with(&line)),
-            "{line} in\n{text}"
-        );
+        let expected = 1e-7 * f64::from(number);
+        let found = [value, quantity.value_in(&d)].map(f64::to_bits);
+        assert_eq!(found, [expected.to_bits(); 2], "{path}");
+        let (key, unit) = (quantity.key(), quantity.unit());
+        let line = format!("{key} = {}", unit.dimension.text(value, unit.symbol));
+        let is_written = text.lines().any(|found| found.starts_with(&line));
+        assert!(is_written, "{line} in\n{text}");
     }
 }
 
@@ -397,26 +368,17 @@ fn quantities_outside_their_ranges_are_refused_by_key() {
             assert_eq!(error.parameter(), Some(quantity.key()), "{error}");
         }
     }
-    type Change = fn(&mut SetupDescription);
-    let bad: [(&str, Change); 13] = [
-        ("power", |d| d.laser.power = 0.0),
-        ("line_thickness", |d| d.laser.line_thickness = 20e-3),
-        ("line_length", |d| d.laser.line_length = 0.1e-3),
-        ("f_number", |d| d.camera.f_number = 0.1),
-        ("f_number", |d| d.camera.f_number = 900.0),
-        ("distance", |d| d.camera.distance = 25e-3),
-        ("angle", |d| d.camera.angle = 0.0),
-        ("reflectance", |d| d.surface.reflectance = 1.1),
-        ("patterns", |d| d.surface.patterns = 0),
-        ("uncertainty", |d| d.calibration_uncertainty = f64::NAN),
-        ("columns", |d| d.average.columns = 0),
-        ("columns", |d| d.average.columns = 641),
-        ("frames", |d| d.average.frames = 0),
-    ];
-    for (name, change) in bad {
-        let mut description = description();
-        change(&mut description);
-        let error = Setup::new(description).unwrap_err();
-        assert_eq!(error.parameter(), Some(name), "{error}");
-    }
+    refuses!(d = description() => Setup::new(d);
+        d.laser.power: [0.0],
+        d.laser.line_thickness: [20e-3],
+        d.laser.line_length: [0.1e-3],
+        d.camera.f_number: [0.1, 900.0],
+        d.camera.distance: [25e-3],
+        d.camera.angle: [0.0],
+        d.surface.reflectance: [1.1],
+        d.surface.patterns: [0],
+        d.calibration_uncertainty as "uncertainty": [f64::NAN],
+        d.average.columns: [0, 641],
+        d.average.frames: [0],
+    );
 }

@@ -1,3 +1,5 @@
+use tem00_numerics::cast::to_usize;
+
 use super::*;
 
 const SIGMA: f64 = 2.5;
@@ -37,12 +39,8 @@ fn of_line(points: &[Vec<LinePoint>], line: usize) -> Vec<Option<f64>> {
 }
 
 fn count(points: &[Vec<LinePoint>]) -> usize {
-    points
-        .iter()
-        .flatten()
-        .map(|point| point.line + 1)
-        .max()
-        .unwrap_or(0)
+    let lines = points.iter().flatten().map(|point| point.line + 1);
+    lines.max().unwrap_or(0)
 }
 
 #[test]
@@ -85,14 +83,10 @@ fn lines_that_cross_go_on_as_they_came() {
     };
     for x in (0..200).filter(|x| !(60..140).contains(x)) {
         let at = x as f64 + 0.5;
-        let off =
-            |found: Option<f64>, position: Option<f64>| (found.unwrap() - position.unwrap()).abs();
-        assert!(
-            off(falling[x], down(at)) < 0.05,
-            "column {x}: {:?}",
-            points[x]
-        );
-        assert!(off(rising[x], up(at)) < 0.05, "column {x}: {:?}", points[x]);
+        for (found, position) in [(falling[x], down(at)), (rising[x], up(at))] {
+            let off = (found.unwrap() - position.unwrap()).abs();
+            assert!(off < 0.05, "column {x}: {:?}", points[x]);
+        }
     }
     let close = points[75].iter().chain(&points[125]);
     let crowded = close.filter(|point| point.validity == Validity::Crowded);
@@ -102,12 +96,7 @@ fn lines_that_cross_go_on_as_they_came() {
 /// A number from −½ to ½ for each column, by multiplicative hashing (Knuth, *The Art of Computer
 /// Programming*, vol. 3, § 6.4).
 fn scatter(x: f64) -> f64 {
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a column of a small image"
-    )]
-    let column = x as u32;
+    let column = u32::try_from(to_usize(x)).unwrap();
     let hashed = column.wrapping_mul(2_654_435_761).rotate_right(15);
     f64::from(hashed.wrapping_mul(2_654_435_761) >> 16) / 65_536.0 - 0.5
 }
@@ -147,14 +136,13 @@ fn a_step_starts_another_line_and_the_upper_one_comes_first() {
         2,
         "20 pixels are more than a quarter of the window"
     );
-    assert!(
-        points[..80].iter().all(|points| points[0].line == 1),
-        "the lower part"
-    );
-    assert!(
-        points[80..].iter().all(|points| points[0].line == 0),
-        "the upper part"
-    );
+    for (x, points) in points.iter().enumerate() {
+        assert_eq!(
+            points[0].line,
+            usize::from(x < 80),
+            "the upper part, {x}, first"
+        );
+    }
     let low = |x: f64| Some(if x < 80.0 { 104.0 } else { 100.0 });
     let points = finder(LineMethod::CentreOfGravity, 1).detect(&image(150, 200, &[&low]));
     assert_eq!(count(&points), 1, "4 pixels are less");
@@ -166,12 +154,8 @@ fn short_lines_come_after_long_ones() {
     let line = |_: f64| Some(120.0);
     let points = finder(LineMethod::CentreOfGravity, 3).detect(&image(150, 200, &[&speck, &line]));
     assert_eq!(count(&points), 2, "the line and the speck");
-    assert!(
-        points
-            .iter()
-            .all(|points| points[points.len() - 1].line == 0),
-        "the line"
-    );
+    let is_line = |points: &Vec<LinePoint>| points[points.len() - 1].line == 0;
+    assert!(points.iter().all(is_line), "the line");
     assert_eq!(
         (points[42][0].line, points[42].len()),
         (1, 2),
@@ -209,25 +193,16 @@ fn lines_from_top_to_bottom_are_those_of_the_turned_image() {
     let turned = Grid::from_fn(140, 90, |x, y| image[(y, x)]);
     for method in methods() {
         let detector = finder(method, 2);
+        let with = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            pool.build().unwrap().install(|| detector.detect(&image))
+        };
+        let one = with(1);
+        assert_eq!(one, detector.detect_rows(&turned), "{method}");
         assert_eq!(
-            detector.detect(&image),
-            detector.detect_rows(&turned),
-            "{method}"
+            one,
+            with(7),
+            "{method}: the same bits for any number of threads"
         );
     }
-}
-
-#[test]
-fn any_number_of_threads_finds_the_same_bits() {
-    let (upper, lower) = (
-        |x: f64| Some(40.0 + 0.1 * x),
-        |x: f64| Some(100.0 - 0.1 * x),
-    );
-    let image = image(90, 140, &[&upper, &lower]);
-    let detector = finder(LineMethod::GaussianFit, 2);
-    let with = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        pool.build().unwrap().install(|| detector.detect(&image))
-    };
-    assert_eq!(with(1), with(7));
 }

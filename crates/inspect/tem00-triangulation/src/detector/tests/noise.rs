@@ -27,7 +27,7 @@ fn compare(detector: &LineDetector, variance: f64, mut column: impl FnMut(u64) -
 fn with_white_noise(line: &[f32], noise: f64, seed: u64) -> Vec<f32> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let law = Normal::new(500.0, noise).unwrap();
-    let mut draw = |&value: &f32| value + law.sample(&mut random) as f32;
+    let mut draw = |&value: &f32| value + to_f32(law.sample(&mut random));
     line.iter().map(&mut draw).collect()
 }
 
@@ -43,7 +43,7 @@ fn centre_of_gravity_is_as_good_as_photons_allow() {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let mut draw = |&mean: &f64| {
             let drawn: f64 = Poisson::new(mean).map_or(0.0, |law| law.sample(&mut random));
-            drawn as f32
+            to_f32(drawn)
         };
         let mut column = vec![0.0; LENGTH];
         column[150..251].copy_from_slice(&means.iter().map(&mut draw).collect::<Vec<f32>>());
@@ -100,9 +100,8 @@ fn noise_alone_is_no_line() {
     let law = Normal::new(100.0, 4.0).unwrap();
     for seed in 0..200 {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let column: Vec<f32> = (0..LENGTH)
-            .map(|_| law.sample(&mut random) as f32)
-            .collect();
+        let draw = |_| to_f32(law.sample(&mut random));
+        let column: Vec<f32> = (0..LENGTH).map(draw).collect();
         assert_eq!(detector.detect_column(&column), [], "seed {seed}");
     }
 }

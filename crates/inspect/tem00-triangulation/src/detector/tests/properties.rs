@@ -1,4 +1,5 @@
 use proptest::prelude::*;
+use tem00_testkit::refuses;
 
 use super::*;
 
@@ -13,12 +14,13 @@ fn any_value() -> impl Strategy<Value = f32> {
 }
 
 fn finder(method: LineMethod) -> LineDetector {
+    let (min_peak, max_lines, saturation) = (0.0, 3, 1e30);
     LineDetector::new(DetectorSettings {
         method,
         window: 17,
-        min_peak: 0.0,
-        max_lines: 3,
-        saturation: 1e30,
+        min_peak,
+        max_lines,
+        saturation,
     })
     .unwrap()
 }
@@ -67,10 +69,8 @@ fn is_found_mirrored(values: &[f32]) -> Result<(), TestCaseError> {
         let there = finder(method).detect_column(&mirrored);
         prop_assert_eq!(here.len(), there.len());
         for (a, b) in here.iter().zip(there.iter().rev()) {
-            prop_assert!(
-                (a.position + b.position - 160.0).abs() < 1e-7,
-                "{method}: {a:?} {b:?}"
-            );
+            let sum = a.position + b.position;
+            prop_assert!((sum - 160.0).abs() < 1e-7, "{method}: {a:?} {b:?}");
         }
     }
     Ok(())
@@ -151,28 +151,21 @@ fn validity_says_what_speaks_against_a_point() {
         saturation: 900.0,
         ..DetectorSettings::default()
     };
-    let validity = |column: &[f32]| {
-        let detector = LineDetector::new(settings).unwrap();
-        only(&detector, column).validity
-    };
-    let dim: Vec<f32> = integrated(LENGTH, MIDDLE, 3.0)
-        .iter()
-        .map(|v| 0.8 * v)
-        .collect();
-    assert_eq!(validity(&dim), Validity::Valid);
-    assert_eq!(
-        validity(&integrated(LENGTH, MIDDLE, 3.0)),
-        Validity::Saturated
-    );
-    assert_eq!(
-        validity(&dim[190..]),
-        Validity::Cut,
-        "10 pixels to the edge"
-    );
+    let detector = LineDetector::new(settings).unwrap();
+    let bright = integrated(LENGTH, MIDDLE, 3.0);
+    let dim: Vec<f32> = bright.iter().map(|v| 0.8 * v).collect();
     let mut dead = dim.clone();
     dead[190] = f32::NAN;
-    assert_eq!(validity(&dead), Validity::Missing);
-    let fitted = detector(LineMethod::GaussianFit, 31);
+    for (column, expected) in [
+        (&dim[..], Validity::Valid),
+        (&bright, Validity::Saturated),
+        // 10 pixels to the edge.
+        (&dim[190..], Validity::Cut),
+        (&dead, Validity::Missing),
+    ] {
+        assert_eq!(only(&detector, column).validity, expected);
+    }
+    let fitted = super::detector(LineMethod::GaussianFit, 31);
     let mut spike = vec![0.0; LENGTH];
     spike[200] = 500.0;
     let point = only(&fitted, &spike);
@@ -188,12 +181,8 @@ fn marked_pixels_saturate_the_points_whose_windows_hold_them() {
         let plain = detector.detect(&image);
         let none = Grid::filled(3, LENGTH, false);
         assert_eq!(detector.detect_marked(&image, &none), plain, "{method}");
-        let middle = column
-            .iter()
-            .enumerate()
-            .max_by(|a, b| a.1.total_cmp(b.1))
-            .unwrap()
-            .0;
+        let greatest = |a: &usize, b: &usize| column[*a].total_cmp(&column[*b]);
+        let middle = (0..LENGTH).max_by(greatest).unwrap();
         // At the end of the window of the second column, and far outside of that of the third.
         let places = [(1, middle + 12), (2, middle + 40)];
         let marked = Grid::from_fn(3, LENGTH, |x, y| places.contains(&(x, y)));
@@ -206,62 +195,22 @@ fn marked_pixels_saturate_the_points_whose_windows_hold_them() {
 
 #[test]
 fn settings_outside_of_their_range_are_refused() {
-    let good = DetectorSettings::default();
-    let bad = [
-        DetectorSettings { window: 0, ..good },
-        DetectorSettings { window: 30, ..good },
-        DetectorSettings {
-            window: 1003,
-            ..good
-        },
-        DetectorSettings {
-            min_peak: -1.0,
-            ..good
-        },
-        DetectorSettings {
-            min_peak: f64::NAN,
-            ..good
-        },
-        DetectorSettings {
-            max_lines: 0,
-            ..good
-        },
-        DetectorSettings {
-            max_lines: 101,
-            ..good
-        },
-        DetectorSettings {
-            saturation: f64::NAN,
-            ..good
-        },
-        DetectorSettings {
-            saturation: 0.0,
-            ..good
-        },
-        DetectorSettings {
-            method: order(8),
-            window: 9,
-            ..good
-        },
-        DetectorSettings {
-            method: LineMethod::GaussianFit,
-            window: 5,
-            ..good
-        },
-        DetectorSettings {
-            method: LineMethod::Steger { sigma: f64::NAN },
-            ..good
-        },
-        DetectorSettings {
-            method: LineMethod::Steger { sigma: 5.0 },
-            ..good
-        },
-        DetectorSettings {
-            method: LineMethod::ThresholdedCentreOfGravity { threshold: 1.0 },
-            ..good
-        },
-    ];
-    for settings in bad {
-        assert!(LineDetector::new(settings).is_err(), "{settings:?}");
+    refuses!(settings = DetectorSettings::default() => LineDetector::new(settings);
+        settings.window: [0, 30, 1003],
+        settings.min_peak: [-1.0, f64::NAN],
+        settings.max_lines: [0, 101],
+        settings.saturation: [f64::NAN, 0.0],
+        settings.method as "sigma": [LineMethod::Steger { sigma: f64::NAN }],
+        settings.method as "threshold": [LineMethod::ThresholdedCentreOfGravity { threshold: 1.0 }],
+        settings.method as "pixels in the window": [LineMethod::Steger { sigma: 5.0 }],
+    );
+    for (method, window) in [(order(8), 9), (LineMethod::GaussianFit, 5)] {
+        let usual = DetectorSettings::default();
+        let refused = LineDetector::new(DetectorSettings {
+            method,
+            window,
+            ..usual
+        });
+        assert!(refused.is_err(), "{method} in {window} pixels");
     }
 }

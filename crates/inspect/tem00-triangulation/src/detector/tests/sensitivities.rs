@@ -1,3 +1,5 @@
+use tem00_testkit::assert_absolute;
+
 use super::*;
 
 const SIGMA: f64 = 2.5;
@@ -13,19 +15,19 @@ fn of_the_centre_of_gravity_are_the_lever_arms() {
         // The 370 pixels of the background take the sum of the window, 31 · 0.2 / 370 of a pixel. The
         // difference over 1e−4 of the peak errs by the square of that, the rest is rounding over it. The
         // ends of the window, at e^(−18) of the peak, move the position by 1e−7 for each pixel that it moves.
-        let background = 31.0 * 0.2 / (370.0 * point.integral);
-        let off = found - lever;
-        assert!(
-            off.abs() < 1e-9 * lever.abs() + 1e-10,
-            "pixel {i}: {off} {background}"
-        );
+        assert_absolute(found - lever, 0.0, 1e-9 * lever.abs() + 1e-10);
     }
     let outside = 31.0 * (point.position - MIDDLE) / (370.0 * point.integral);
-    assert!(
-        (sensitivities[3] - outside).abs() < 1e-11,
-        "{}",
-        sensitivities[3]
-    );
+    assert_absolute(sensitivities[3], outside, 1e-11);
+}
+
+/// Returns the change of a position over the step of a column, by its sensitivities.
+fn moved(sensitivities: &[f64], [more, less]: [&[f32]; 2], step: f64) -> f64 {
+    let motion = more
+        .iter()
+        .zip(less)
+        .map(|(m, l)| f64::from(m - l) / (2.0 * step));
+    sensitivities.iter().zip(motion).map(|(g, d)| g * d).sum()
 }
 
 #[test]
@@ -41,17 +43,10 @@ fn follow_a_line_that_moves_and_ignore_a_background_that_rises() {
             let position = |column: &[f32]| only(&detector, column).position;
             let expected = (position(&more) - position(&less)) / (2.0 * step);
             let sensitivities = detector.sensitivities(&column, &only(&detector, &column));
-            let motion = more
-                .iter()
-                .zip(&less)
-                .map(|(m, l)| f64::from(m - l) / (2.0 * step));
-            let moved: f64 = sensitivities.iter().zip(motion).map(|(g, d)| g * d).sum();
+            let moved = moved(&sensitivities, [&more, &less], step);
             // The difference errs by step²/6 of the third derivative of the position: up to 40 where linear
             // interpolation, whose flanks change at the middle of a pixel, is near to that.
-            assert!(
-                (moved - expected).abs() < 7e-4,
-                "{method} at {phase}: {moved}, not {expected}"
-            );
+            assert_absolute(moved, expected, 7e-4);
             assert!(
                 (expected - 1.0).abs() < 0.7,
                 "{method} at {phase} follows: {expected}"
@@ -71,7 +66,7 @@ fn take_the_window_along_with_a_line_that_has_wings() {
     // Σ g_i dI_i/dc is 1 in the mean, with the light that the window loses at one end and gains at the other.
     let line = |centre: f64| -> Vec<f32> {
         let wings = |i: usize| 1000.0 / (1.0 + ((i as f64 + 0.5 - centre) / 2.0).powi(2));
-        (0..LENGTH).map(|i| wings(i) as f32).collect()
+        (0..LENGTH).map(|i| to_f32(wings(i))).collect()
     };
     for (method, by_window) in [
         (LineMethod::CentreOfGravity, 0.1),
@@ -84,21 +79,16 @@ fn take_the_window_along_with_a_line_that_has_wings() {
             let column = line(centre);
             let sensitivities = detector.sensitivities(&column, &only(&detector, &column));
             let step = 0.01;
-            let motion = line(centre + step).into_iter().zip(line(centre - step));
-            let motion = motion.map(|(m, l)| f64::from(m - l) / (2.0 * step));
-            sensitivities
-                .iter()
-                .zip(motion)
-                .map(|(g, d)| g * d)
-                .sum::<f64>()
+            moved(
+                &sensitivities,
+                [&line(centre + step), &line(centre - step)],
+                step,
+            )
         };
         let mean = (0..32).map(follows).sum::<f64>() / 32.0;
         // What the ends of the window are worth changes over a pixel, and the vertex of the smoothed column
         // does not move evenly: a twentieth of the fraction of the window.
-        assert!(
-            (mean - 1.0).abs() < 1e-3 + 0.05 * by_window,
-            "{method}: {mean}"
-        );
+        assert_absolute(mean, 1.0, 1e-3 + 0.05 * by_window);
     }
 }
 

@@ -1,34 +1,16 @@
-use tem00_testkit::rows;
-
 use core::f64::consts::PI;
 
 use tem00_config::ConfigError;
+use tem00_testkit::rows;
 
 use super::*;
-use crate::{parse_setup, parse_setup_with};
-
-const SETUP: &str = r#"
-[laser]
-wavelength = "650 nm"
-power = "5 mW"
-line_thickness = "0.2 mm"
-line_length = "50 mm"
-[camera]
-focal_length = "25 mm"
-f_number = 8
-pixel_pitch = "3.45 um"
-resolution = [640, 480]
-distance = "300 mm"
-angle = "30 deg"
-[sensor]
-quantum_efficiency = 0.6
-exposure = "1 ms"
-[surface]
-reflectance = 0.5
-"#;
+use crate::{
+    file::tests::{PLAIN, changed},
+    parse_setup, parse_setup_with,
+};
 
 fn read(design: &str) -> Result<DesignSearch, ConfigError> {
-    let text = format!("{SETUP}{design}");
+    let text = changed(PLAIN, &[("exposure", "1e-3")]) + design;
     let read =
         |document: &Document<'_>, setup: &crate::Setup| read_design(document, setup.description());
     parse_setup_with(&text, read).map(|(_, search)| search)
@@ -92,7 +74,7 @@ fn what_cannot_be_is_refused_where_it_stands() {
         [design.vary]\nf_number = [8]\n[design.require]\nrange = "-1 mm"\n => positive => 4:9
         [design.vary]\nf_number = [8]\n[design.require]\nrang = 1\n => did you mean `range` => 4:1
     "#;
-    let before = SETUP.lines().count();
+    let before = PLAIN.lines().count();
     for [text, expected, position] in rows(table) {
         let error = read(&text).unwrap_err();
         let message = format!("{error} {}", error.help().unwrap_or_default());

@@ -1,8 +1,7 @@
-use tem00_testkit::rows;
-
 use std::path::Path;
 
 use tem00_config::{Format, parse_document};
+use tem00_testkit::rows;
 
 use super::*;
 

@@ -1,52 +1,31 @@
 use tem00_testkit::rows;
 
 use super::*;
-use crate::parse_setup_with;
-
-/// A set-up whose lines are changed.
-fn text(changes: &[(&str, &str)], more: &str) -> String {
-    let mut text = r#"
-[laser]
-wavelength = "650 nm"
-power = "5 mW"
-line_thickness = "0.2 mm"
-line_length = "50 mm"
-[camera]
-focal_length = "25 mm"
-f_number = 8
-pixel_pitch = "3.45 um"
-resolution = [640, 480]
-distance = "300 mm"
-angle = "30 deg"
-[sensor]
-quantum_efficiency = 0.6
-exposure = "auto"
-[surface]
-reflectance = 0.5
-"#
-    .to_owned();
-    for (key, value) in changes {
-        let line = text
-            .lines()
-            .find(|line| line.starts_with(&format!("{key} =")))
-            .unwrap()
-            .to_owned();
-        text = text.replace(&line, &format!("{key} = {value}"));
-    }
-    text + more
-}
+use crate::{
+    SetupDescription,
+    file::tests::{PLAIN, changed},
+    parse_setup_with,
+};
 
 fn read(text: &str) -> Result<(Setup, SetupUncertainty), tem00_config::ConfigError> {
     parse_setup_with(text, read_uncertainty)
+}
+
+/// Returns the plain set-up with the lines of other values, and further sections.
+fn text(changes: &[(&str, &str)], more: &str) -> String {
+    changed(PLAIN, changes) + more
 }
 
 const ANGLE: (&str, &str) = ("angle", r#"{ value = "30 deg", uncertainty = "0.05 deg" }"#);
 const DISTANCE: (&str, &str) = ("distance", r#"{ value = "300 mm", uncertainty = 1e-4 }"#);
 
 #[test]
-fn bare_values_are_exact() {
-    let (_, found) = read(&text(&[], "")).unwrap();
-    assert_eq!(found, SetupUncertainty::default());
+fn bare_values_and_those_with_an_uncertainty_of_zero_are_exact() {
+    let angle = ("angle", r#"{ value = "30 deg", uncertainty = 0 }"#);
+    for text in [text(&[], ""), text(&[angle], "")] {
+        let (_, found) = read(&text).unwrap();
+        assert_eq!(found, SetupUncertainty::default());
+    }
 }
 
 #[test]
@@ -71,29 +50,25 @@ height = "5 mm"
     let (exact, _) = read(&text(&[], "")).unwrap();
     assert_eq!(setup, exact, "the best estimates make the set-up");
     let time = setup.description().sensor.exposure_time;
-    let input = |estimate, uncertainty, shape| Input::new(estimate, uncertainty, shape).unwrap();
     let degree = core::f64::consts::PI / 180.0;
-    let time = input(time, 2e-6, Distribution::StudentT).with_degrees_of_freedom(8.0);
+    let input = |quantity, estimate, uncertainty, shape| {
+        (quantity, Input::new(estimate, uncertainty, shape).unwrap())
+    };
+    let normal = Distribution::Normal;
+    let (_, few) = input(SetupQuantity::Exposure, time, 2e-6, Distribution::StudentT);
+    let few = few.with_degrees_of_freedom(8.0).unwrap();
     let expected = SetupUncertainty {
         height: Some(5e-3),
         quantities: vec![
-            (
+            input(
                 SetupQuantity::FocalLength,
-                input(25e-3, 10e-6, Distribution::Rectangular),
+                25e-3,
+                10e-6,
+                Distribution::Rectangular,
             ),
-            (
-                SetupQuantity::Distance,
-                input(0.3, 1e-4, Distribution::Normal),
-            ),
-            (
-                SetupQuantity::Angle,
-                input(
-                    30.0 * degree,
-                    0.05 * core::f64::consts::PI / 180.0,
-                    Distribution::Normal,
-                ),
-            ),
-            (SetupQuantity::Exposure, time.unwrap()),
+            input(SetupQuantity::Distance, 0.3, 1e-4, normal),
+            input(SetupQuantity::Angle, 30.0 * degree, 0.05 * degree, normal),
+            (SetupQuantity::Exposure, few),
         ],
         correlations: vec![Correlation {
             between: [1, 2],
@@ -105,71 +80,51 @@ height = "5 mm"
 
 #[test]
 fn every_quantity_may_be_uncertain() {
+    // All of them are written.
+    let mut all = SetupDescription::default();
+    for (quantity, value) in [
+        (SetupQuantity::Linewidth, 1e-9),
+        (SetupQuantity::SourceHalfAngle, 2e-3),
+        (SetupQuantity::LaserOffset, 1e-3),
+        (SetupQuantity::LaserTilt, 0.02),
+        (SetupQuantity::PrincipalRow, 240.0),
+        (SetupQuantity::BlackLevel, 60.0),
+        (SetupQuantity::Gain, 0.3),
+        (SetupQuantity::FillFactor, 0.5),
+        (SetupQuantity::Polarisation, 0.5),
+        (SetupQuantity::Reflectance, 0.5),
+        (SetupQuantity::QuantumEfficiency, 0.5),
+        (SetupQuantity::Exposure, 0.1e-3),
+        (SetupQuantity::RmsHeight, 1e-6),
+        (SetupQuantity::CorrelationLength, 1e-6),
+        (SetupQuantity::TemperatureChange, 2.0),
+        (SetupQuantity::BaseExpansion, 1e-5),
+        (SetupQuantity::MountExpansion, 1e-5),
+    ] {
+        quantity.set(&mut all, value);
+    }
+    let bare = all.to_toml();
     for &quantity in SetupQuantity::ALL {
-        let [section, key] = quantity.path();
-        let value = match key {
-            "linewidth" => "\"1 nm\"",
-            "source_half_angle" => "\"2 mrad\"",
-            "offset" => "\"1 mm\"",
-            "tilt" => "\"1 deg\"",
-            "rms_height" | "correlation_length" => "\"1 um\"",
-            "principal_row" => "240",
-            "full_well" => "1e4",
-            "black_level" => "64",
-            "temperature_change" => "2",
-            "base_expansion" | "mount_expansion" => "1e-5",
-            "gain" | "fill_factor" | "polarisation" => "0.5",
-            "dark_noise" | "dark_current" | "dsnu" => "2",
-            "prnu" => "0.01",
-            "exposure" => "\"0.1 ms\"",
-            _ => "",
-        };
-        let bare = text(&[], "");
+        let key = quantity.key();
         let line = bare
             .lines()
             .find(|line| line.starts_with(&format!("{key} =")));
-        let value = if value.is_empty() {
-            line.unwrap().split_once("= ").unwrap().1.to_owned()
-        } else {
-            value.to_owned()
-        };
-        let uncertainty = match value
-            .strip_prefix('"')
-            .and_then(|value| value.split_once(' '))
-        {
-            Some((_, unit)) => format!("\"0.001 {unit}"),
-            None => "1e-6".to_owned(),
-        };
-        let uncertain = format!("{key} = {{ value = {value}, uncertainty = {uncertainty} }}\n");
-        let without = line.map_or(bare.clone(), |line| bare.replace(&format!("{line}\n"), ""));
-        let relief = if key == "correlation_length" {
-            "rms_height = 1e-6\n"
-        } else {
-            ""
-        };
-        let header = format!("[{section}]\n");
-        let text = if without.contains(&header) {
-            without.replace(&header, &format!("{header}{relief}{uncertain}"))
-        } else {
-            format!("{without}{header}{uncertain}")
-        };
+        let value = line.unwrap().split_once(" = ").unwrap().1;
+        let value = value.split(" #").next().unwrap();
+        let u = 1e-3 * quantity.value_in(&all);
+        let uncertain = format!("{{ value = {value}, uncertainty = {u:e} }}");
+        let text = changed(&bare, &[(key, &uncertain)]);
         let (setup, found) = read(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-        assert_eq!(found.quantities.len(), 1, "{quantity}");
-        let (read, input) = found.quantities[0];
-        assert_eq!(read, quantity, "{quantity}");
+        let [(read, input)] = found.quantities[..] else {
+            panic!("{quantity}: {found:?}");
+        };
+        assert_eq!((read, input.uncertainty()), (quantity, u));
         let value = quantity.value_in(setup.description());
         assert!(
             (input.estimate() - value).abs() <= 1e-15 * value,
             "{quantity}"
         );
     }
-}
-
-#[test]
-fn an_uncertainty_of_zero_is_none() {
-    let angle = ("angle", r#"{ value = "30 deg", uncertainty = 0 }"#);
-    let (_, found) = read(&text(&[angle], "")).unwrap();
-    assert_eq!(found, SetupUncertainty::default());
 }
 
 /// Asserts that a text is refused at a position, with such words.
@@ -204,16 +159,12 @@ fn uncertain_values_that_cannot_be_are_refused_where_they_stand() {
     for [angle, at, words] in rows(table) {
         assert_refused(&text(&[("angle", &angle)], ""), &at, &words);
     }
-    let pixels = ("resolution", "{ value = [640, 480], uncertainty = 1 }");
-    assert_refused(
-        &text(&[pixels], ""),
-        "{ value",
-        "`resolution` must be two numbers",
+    let pixels = text(
+        &[("resolution", "{ value = [640, 480], uncertainty = 1 }")],
+        "",
     );
-}
-
-#[test]
-fn a_set_up_alone_is_not_read_past_what_is_wrong_with_its_uncertainties() {
+    assert_refused(&pixels, "{ value", "`resolution` must be two numbers");
+    // A set-up alone is not read past it.
     let angle = ("angle", r#"{ value = "30 deg", uncertainty = "-1 deg" }"#);
     let error = crate::parse_setup(&text(&[angle], "")).unwrap_err();
     assert!(error.to_string().contains("at least 0"), "{error}");
@@ -223,59 +174,36 @@ fn a_set_up_alone_is_not_read_past_what_is_wrong_with_its_uncertainties() {
 fn correlations_and_heights_that_cannot_be_are_refused_where_they_stand() {
     let pair = r#"between = ["camera.angle", "camera.distance"]"#;
     let more = format!("[[correlation]]\n{pair}\ncoefficient = 0.5\n");
-    let rectangular = (
-        "angle",
-        r#"{ value = "30 deg", uncertainty = 1e-3, distribution = "rectangular" }"#,
-    );
-    assert_refused(
-        &text(&[rectangular, DISTANCE], &more),
-        "[\"camera.angle",
-        "camera.angle is none",
-    );
-    for (section, at, words) in [
-        (
-            more.replace("camera.distance", "camera.distanse"),
-            "\"camera.distanse",
-            "did you mean \"camera.distance\"?",
-        ),
-        (
-            more.replace("camera.distance", "surface.reflectance"),
-            "\"surface",
-            "an uncertain quantity",
-        ),
-        (
-            more.replace("camera.distance", "camera.angle"),
-            "[\"camera",
-            "two different quantities",
-        ),
-        (more.replace("0.5", "1.5"), "1.5", "from -1 to 1"),
-        (
-            more.replace("coefficient", "koefficient"),
-            "koefficient",
-            "did you mean `coefficient`?",
-        ),
-        (format!("{more}{more}"), "[\"camera.angle", "a second time"),
-        (
-            "[budget]\nheight = \"1 m\"\n".into(),
-            "\"1 m\"",
-            "within the measuring range",
-        ),
-    ] {
-        assert_refused(&text(&[ANGLE, DISTANCE], &section), at, words);
+    let table = r#"
+        camera.distance => camera.distanse => "camera.distanse => did you mean "camera.distance"?
+        camera.distance => surface.reflectance => "surface => an uncertain quantity
+        camera.distance => camera.angle => ["camera => two different quantities
+        0.5 => 1.5 => 1.5 => from -1 to 1
+        coefficient => koefficient => koefficient => did you mean `coefficient`?
+        [[correlation]] => [budget]\nheight = "1 m"\n[[correlation]] => "1 m" => within the measuring range
+    "#;
+    for [part, instead, at, words] in rows(table) {
+        let section = more.replace(&part, &instead);
+        assert_refused(&text(&[ANGLE, DISTANCE], &section), &at, &words);
     }
+    let twice = text(&[ANGLE, DISTANCE], &format!("{more}{more}"));
+    assert_refused(&twice, "[\"camera.angle", "a second time");
+    let limits = r#"{ value = "30 deg", uncertainty = 1e-3, distribution = "rectangular" }"#;
+    let limits = text(&[("angle", limits), DISTANCE], &more);
+    assert_refused(&limits, "[\"camera.angle", "camera.angle is none");
+    // With the first coefficient of 0.5, whose second makes focal length and angle one.
     let focal = (
         "focal_length",
         r#"{ value = "25 mm", uncertainty = "10 um" }"#,
     );
-    // With the first coefficient of 0.5, whose second makes focal length and angle one.
     let three = |coefficient: &str| {
-        format!(
+        let section = format!(
             "{more}[[correlation]]\nbetween = [\"camera.angle\", \"camera.focal_length\"]\ncoefficient = 1\n\
              [[correlation]]\nbetween = [\"camera.distance\", \"camera.focal_length\"]\ncoefficient = {coefficient}\n"
-        )
+        );
+        text(&[ANGLE, DISTANCE, focal], &section)
     };
-    let changes = [ANGLE, DISTANCE, focal];
-    assert_refused(&text(&changes, &three("-1")), "-1", "contradicts");
-    let (_, found) = read(&text(&changes, &three("0.5"))).unwrap();
+    assert_refused(&three("-1"), "-1", "contradicts");
+    let (_, found) = read(&three("0.5")).unwrap();
     assert_eq!(found.correlations.len(), 3, "possible all together");
 }

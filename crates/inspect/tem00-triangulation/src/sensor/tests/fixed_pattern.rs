@@ -1,3 +1,5 @@
+use tem00_testkit::{assert_absolute, correlation};
+
 use super::*;
 
 const SIDE: usize = 128;
@@ -5,13 +7,12 @@ const FRAMES: u64 = 24;
 
 /// The mean image of a few frames, in DN, and the mean temporal variance of a pixel in it.
 fn mean_image(sensor: &Sensor, electrons: f64, seed: u64) -> (Vec<f64>, f64) {
-    let frames: Vec<RawFrame> = (0..FRAMES)
-        .map(|i| {
-            sensor
-                .uniform_frame([SIDE, SIDE], electrons, FRAMES * seed + i)
-                .unwrap()
-        })
-        .collect();
+    let frame = |i| {
+        sensor
+            .uniform_frame([SIDE, SIDE], electrons, FRAMES * seed + i)
+            .unwrap()
+    };
+    let frames: Vec<RawFrame> = (0..FRAMES).map(frame).collect();
     let n = FRAMES as f64;
     let of = |pixel: usize| {
         frames
@@ -51,41 +52,30 @@ fn dsnu_and_prnu_come_back_from_stacks_of_frames() {
     let (dark, dark_error) = spatial(&sensor, 0.0, 1);
     let dsnu = d.gain * d.dsnu;
     // Four standard errors, α = 6e-5: 4.8 % of the variance, and what is left of the noise.
-    assert!(
-        (dark - dsnu * dsnu).abs() < 4.0 * dark_error,
-        "{dark} for DSNU² {}",
-        dsnu * dsnu
-    );
-
+    assert_absolute(dark, dsnu * dsnu, 4.0 * dark_error);
     let electrons = 5_000.0;
     let (bright, error) = spatial(&sensor, electrons, 2);
     let prnu = d.prnu * d.gain * electrons;
-    assert!(
-        (bright - dark - prnu * prnu).abs() < 4.0 * error,
-        "{bright} for PRNU² {}",
-        prnu * prnu
-    );
+    assert_absolute(bright - dark, prnu * prnu, 4.0 * error);
 }
 
 #[test]
 fn the_pattern_belongs_to_the_camera_and_not_to_the_frame() {
     let one = typical();
     let other = one.with_serial_number(1);
-    let correlation = |a: &Sensor, b: &Sensor| {
-        // Different noise, so that what agrees is the pattern.
-        let (a, b) = (mean_image(a, 5_000.0, 3).0, mean_image(b, 5_000.0, 4).0);
-        let sum: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a + b).collect();
-        (variance(&sum) - variance(&a) - variance(&b)) / 2.0 / (variance(&a) * variance(&b)).sqrt()
+    // Different noise, so that what agrees is the pattern.
+    let with = |other: &Sensor| {
+        correlation(
+            &mean_image(&one, 5_000.0, 3).0,
+            &mean_image(other, 5_000.0, 4).0,
+        )
     };
     // A pattern of 9.6 DN over noise of 27 DN / √24: 0.75 of the variance.
-    let same = correlation(&one, &one);
+    let same = with(&one);
     assert!((0.72..0.79).contains(&same), "the same camera: {same}");
     // Four standard errors of no correlation between 128² pixels.
-    let different = correlation(&one, &other);
-    assert!(
-        different.abs() < 4.0 / SIDE as f64,
-        "another camera: {different}"
-    );
+    let different = with(&other);
+    assert_absolute(different, 0.0, 4.0 / SIDE as f64);
 }
 
 #[test]
@@ -103,12 +93,6 @@ fn a_seed_that_is_the_serial_number_draws_other_numbers() {
         let of_pair = |pair: [(usize, usize); 2]| f64::from([&a, &b][i][pair[i]]);
         pairs.clone().map(of_pair).collect::<Vec<_>>()
     });
-    let sum: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a + b).collect();
-    let covariance = (variance(&sum) - variance(&a) - variance(&b)) / 2.0;
-    let correlation = covariance / (variance(&a) * variance(&b)).sqrt();
     // Four standard errors of no correlation between half of 128² pixels.
-    assert!(
-        correlation.abs() < 4.0 * (2.0_f64).sqrt() / SIDE as f64,
-        "{correlation}"
-    );
+    assert_absolute(correlation(&a, &b), 0.0, 4.0 * 2.0_f64.sqrt() / SIDE as f64);
 }

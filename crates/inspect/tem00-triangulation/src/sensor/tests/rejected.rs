@@ -1,16 +1,11 @@
+use tem00_testkit::refuses;
+
 use super::*;
 use crate::{SetupDescription, SetupQuantity};
 
-fn error_of(change: impl FnOnce(&mut SensorDescription)) -> String {
-    let mut description = SensorDescription::typical(12);
-    change(&mut description);
-    Sensor::new(description).unwrap_err().to_string()
-}
-
 #[test]
 fn every_quantity_has_a_range() {
-    let quantities = SetupQuantity::of_section("sensor").chain([SetupQuantity::PixelPitch]);
-    for quantity in quantities {
+    for quantity in SetupQuantity::of_section("sensor").chain([SetupQuantity::PixelPitch]) {
         let positive = [
             "quantum_efficiency",
             "exposure",
@@ -30,26 +25,12 @@ fn every_quantity_has_a_range() {
             assert_eq!(error.parameter(), Some(quantity.key()), "{bad}: {error}");
         }
     }
-    for (name, edge) in [
-        ("fill_factor", 1.01),
-        ("prnu", 0.11),
-        ("black_level", 4095.0),
-    ] {
-        let message = error_of(|d| match name {
-            "fill_factor" => d.fill_factor = edge,
-            "prnu" => d.prnu = edge,
-            _ => d.black_level = edge,
-        });
-        assert!(message.starts_with(name), "{message}");
-    }
-}
-
-#[test]
-fn the_bits_are_those_of_sensors() {
-    for bits in [0, 1, 9, 11, 17, 32, u32::MAX] {
-        let message = error_of(|d| *d = SensorDescription::typical(bits));
-        assert!(message.contains("8, 10, 12, 14 or 16"), "{bits}: {message}");
-    }
+    refuses!(sensor = SensorDescription::typical(12) => Sensor::new(sensor);
+        sensor.fill_factor: [1.01],
+        sensor.prnu: [0.11],
+        sensor.black_level: [4095.0],
+        sensor.bit_depth: [0, 1, 9, 11, 17, 32, u32::MAX],
+    );
 }
 
 #[test]

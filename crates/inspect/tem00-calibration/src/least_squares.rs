@@ -87,6 +87,8 @@ fn normal_equations<R: Residuals>(problem: &R, state: &R::State) -> Option<Norma
 
 #[cfg(test)]
 mod tests {
+    use tem00_testkit::assert_absolute;
+
     use super::*;
 
     /// y = a exp(b x), whose state changes by (a, b).
@@ -117,33 +119,26 @@ mod tests {
         let solution = minimise(&problem, [0.1, 3.0]).unwrap();
         let [a, b] = solution.state;
         // Rounding 1e-16 of the residuals; the last step gained less than 1e-12 of their squares.
-        assert!((a - 2.0).abs() < 1e-7 && (b + 0.7).abs() < 1e-7, "{a}, {b}");
+        assert_absolute(a, 2.0, 1e-7);
+        assert_absolute(b, -0.7, 1e-7);
     }
 
     #[test]
     fn the_covariance_of_a_mean_is_the_variance_by_the_number() {
         // b is held by nothing but x = 0: two clusters make a and b of a line in the exponent.
-        let data = vec![
-            [0.0, 1.0],
-            [0.0, 1.2],
-            [0.0, 0.8],
-            [1.0, 1.1],
-            [1.0, 0.9],
-            [1.0, 1.0],
-        ];
+        let of = |x: f64, values: [f64; 3]| values.map(|y| [x, y]);
+        let data = [of(0.0, [1.0, 1.2, 0.8]), of(1.0, [1.1, 0.9, 1.0])].concat();
         let solution = minimise(&Exponential(data), [1.0, 0.1]).unwrap();
         // a is the mean of the first cluster; the variance of a residual is 0.1 / 4.
         let variance = (0.04 + 0.04 + 0.01 + 0.01) / 4.0;
-        assert!((solution.sum / 4.0 - variance).abs() < 1e-9, "{solution:?}");
-        assert!((solution.covariance[(0, 0)] - variance / 3.0).abs() < 1e-8);
+        assert_absolute(solution.sum / 4.0, variance, 1e-9);
+        assert_absolute(solution.covariance[(0, 0)], variance / 3.0, 1e-8);
     }
 
     #[test]
     fn an_open_direction_is_an_error() {
         let problem = Exponential(vec![[0.0, 1.0], [0.0, 1.1], [0.0, 0.9]]);
-        assert!(
-            minimise(&problem, [1.0, 0.0]).is_err(),
-            "b is not determined"
-        );
+        let open = minimise(&problem, [1.0, 0.0]);
+        assert!(open.is_err(), "b is not determined");
     }
 }

@@ -179,13 +179,14 @@ fn straightened(values: &[f64]) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use tem00_testkit::{assert_absolute, assert_relative};
+
     use super::*;
 
     fn points() -> Vec<DVec3> {
-        let position = |i: u32| DVec3::new(f64::from(i % 10), 0.0, f64::from(i / 10));
-        (0..100)
-            .map(|i| 1e-3 * position(i) + DVec3::new(0.1, 0.2, 0.3))
-            .collect()
+        let position = |i: u32| 1e-3 * DVec3::new((i % 10).into(), 0.0, (i / 10).into());
+        let points = (0..100).map(|i| position(i) + DVec3::new(0.1, 0.2, 0.3));
+        points.collect()
     }
 
     #[test]
@@ -213,13 +214,10 @@ mod tests {
     fn the_offset_is_as_certain_as_a_mean() {
         let plane = FittedPlane::through(&points()).unwrap();
         let covariance = plane.covariance(&points(), 4e-12).unwrap();
-        assert!(
-            (covariance[3][3] / 4e-14 - 1.0).abs() < 1e-9,
-            "{covariance:?}"
-        );
-        // A slope over x: σ² / Σ x², with Σ x² = 100 · 8.25 mm². The normal tilts by it.
-        assert!((covariance[0][0] / (4e-12 / 825e-6) - 1.0).abs() < 1e-9);
-        assert!(covariance[1][1].abs() < 1e-20, "no change along the normal");
+        assert_relative(covariance[3][3], 4e-14, 1e-9);
+        // A slope over x: σ² / Σ x², with Σ x² = 100 · 8.25 mm². The normal tilts by it, not along itself.
+        assert_relative(covariance[0][0], 4e-12 / 825e-6, 1e-9);
+        assert_absolute(covariance[1][1], 0.0, 1e-20);
     }
 
     #[test]
@@ -229,8 +227,8 @@ mod tests {
         let single: Vec<_> = (0..400).map(value).collect();
         let double: Vec<_> = (0..800).map(|i| value(i / 2)).collect();
         // Pairs of equal values correlate by 1/2 with the next; the estimate scatters by a few 1/√400.
-        assert!((correlation_factor(&[single]) - 1.0).abs() < 0.3);
-        assert!((correlation_factor(&[double]) - 2.0).abs() < 0.4);
+        assert_absolute(correlation_factor(&[single]), 1.0, 0.3);
+        assert_absolute(correlation_factor(&[double]), 2.0, 0.4);
         assert_eq!(correlation_factor(&[]).to_bits(), 1.0_f64.to_bits());
     }
 }

@@ -140,6 +140,7 @@ mod tests {
     use std::path::Path;
 
     use tem00_config::{Format, parse_document};
+    use tem00_testkit::rows;
 
     use super::*;
 
@@ -179,20 +180,18 @@ mod tests {
 
     #[test]
     fn mistakes_are_placed_in_the_file() {
-        for (text, part) in [
-            ("method = \"guessed\"", "one of"),
-            ("corners = [7, 5]", "belongs to an estimated"),
-            ("method = \"estimated\"\ncorners = [2, 5]", "corners"),
-            ("method = \"estimated\"\nboards = 1", "boards"),
-            (
-                "method = \"estimated\"\nsquare_size = \"0 mm\"",
-                "square_size",
-            ),
-            ("uncertainty = \"-1 um\"", "uncertainty"),
-            ("squares = [7, 5]", "squares"),
-        ] {
+        let table = r#"
+            method = "guessed" => one of
+            corners = [7, 5] => belongs to an estimated
+            method = "estimated"\ncorners = [2, 5] => corners
+            method = "estimated"\nboards = 1 => boards
+            method = "estimated"\nsquare_size = "0 mm" => square_size
+            uncertainty = "-1 um" => uncertainty
+            squares = [7, 5] => squares
+        "#;
+        for [text, part] in rows(table) {
             let error = read(&format!("[calibration]\n{text}")).unwrap_err();
-            assert!(error.contains(part), "{text}: {error}");
+            assert!(error.contains(&part), "{text}: {error}");
             assert!(error.starts_with("Some(("), "{text}: {error}");
         }
     }

@@ -6,7 +6,9 @@ use std::{f64::consts::PI, sync::atomic::AtomicBool};
 
 use tem00_calibration::CalibrationSettings;
 use tem00_engine::{SpeckleModel, SpecklePlan, render_frame};
+use tem00_numerics::cast::to_usize;
 use tem00_scan::{Measurement, MeasurementScene, ScanSettings, setup_scene};
+use tem00_testkit::assert_relative;
 use tem00_tracer::{Crop, RenderOptions};
 use tem00_triangulation::{Budget, DVec2, DVec3, Setup, parse_setup};
 
@@ -37,12 +39,7 @@ fn rendered(setup: &Setup, height: f64) -> [f64; 3] {
     let top = (line.position - 30.0).max(0.0).floor();
     let crop = Crop {
         x: 320 - COLUMNS / 2,
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "in the image"
-        )]
-        y: top as usize,
+        y: to_usize(top),
         width: COLUMNS,
         height: 60,
     };
@@ -114,10 +111,7 @@ fn a_setup_predicts_what_is_rendered_of_it() {
         // laser's line is at the height 0, 3 % wider it is at no height here.
         let pixel = 4.0 / 12.0_f64.sqrt();
         let expected = line.projected_thickness.hypot(line.blur).hypot(pixel);
-        assert!(
-            (width / expected - 1.0).abs() < 0.02,
-            "{case}: {width}, {expected}"
-        );
+        assert_relative(width, expected, 0.02);
     }
 }
 
@@ -163,10 +157,6 @@ fn a_frame_out_of_focus_says_how_much_more_speckle_noise_a_camera_sees() {
         let middle = &frame.points[frame.points.len() / 2];
         let stated = middle.noise.speckle.sqrt();
         // The law for all of the light, and a line whose width is measured under speckle.
-        let apart = ratio * stated / by_waves - 1.0;
-        assert!(
-            apart.abs() < 0.06,
-            "{height}: {ratio} · {stated}, {by_waves}"
-        );
+        assert_relative(ratio * stated, by_waves, 0.06);
     }
 }

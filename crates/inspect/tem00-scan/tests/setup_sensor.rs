@@ -6,6 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use tem00_scan::SetupSensor;
 use tem00_statistics::laws::imaged_line_power_contrast;
+use tem00_testkit::assert_relative;
 use tem00_topography::{Artefact, Axis, DVec3, Groove, ProfileSensor, Shape, SurfacePoint};
 use tem00_triangulation::{Budget, Setup, UncertaintySource, parse_setup};
 
@@ -63,18 +64,13 @@ fn a_flat_is_measured_where_it_stands() {
             let (mean, deviation) = summary(points);
             let columns = 5e-3 / field.column;
             // Perspective changes the width by 1 %, and its ends are cut.
-            let part = points.len() as f64 / columns;
-            assert!((part - 1.0).abs() < 0.03, "{plane}, {place}: {part}");
+            assert_relative(points.len() as f64, columns, 0.03);
             // Speckle of some three pixels correlates as many neighbours.
             let error = deviation / (columns / 4.0).sqrt();
-            assert!(mean.z.abs() < 4.0 * error, "{plane}, {place}: {mean}");
-            let along = mean.y + place.y;
-            assert!(along.abs() < 4.0 * error, "{plane}, {place}: {mean}");
             // Diffraction spreads either end over some speckles, of which the last lit column is one.
-            assert!(
-                mean.x.abs() < 2.0 * field.column,
-                "{plane}, {place}: {mean}"
-            );
+            let off = DVec3::new(mean.x, mean.y + place.y, mean.z).abs();
+            let bounds = DVec3::new(2.0 * field.column, 4.0 * error, 4.0 * error);
+            assert!(off.cmplt(bounds).all(), "{plane}, {place}: {off}");
         }
     }
 }
@@ -137,21 +133,15 @@ fn a_field_is_that_of_lens_line_and_means() {
         ];
         let expected = [width, column, 0.3e-3, 0.15e-3 / 35_f64.to_radians().tan()];
         for (found, expected) in found.into_iter().zip(expected) {
-            assert!(
-                (found / expected - 1.0).abs() < 1e-12,
-                "{found}, {expected}"
-            );
+            assert_relative(found, expected, 1e-12);
         }
         let points = &profiles(&setup, &[DVec3::ZERO])[0];
         // Dark grains take single columns at the ends.
         let [first, last] = [0, points.len() - 1].map(|i| &points[i]);
         let columns = (last.column - first.column) as f64;
         let apart = last.position.x - first.position.x;
-        assert!(
-            (apart / (columns * column) - 1.0).abs() < 0.02,
-            "{apart}, {columns}"
-        );
-        assert!((apart / 5e-3 - 1.0).abs() < 0.05, "{apart}");
+        assert_relative(apart, columns * column, 0.02);
+        assert_relative(apart, 5e-3, 0.05);
     }
 }
 
@@ -163,17 +153,11 @@ fn a_repetition_changes_the_noise_of_the_sensor_alone() {
         .map(|i| f64::from(i / 2) * 1e-3 * DVec3::Y)
         .collect();
     let found = profiles(&setup, &places);
-    let heights = |points: &[SurfacePoint]| -> Vec<f64> {
-        points.iter().map(|point| point.position.z).collect()
+    let heights = |first: usize| -> Vec<f64> {
+        let profiles = found.iter().skip(first).step_by(2).flatten();
+        profiles.map(|point| point.position.z).collect()
     };
-    let every_second = |first: usize| {
-        let profiles = found.iter().skip(first).step_by(2);
-        profiles
-            .flat_map(|points| heights(points))
-            .collect::<Vec<_>>()
-    };
-    let [first, again] = [0, 1].map(every_second);
-    let aside = heights(&found[2]);
+    let [first, again, aside] = [0, 1, 2].map(heights);
     let rms = |a: &[f64], b: &[f64]| {
         let squares = a.iter().zip(b).map(|(a, b)| (a - b).powi(2));
         (0.5 * squares.sum::<f64>() / a.len() as f64).sqrt()
@@ -194,10 +178,7 @@ fn a_repetition_changes_the_noise_of_the_sensor_alone() {
     .map(|(source, more)| more * budget.contribution(source).powi(2));
     let expected = squares.iter().sum::<f64>().sqrt();
     let found = rms(&first, &again);
-    assert!(
-        (found / expected - 1.0).abs() < 0.2,
-        "{found:e}, {expected:e}"
-    );
+    assert_relative(found, expected, 0.2);
     assert!(rms(&first, &aside) > 5.0 * found);
 }
 

@@ -3,6 +3,7 @@ use std::{path::Path, sync::atomic::AtomicBool};
 use tem00_calibration::find_corners;
 use tem00_camera::{CameraDescription, RadialDistortion};
 use tem00_scene::parse_scene;
+use tem00_testkit::assert_absolute;
 use tem00_triangulation::{DetectorSettings, LineDetector, Sensor, SensorDescription};
 
 use super::*;
@@ -102,11 +103,7 @@ fn rendered_boards_give_the_scene_back() {
         .calibrate(&sensor(), &detector, |_| (), &cancel)
         .unwrap();
     let exact = Triangulator::new(scene.camera, plane_of(&scene.lasers[0]).unwrap());
-    for pixel in [
-        DVec2::new(120.0, 90.0),
-        DVec2::new(60.0, 60.0),
-        DVec2::new(180.0, 120.0),
-    ] {
+    for pixel in [[120.0, 90.0], [60.0, 60.0], [180.0, 120.0]].map(DVec2::from) {
         let (found, expected) = (calibration.triangulator().point(pixel), exact.point(pixel));
         let (found, expected) = (found.unwrap(), expected.unwrap());
         let uncertainty = calibration.height_uncertainty(found, DVec3::Z).unwrap();
@@ -139,8 +136,7 @@ fn boards_shift_until_the_line_is_off_their_middle_or_by_a_tenth_of_the_distance
     let by_line = 0.3 * 20e-3 * (0.5 * angle).cos() / angle.sin();
     for (square, expected) in [(5e-3, by_line), (20e-3, 0.1 * 0.125_f64.hypot(0.2165))] {
         let board = Checkerboard::new([7, 5], square).unwrap();
-        let found = stage().largest_shift(&board);
-        assert!((found - expected).abs() < 1e-12, "{found}, not {expected}");
+        assert_absolute(stage().largest_shift(&board), expected, 1e-12);
     }
 }
 
@@ -193,18 +189,11 @@ fn boards_that_do_not_fit_are_refused() {
 fn lines_span_the_laser_plane() {
     let plan = plan(12);
     let plane = plane_of(&scene().lasers[0]).unwrap();
-    let offsets: Vec<_> = plan
-        .poses()
-        .iter()
-        .map(|pose| plane.distance(pose.point(plan.board().middle())))
-        .collect();
+    let offset = |pose: &RigidMotion| plane.distance(pose.point(plan.board().middle()));
+    let offsets: Vec<f64> = plan.poses().iter().map(offset).collect();
     let height = plan.board().square() * 4.0;
-    let (low, high) = offsets.iter().fold((0.0_f64, 0.0_f64), |(low, high), &x| {
-        (low.min(x), high.max(x))
-    });
+    let [low, high] = [f64::min as fn(f64, f64) -> f64, f64::max]
+        .map(|end| offsets.iter().copied().fold(0.0, end));
     assert!(high - low > 0.2 * height, "{offsets:?}");
-    assert!(
-        offsets.iter().all(|x| x.abs() < 0.5 * height),
-        "{offsets:?}"
-    );
+    assert!(high.max(-low) < 0.5 * height, "{offsets:?}");
 }

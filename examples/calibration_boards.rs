@@ -11,16 +11,15 @@
 
 #![expect(clippy::print_stdout, reason = "an example prints its answer")]
 
-use std::{
-    env, error::Error, fs, io::BufWriter, path::Path, path::PathBuf, sync::atomic::AtomicBool,
-};
+mod frame_file;
 
-use png::{BitDepth, ColorType, Encoder};
+use std::{env, error::Error, fs, path::Path, path::PathBuf, sync::atomic::AtomicBool};
+
 use tem00::{
     calibration::{BoardSettings, find_corners},
     scan::BoardPlan,
     scene::parse_scene,
-    triangulation::{RawFrame, Sensor, SensorDescription},
+    triangulation::{Sensor, SensorDescription},
 };
 
 const SCENE: &str = r#"
@@ -50,21 +49,6 @@ const SCENE: &str = r#"
     rectangle = { size = ["200 mm", "200 mm"] }
 "#;
 
-fn write(path: &Path, frame: &RawFrame) -> Result<(), Box<dyn Error>> {
-    let (width, height) = (frame.values.width(), frame.values.height());
-    let file = BufWriter::new(fs::File::create(path)?);
-    let mut encoder = Encoder::new(file, u32::try_from(width)?, u32::try_from(height)?);
-    encoder.set_color(ColorType::Grayscale);
-    encoder.set_depth(BitDepth::Eight);
-    let bytes: Vec<u8> = frame
-        .values
-        .values()
-        .iter()
-        .map(|value| value.to_be_bytes()[1])
-        .collect();
-    Ok(encoder.write_header()?.write_image_data(&bytes)?)
-}
-
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = env::args_os()
         .nth(1)
@@ -86,19 +70,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (number, pose) in plan.poses().iter().enumerate() {
         let cancel = AtomicBool::new(false);
         let [lit, line] = plan.frames(number, &sensor, |_| (), &cancel)?;
-        write(&folder.join(format!("board_{number:02}.png")), &lit)?;
-        write(&folder.join(format!("line_{number:02}.png")), &line)?;
+        frame_file::write(&folder.join(format!("board_{number:02}.png")), &lit)?;
+        frame_file::write(&folder.join(format!("line_{number:02}.png")), &line)?;
         let found = find_corners(&lit.grey_values(), plan.board())?;
         let mut sum = 0.0;
         for (i, (corner, found)) in plan.board().points().iter().zip(&found).enumerate() {
-            let seen = scene
-                .camera
-                .project(pose.point(*corner))
-                .ok_or("a corner is not seen")?;
-            table += &format!(
-                "{number},{i},{},{},{},{}\n",
-                seen.x, seen.y, found.x, found.y
-            );
+            let seen = scene.camera.project(pose.point(*corner));
+            let seen = seen.ok_or("a corner is not seen")?;
+            let [x, y] = seen.to_array();
+            table += &format!("{number},{i},{x},{y},{},{}\n", found.x, found.y);
             sum += seen.distance_squared(*found);
         }
         println!("{number:5} | {:.3}", (sum / found.len() as f64).sqrt());

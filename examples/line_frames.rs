@@ -10,10 +10,11 @@
 
 #![expect(clippy::print_stdout, reason = "an example prints its answer")]
 
-use std::{env, error::Error, fs, io::BufWriter, path::Path, path::PathBuf};
+mod frame_file;
 
-use png::{BitDepth, ColorType, Encoder};
-use tem00::triangulation::{LineImage, LineImageData, RawFrame, Sensor, SensorDescription};
+use std::{env, error::Error, fs, path::PathBuf};
+
+use tem00::triangulation::{LineImage, LineImageData, Sensor, SensorDescription};
 
 const LINE: LineImageData = LineImageData {
     size: [240, 96],
@@ -30,21 +31,6 @@ const LINE: LineImageData = LineImageData {
 /// The place of the line along a column, in pixels.
 fn place(along: f64) -> f64 {
     45.0 + 0.02 * along + 6.0 * (along / 40.0).sin()
-}
-
-fn write(path: &Path, frame: &RawFrame) -> Result<(), Box<dyn Error>> {
-    let (width, height) = (frame.values.width(), frame.values.height());
-    let file = BufWriter::new(fs::File::create(path)?);
-    let mut encoder = Encoder::new(file, u32::try_from(width)?, u32::try_from(height)?);
-    encoder.set_color(ColorType::Grayscale);
-    let values = frame.values.values().iter();
-    let bytes: Vec<u8> = if frame.bit_depth == 8 {
-        values.map(|value| value.to_be_bytes()[1]).collect()
-    } else {
-        encoder.set_depth(BitDepth::Sixteen);
-        values.flat_map(|value| value.to_be_bytes()).collect()
-    };
-    Ok(encoder.write_header()?.write_image_data(&bytes)?)
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -64,7 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let frame = sensor.expose(electrons, seed)?;
         let largest = frame.values.values().iter().max().copied().unwrap_or(0);
         println!("{name:19} | {largest:18} | {}", frame.saturated_pixels());
-        write(&folder.join(name), &frame)?;
+        frame_file::write(&folder.join(name), &frame)?;
     }
     println!("{}", folder.display());
     Ok(())

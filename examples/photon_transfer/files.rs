@@ -1,11 +1,10 @@
 //! The series in files: frames as PNG, and the list of them that evaluations read.
 
-use std::{error::Error, fmt::Write, fs, io::BufWriter, path::Path};
+use std::{error::Error, fmt::Write, fs, path::Path};
 
-use png::{BitDepth, ColorType, Encoder};
 use tem00::triangulation::{RawFrame, SensorDescription};
 
-use super::{Exposure, SIZE, Series, WAVELENGTH, description};
+use super::{Exposure, SIZE, Series, WAVELENGTH, description, frame_file};
 
 /// Writes all frames, the list of them, and what was put in.
 pub(crate) fn write(folder: &Path, series: &Series) -> Result<(), Box<dyn Error>> {
@@ -16,7 +15,7 @@ pub(crate) fn write(folder: &Path, series: &Series) -> Result<(), Box<dyn Error>
         writeln!(list, "{heading}")?;
         for (index, frame) in frames.iter().enumerate() {
             let file = format!("{name}_{index:02}.png");
-            write_frame(&folder.join(&file), frame)?;
+            frame_file::write(&folder.join(&file), frame)?;
             writeln!(list, "i {file}")?;
         }
         Ok::<(), Box<dyn Error>>(())
@@ -42,17 +41,6 @@ pub(crate) fn write(folder: &Path, series: &Series) -> Result<(), Box<dyn Error>
         put_in(&description(), series.irradiance),
     )?;
     Ok(())
-}
-
-fn write_frame(path: &Path, frame: &RawFrame) -> Result<(), Box<dyn Error>> {
-    let [width, height] = SIZE;
-    let file = BufWriter::new(fs::File::create(path)?);
-    let mut encoder = Encoder::new(file, u32::try_from(width)?, u32::try_from(height)?);
-    encoder.set_color(ColorType::Grayscale);
-    encoder.set_depth(BitDepth::Sixteen);
-    let values = frame.values.values().iter();
-    let bytes: Vec<u8> = values.flat_map(|value| value.to_be_bytes()).collect();
-    Ok(encoder.write_header()?.write_image_data(&bytes)?)
 }
 
 fn put_in(d: &SensorDescription, irradiance: f64) -> String {

@@ -12,6 +12,8 @@
 #![expect(clippy::print_stdout, reason = "an example prints its answer")]
 
 mod files;
+#[path = "../frame_file/mod.rs"]
+mod frame_file;
 mod measured;
 #[path = "../plot/mod.rs"]
 mod plot;

@@ -8,8 +8,7 @@ use rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 use tem00::numerics::cast::to_usize;
 use tem00::triangulation::{
-    LightLevel, LineImage, LineImageData, Measurement, Setup, SetupQuantity, SetupUncertainty,
-    parse_setup,
+    LightLevel, LineImage, Measurement, Setup, SetupQuantity, SetupUncertainty, parse_setup,
 };
 use tem00::uncertainty::{
     CoverageInterval, CoverageProbability, Distribution, Input, IntervalKind, PropagationOptions,
@@ -60,7 +59,7 @@ struct Case {
 }
 
 /// Fractions of the measurements whose interval is wholly below or above the true height.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Misses {
     below: f64,
     above: f64,
@@ -113,18 +112,8 @@ impl Case {
         }
         let drawn = Setup::new(drawn).expect("a set-up");
         let line = drawn.line_at(self.height).expect("a line");
-        let surface = drawn.description().surface;
         let rows = 2 * to_usize((3.0 * line.width).ceil()) + 24;
-        let image = LineImage::new(LineImageData {
-            size: [FRAME, rows],
-            width: line.projected_thickness,
-            blur: line.blur,
-            column_electrons: line.column_electrons,
-            speckle_size: line.speckle_size,
-            sensitive_side: line.sensitive_height,
-            patterns: surface.patterns,
-            polarisation: surface.polarisation,
-        });
+        let image = LineImage::of_line(&drawn, &line, [FRAME, rows]);
         let phase = f64::from(random.next_u32()) / f64::from(u32::MAX);
         let (centre, seed) = (0.5 * rows as f64 + phase, random.next_u64());
         let electrons = image.expect("a line").speckled(seed, |_| centre);
@@ -155,16 +144,8 @@ impl Case {
             ..PropagationOptions::default()
         };
         let found = measurement.propagation(options).expect("trials").interval();
-        [
-            CoverageInterval {
-                low: -half,
-                high: half,
-            },
-            CoverageInterval {
-                low: found.low - height,
-                high: found.high - height,
-            },
-        ]
+        let ends = [[-half, half], [found.low - height, found.high - height]];
+        ends.map(|[low, high]| CoverageInterval { low, high })
     }
 
     /// The misses of the law of propagation, of the propagation of distributions, and of the errors of the virtual experiment
@@ -178,10 +159,7 @@ impl Case {
             .collect();
         let all =
             CoverageInterval::of_sorted(&errors, CoverageProbability::P95, IntervalKind::Symmetric);
-        let mut missed = [Misses {
-            below: 0.0,
-            above: 0.0,
-        }; 3];
+        let mut missed = [Misses::default(); 3];
         for error in &errors {
             let at = ((error - first) / step).min((NODES - 1) as f64 - 1e-9);
             let (node, t) = (to_usize(at), at.fract());
@@ -203,15 +181,6 @@ impl Case {
     }
 }
 
-fn input(
-    quantity: SetupQuantity,
-    estimate: f64,
-    u: f64,
-    shape: Distribution,
-) -> (SetupQuantity, Input) {
-    (quantity, Input::new(estimate, u, shape).expect("an input"))
-}
-
 /// Fractions that the law of propagation and the virtual experiment hold, to the nearest percent; the propagation of
 /// distributions is held to 95 ± 0.5 % of every set-up.
 const HELD: [(&str, [f64; 2]); 4] = [
@@ -225,6 +194,9 @@ fn cases() -> [Case; 4] {
     use Distribution::{Normal, Rectangular};
     use SetupQuantity::{Angle, Distance, FocalLength, PixelPitch};
     let degrees = 1_f64.to_radians();
+    let input = |quantity, estimate, u, shape| {
+        (quantity, Input::new(estimate, u, shape).expect("an input"))
+    };
     let data_sheet = [
         input(Angle, 30.0 * degrees, 1e-3, Normal),
         input(Distance, 0.3, 1e-4, Normal),
@@ -234,12 +206,8 @@ fn cases() -> [Case; 4] {
     let few = [(quantity, few.with_degrees_of_freedom(4.0).expect("freedom"))];
     let limits = [input(Angle, 8.0 * degrees, 0.04, Rectangular)];
     // A catalogue's ± 5 %, seen through a lens less than two focal lengths from the part.
-    let lens = [input(
-        FocalLength,
-        25e-3,
-        1.25e-3 / 3_f64.sqrt(),
-        Rectangular,
-    )];
+    let limit = 1.25e-3 / 3_f64.sqrt();
+    let lens = [input(FocalLength, 25e-3, limit, Rectangular)];
     let near = SETUP
         .replace("300 mm", "45 mm")
         .replace("0.2 mm", "0.03 mm")

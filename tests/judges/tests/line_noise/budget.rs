@@ -6,26 +6,14 @@ use tem00::{
     scan::SetupSensor,
     topography::{Artefact, ProfileSensor, Shape},
     triangulation::{
-        Budget, BudgetTerm, DetectorSettings, ImagedLine, LineDetector, LineImage, LineImageData,
-        LinePoint, Setup, UncertaintySource, parse_setup,
+        Budget, BudgetTerm, LineImage, LineImageData, Setup, UncertaintySource, parse_setup,
     },
-    wave::{
-        Amplitudes, Arrangement, Camera, DVec2, DVec3, FanDescription, Grid, Illumination,
-        ImageSampling, ImageWindow, Lens, PatchDescription, RoughSurface, Roughness,
-    },
+    wave::DVec3,
 };
 
-/// Pixels along each side of an image.
-const PIXELS: usize = 56;
+use tem00_testkit::assert_absolute;
 
-/// Least number of samples of a speckle along each side.
-const SAMPLES_PER_SPECKLE: f64 = 4.5;
-
-/// Speckles at each end of the line that are not looked at.
-const END: f64 = 3.0;
-
-/// The distance at which waves see the part, whatever that of the set-up: magnification, speckle size and blur make the image.
-const DISTANCE: f64 = 0.3;
+use super::line_by_waves::{Judged, PIXELS, Waves};
 
 /// A set-up, the heights at which it is judged, and how far its formula may be off.
 struct Case {
@@ -63,148 +51,6 @@ impl Case {
     }
 }
 
-/// What is judged: the line of a set-up at a height.
-struct Judged {
-    line: ImagedLine,
-    pitch: f64,
-    wavelength: f64,
-    detector: LineDetector,
-}
-
-impl Judged {
-    fn new(setup: &Setup, height: f64) -> Self {
-        let d = setup.description();
-        let detector = LineDetector::new(DetectorSettings {
-            min_peak: 0.0,
-            saturation: f64::INFINITY,
-            ..*setup.detector().settings()
-        });
-        Self {
-            line: setup.line_at(height).expect("a line"),
-            pitch: d.sensor.pixel_pitch,
-            wavelength: d.laser.light.wavelength,
-            detector: detector.expect("a detector"),
-        }
-    }
-
-    /// Pixels at each end of the line that are not looked at.
-    fn ends(&self) -> usize {
-        whole(END * self.line.speckle_size[0] + 0.5 * self.line.blur)
-    }
-
-    /// Returns how far the detector finds the line from where it is, in pixels, column by column.
-    fn deviations(&self, columns: &Grid<f32>, middle: f64) -> Vec<f64> {
-        let found = self.detector.detect(columns).into_iter();
-        let brightest = |points: Vec<LinePoint>| {
-            let best = points.into_iter().max_by(|a, b| a.peak.total_cmp(&b.peak));
-            best.expect("a line").position - middle
-        };
-        found.map(brightest).collect()
-    }
-}
-
-/// A camera that sees such a line, from above, as wide, as far out of focus and with speckle as large.
-struct Waves {
-    window: ImageWindow,
-    light: Illumination,
-    patch: PatchDescription,
-    samples: usize,
-    end: usize,
-}
-
-impl Waves {
-    fn of(judged: &Judged) -> Self {
-        let Judged {
-            line,
-            pitch,
-            wavelength,
-            ..
-        } = judged;
-        let pupil_diameter = 3e-3;
-        let [_, speckle] = line.speckle_size;
-        let pupil_to_image = speckle * pitch * pupil_diameter / wavelength;
-        // b = D s |1/Z_focus − 1/Z|
-        let defocus = line.blur * pitch / (pupil_diameter * pupil_to_image);
-        let lens = Lens {
-            pupil_diameter,
-            focus_distance: (DISTANCE.recip() + defocus).recip(),
-            pupil_to_image,
-        };
-        let eye = DVec3::new(0.0, 0.0, DISTANCE);
-        let camera = Camera::look_at([eye, DVec3::ZERO], DVec3::X, lens).expect("a camera");
-        let samples = whole(SAMPLES_PER_SPECKLE / speckle);
-        let sampling = ImageSampling {
-            wavelength: *wavelength,
-            centre: DVec2::ZERO,
-            step: pitch / samples as f64,
-            samples: PIXELS * samples,
-        };
-        // On the part, in units of a pixel.
-        let pixel = pitch * DISTANCE / pupil_to_image;
-        let radius = 0.5 * line.projected_thickness;
-        let light = Illumination::fan(&FanDescription {
-            wavelength: *wavelength,
-            apex: DVec3::Z,
-            direction: DVec3::NEG_Z,
-            opening: DVec3::Y,
-            half_angle: 0.1,
-            waist_radius: radius * pixel,
-            waist_distance: 1.0,
-        });
-        // Independent scatterers so close that the squared pupil function does not see their lattice, out
-        // to 1e-4 of the irradiance.
-        let [across, along] = [4.4 * radius, PIXELS as f64 + line.blur];
-        let spacing = [(0.5 * radius).min(0.75 * speckle), 0.8 * speckle];
-        Self {
-            window: ImageWindow::new(&camera, &sampling).expect("a window"),
-            light: light.expect("a line"),
-            patch: PatchDescription {
-                centre: DVec3::ZERO,
-                normal: DVec3::Z,
-                along: DVec3::X,
-                size: [across * pixel, along * pixel],
-                scatterers: [whole(across / spacing[0]), whole(along / spacing[1])],
-                arrangement: Arrangement::Lattice,
-                roughness: Roughness::FullyDeveloped(Amplitudes::ComplexGaussian),
-                seed: 0,
-            },
-            samples,
-            end: judged.ends(),
-        }
-    }
-
-    /// Returns what pixels see of one surface, with the line along the rows, and its place across them.
-    ///
-    /// `seed` moves the pixels by samples, too.
-    fn columns(&self, seed: u64) -> (Grid<f32>, f64) {
-        let surface = RoughSurface::patch(&PatchDescription { seed, ..self.patch });
-        let lit = surface.expect("a surface").lit_by(&self.light);
-        let image = self.window.image(&lit).intensity();
-        let phase = usize::try_from(seed).expect("a small number") % self.samples;
-        let pixel = |x: usize, y: usize| {
-            let samples = (0..self.samples * self.samples).map(|i| {
-                let (column, row) = (i % self.samples, i / self.samples);
-                let row = (self.samples * y + row + phase) % image.height();
-                image[(self.samples * (x + self.end) + column, row)]
-            });
-            samples.sum::<f32>()
-        };
-        let columns = Grid::from_fn(PIXELS - 2 * self.end, PIXELS, pixel);
-        // Sample i is the middle of the i-th part of the column.
-        let middle = (image.height() / 2 - phase) as f64 + 0.5;
-        (columns, middle / self.samples as f64)
-    }
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "small numbers"
-)]
-fn whole(number: f64) -> usize {
-    number.ceil() as usize
-}
-
 /// The root of the mean of squares of deviations, averaged over neighbouring columns, and its standard error.
 fn root_mean(deviations: &[Vec<f64>], columns: usize) -> [f64; 2] {
     let squares: Vec<f64> = deviations
@@ -229,12 +75,7 @@ fn judge(case: &Case, formula: [f64; 2]) {
     let mut wrong = Vec::new();
     for height in case.heights {
         let judged = Judged::new(&case.setup(1), 1e-3 * height);
-        let waves = Waves::of(&judged);
-        let by_waves = (0..case.images).map(|seed| {
-            let (columns, middle) = waves.columns(seed);
-            judged.deviations(&columns, middle)
-        });
-        let by_waves: Vec<_> = by_waves.collect();
+        let by_waves = Waves::deviations(&judged, case.images);
         let by_trials = trials(&judged, case.images);
         for columns in [1, case.columns] {
             let [by_waves, error] = root_mean(&by_waves, columns);
@@ -263,19 +104,11 @@ fn judge(case: &Case, formula: [f64; 2]) {
 fn judge_characteristics(case: &Case) {
     let setup = case.setup(1);
     let judged = Judged::new(&setup, 0.0);
-    let waves = Waves::of(&judged);
-    let by_waves = (0..case.images).map(|seed| {
-        let (columns, middle) = waves.columns(seed);
-        judged.deviations(&columns, middle)
-    });
-    let [speckle, error] = root_mean(&by_waves.collect::<Vec<_>>(), 1);
+    let [speckle, error] = root_mean(&Waves::deviations(&judged, case.images), 1);
     let budget = Budget::new(&setup).expect("a line");
     let of_sensor = |term: &&BudgetTerm| term.source != UncertaintySource::Speckle;
-    let squares = budget
-        .terms()
-        .iter()
-        .filter(of_sensor)
-        .map(|term| term.uncertainty.powi(2));
+    let of_sensor = budget.terms().iter().filter(of_sensor);
+    let squares = of_sensor.map(|term| term.uncertainty.powi(2));
     let expected = (speckle * speckle + squares.sum::<f64>()).sqrt();
     let cancel = AtomicBool::new(false);
     let mut sensor = SetupSensor::new(&setup, 8, 1, &|_| (), &cancel);
@@ -299,13 +132,8 @@ fn judge_characteristics(case: &Case) {
             .collect()
     });
     let [measured, error_of_measured] = root_mean(&heights.collect::<Vec<_>>(), 1);
-    let found = format!(
-        "waves {expected:.4} ± {error:.4}, measured {measured:.4} ± {error_of_measured:.4} px"
-    );
-    assert!(
-        (measured / expected - 1.0).abs() < 0.03 + 3.3 * error.hypot(error_of_measured) / expected,
-        "{found}"
-    );
+    let chance = 3.3 * error.hypot(error_of_measured);
+    assert_absolute(measured, expected, 0.03 * expected + chance);
 }
 
 /// Returns the deviations in images that are drawn as trials draw them.

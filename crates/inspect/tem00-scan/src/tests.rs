@@ -148,7 +148,6 @@ fn files_with_mistakes_in_the_scan_are_placed() {
             frames: 1,
             columns: 3,
         },
-        ..scan.clone()
     };
     assert_eq!(scan, expected);
 }

@@ -103,14 +103,15 @@ fn carried_along_nothing_changes() {
 
 #[test]
 fn impossible_covariances_are_refused() {
-    let made = |change: fn(&mut [[f64; 18]; 18])| {
+    type Change = fn(&mut [[f64; 18]; 18]);
+    let made = |change: Change| {
         let mut rows = [[0.0; 18]; 18];
         (0..18).for_each(|i| rows[i][i] = 1e-8);
         change(&mut rows);
         CalibrationCovariance::new(DVec3::ZERO, &rows)
     };
     made(|_| ()).expect("independent parameters");
-    let bad: [(fn(&mut [[f64; 18]; 18]), &str); 5] = [
+    let bad: [(Change, &str); 5] = [
         (|rows| rows[3][3] = f64::NAN, "NaN"),
         (|rows| rows[3][3] = -1e-8, "a negative variance"),
         (|rows| rows[3][4] = 1e-9, "not symmetric"),

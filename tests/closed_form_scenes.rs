@@ -1,30 +1,17 @@
 //! Scenes whose radiance is known in closed form: an integrating sphere, and plates under lights.
 
-use std::{path::Path, sync::atomic::AtomicBool};
+use tem00::tracer::Frame;
 
-use tem00::{
-    engine::render_frame,
-    scene::parse_scene,
-    statistics::t_test_mean,
-    tracer::{Frame, RenderOptions},
+use crate::{
+    means::{self, assert_mean, mean},
+    renders::{options, scene},
 };
 
-/// A correct renderer fails a comparison with this probability at a given set of seeds.
-const SIGNIFICANCE: f64 = 1e-3;
-
-fn render(scene: &str, seed: u64, samples_per_pixel: u32) -> Frame {
-    let scene = parse_scene(scene, Path::new(".")).expect("a valid scene");
-    let options = RenderOptions {
-        samples_per_pixel,
-        seed,
-        ..scene.render
-    };
-    let cancel = AtomicBool::new(false);
-    render_frame(&scene, None, 0, &options, |_| (), &cancel).expect("a render")
-}
-
-fn mean(values: &[f32]) -> f64 {
-    values.iter().map(|&v| f64::from(v)).sum::<f64>() / values.len() as f64
+fn render(text: &str, seed: u64, samples_per_pixel: u32) -> Frame {
+    let scene = scene(text);
+    let mut options = options(samples_per_pixel, seed);
+    options.max_depth = scene.render.max_depth;
+    means::render(&scene, &options)
 }
 
 #[test]
@@ -62,23 +49,8 @@ fn light_in_an_integrating_sphere_is_the_sum_of_all_its_reflections() {
     let radiances: Vec<f64> = (0..20)
         .map(|seed| mean(render(&scene, seed, 16).lasers[0].multiple.values()))
         .collect();
-    let test = t_test_mean(&radiances, expected).expect("renders with noise");
-    assert!(
-        test.p_value > SIGNIFICANCE,
-        "p = {:e}, {radiances:?} | {expected}",
-        test.p_value
-    );
     // The test can tell the 2 % of the light that has been reflected more than ten times.
-    let spread = radiances
-        .iter()
-        .map(|r| (r / expected - 1.0).powi(2))
-        .sum::<f64>()
-        / 20.0;
-    assert!(
-        (spread / 20.0).sqrt() < 0.01,
-        "standard error {}",
-        (spread / 20.0).sqrt()
-    );
+    assert_mean("sphere", &radiances, expected, 0.01 * expected);
 }
 
 /// A plate seen from above in its middle, under a light.
@@ -109,11 +81,8 @@ fn plate_under(light: &str) -> String {
 
 #[test]
 fn a_point_light_obeys_the_inverse_square_and_the_cosine() {
-    let frame = render(
-        &plate_under("point = { position = [0.3, 0, 0.4], power = 5 }"),
-        0,
-        4,
-    );
+    let plate = plate_under("point = { position = [0.3, 0, 0.4], power = 5 }");
+    let frame = render(&plate, 0, 4);
     // Intensity P/4π at 0.5 m under cos θ = 0.8, reflected with ρ/π.
     let pi = std::f64::consts::PI;
     let expected = 0.6 / pi * 5.0 / (4.0 * pi) / 0.25 * 0.8;
@@ -141,12 +110,7 @@ fn an_area_light_lights_by_its_form_factor() {
     let radiances: Vec<f64> = (0..20)
         .map(|seed| mean(render(&scene, seed, 64).lights.values()))
         .collect();
-    let test = t_test_mean(&radiances, expected).expect("renders with noise");
-    assert!(
-        test.p_value > SIGNIFICANCE,
-        "p = {:e}, {radiances:?} | {expected}",
-        test.p_value
-    );
+    assert_mean("area light", &radiances, expected, 0.01 * expected);
 }
 
 /// Two plates that face each other, `GAP` apart, under a laser that stands just before the upper one
@@ -253,16 +217,8 @@ mod facing_plates {
             ("lower", 0.04, 0.0, 3, lower_radiance(0.01)),
         ] {
             let radiances: Vec<f64> = (0..20).map(|seed| seen(camera, at, depth, seed)).collect();
-            let test = t_test_mean(&radiances, expected).expect("renders with noise");
-            assert!(
-                test.p_value > SIGNIFICANCE,
-                "{name}: p = {:e}, {radiances:?} | {expected}",
-                test.p_value
-            );
             // Their spread is small enough to tell one reflection from two: 9 % more light.
-            let squares = radiances.iter().map(|r| (r / expected - 1.0).powi(2));
-            let error = (squares.sum::<f64>() / 400.0).sqrt();
-            assert!(error < 1.2e-2, "{name}: standard error {error:e}");
+            assert_mean(name, &radiances, expected, 1.2e-2 * expected);
         }
     }
 }

@@ -1,16 +1,13 @@
 //! A host that calls the factor of a hit, and the tracer, show the same speckle: contrast, mean, and what two frames share.
 
-use std::{path::Path, sync::atomic::AtomicBool};
-
 use tem00::{
     Camera, CameraDescription, DVec2, DVec3, Laser, Pose, Speckle, SpeckleFrame,
     decorrelation::pupil_overlap_correlation,
-    engine::{SpeckleModel, SpecklePlan, render_frame},
     numerics::{Grid, cast::to_f32},
-    scene::parse_scene,
     statistics::{Moments, pearson_correlation},
-    tracer::RenderOptions,
 };
+
+use crate::renders::{self, options};
 
 const SIZE: [usize; 2] = [160, 120];
 /// Samples along each side of a pixel.
@@ -25,7 +22,7 @@ struct Shown {
 }
 
 fn by_tracer() -> Shown {
-    let text = format!(
+    let scene = renders::scene(&format!(
         r#"
         [render]
         frames = 2
@@ -49,18 +46,12 @@ fn by_tracer() -> Shown {
         rectangle = {{ centre = [0, 0, 0], normal = [0, 0, 1], size = [0.1, 0.1] }}
         lambertian = {{ reflectance = 0.8 }}
         "#
-    );
-    let scene = parse_scene(&text, Path::new(".")).expect("a valid scene");
-    let options = RenderOptions {
-        samples_per_pixel: SIDE * SIDE,
-        ..RenderOptions::default()
-    };
-    let plan = SpecklePlan::new(&scene, 1).expect("a small pattern");
-    let model = SpeckleModel::generate(&scene, &plan).expect("a small pattern");
+    ));
+    let (options, model) = (options(SIDE * SIDE, 0), renders::speckle(&scene, 1));
     let render = |frame| {
-        let go_on = AtomicBool::new(false);
-        let frame = render_frame(&scene, Some(&model), frame, &options, |_| (), &go_on);
-        frame.expect("a render").lasers.swap_remove(0)
+        renders::frame(&scene, Some(&model), frame, &options)
+            .lasers
+            .swap_remove(0)
     };
     let [first, second] = [render(0), render(1)];
     Shown {

@@ -1,30 +1,27 @@
 //! A rendered laser spot has the power and the profile of its beam, with and without speckle.
 
-use std::{
-    path::Path,
-    sync::atomic::{AtomicBool, AtomicU64, Ordering},
-};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use tem00::{
     beam::GaussianBeam,
-    engine::{SpeckleModel, SpecklePlan, render_frame},
-    scene::parse_scene,
-    statistics::t_test_mean,
-    tracer::{Frame, RenderError, RenderOptions, Scene},
+    engine::render_frame,
+    tracer::{Frame, RenderError, Scene},
+};
+
+use crate::{
+    means::assert_mean,
+    renders::{self, options, speckle},
 };
 
 const SEEDS: u64 = 20;
 const WAIST: f64 = 0.2e-3;
 const POWER: f64 = 2e-3;
 
-/// A correct renderer fails a comparison with this probability at a given set of seeds.
-const SIGNIFICANCE: f64 = 1e-3;
-
 /// A spot that comes in at an angle, in degrees, to a plate that is seen at another.
 fn scene(incidence: f64, view: f64) -> Scene {
     let (sin, cos) = incidence.to_radians().sin_cos();
     let (view_sin, view_cos) = view.to_radians().sin_cos();
-    let text = format!(
+    renders::scene(&format!(
         r#"
         [camera]
         position = [0, {camera_y}, {camera_z}]
@@ -49,22 +46,12 @@ fn scene(incidence: f64, view: f64) -> Scene {
         z = 0.25 * cos,
         camera_y = 0.3 * view_sin,
         camera_z = 0.3 * view_cos,
-    );
-    parse_scene(&text, Path::new(".")).expect("a valid scene")
+    ))
 }
 
-fn render(scene: &Scene, speckle: bool, seed: u64) -> Frame {
-    let options = RenderOptions {
-        samples_per_pixel: 3,
-        seed,
-        ..RenderOptions::default()
-    };
-    let model = speckle.then(|| {
-        let plan = SpecklePlan::new(scene, seed).expect("a small pattern");
-        SpeckleModel::generate(scene, &plan).expect("a small pattern")
-    });
-    let cancel = AtomicBool::new(false);
-    render_frame(scene, model.as_ref(), 0, &options, |_| (), &cancel).expect("a render")
+fn render(scene: &Scene, has_speckle: bool, seed: u64) -> Frame {
+    let model = has_speckle.then(|| speckle(scene, seed));
+    renders::frame(scene, model.as_ref(), 0, &options(3, seed))
 }
 
 #[test]
@@ -74,12 +61,8 @@ fn the_target_receives_the_power_of_the_beam() {
         let power: Vec<f64> = (0..SEEDS)
             .map(|seed| render(&scene, false, seed).lasers[0].power_on_target)
             .collect();
-        let test = t_test_mean(&power, POWER).expect("renders with noise");
-        assert!(
-            test.p_value > SIGNIFICANCE,
-            "at {incidence}°, seen at {view}°: p = {:e}, {power:?}",
-            test.p_value
-        );
+        let name = format!("at {incidence}°, seen at {view}°");
+        assert_mean(&name, &power, POWER, 0.02 * POWER);
     }
 }
 
@@ -117,12 +100,7 @@ fn the_spot_has_the_radius_and_the_radiance_of_the_beam() {
         ("radius along", along, expected_along),
         ("reflected power", flux, POWER),
     ] {
-        let test = t_test_mean(&measured, expected).expect("renders with noise");
-        assert!(
-            test.p_value > SIGNIFICANCE,
-            "{name}: p = {:e}, {measured:?} | {expected}",
-            test.p_value
-        );
+        assert_mean(name, &measured, expected, 0.02 * expected);
     }
 }
 
@@ -136,12 +114,7 @@ fn speckle_moves_light_about_but_keeps_its_power() {
             sum(layers.radiance.values()) / sum(layers.single.values())
         })
         .collect();
-    let test = t_test_mean(&ratio, 1.0).expect("renders with speckle");
-    assert!(
-        test.p_value > SIGNIFICANCE,
-        "p = {:e}, {ratio:?}",
-        test.p_value
-    );
+    assert_mean("with speckle", &ratio, 1.0, 0.05);
     let spread = ratio.iter().map(|r| (r - 1.0).powi(2)).sum::<f64>() / SEEDS as f64;
     assert!(spread > 1e-4, "speckle leaves no trace: {ratio:?}");
 }
@@ -149,10 +122,7 @@ fn speckle_moves_light_about_but_keeps_its_power() {
 #[test]
 fn a_render_stops_within_a_pixel_when_it_is_told_to() {
     let scene = scene(0.0, 0.0);
-    let options = RenderOptions {
-        samples_per_pixel: 1 << 22,
-        ..RenderOptions::default()
-    };
+    let options = options(1 << 22, 0);
     let (cancel, done) = (AtomicBool::new(false), AtomicU64::new(0));
     let progress = |samples| {
         done.fetch_add(samples, Ordering::Relaxed);

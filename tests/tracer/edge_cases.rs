@@ -1,21 +1,19 @@
 //! Scenes that no sensible person sets up, and what is defined for them.
 
-use core::sync::atomic::AtomicBool;
-use std::path::Path;
-
-use tem00::{
-    engine::render_frame,
-    scene::parse_scene,
-    tracer::{Environment, Frame, LaserEvents, Light, Material, Method, RenderOptions, Scene},
+use tem00::tracer::{
+    Environment, Frame, LaserEvents, Light, Material, Method, RenderOptions, Scene,
 };
 
-use super::estimate::{self, assert_mean};
+use crate::{
+    means::{self, assert_mean, mean},
+    renders::{self, options},
+};
 
 const POWER: f64 = 2e-3;
 
 /// A camera 0.1 m before a plate, with a laser beside it whose spot is in the image.
 fn plate(more: &str) -> Scene {
-    let text = format!(
+    renders::scene(&format!(
         r#"
         [camera]
         position = [0, 0, 0.1]
@@ -35,18 +33,20 @@ fn plate(more: &str) -> Scene {
         rectangle = {{ centre = [0, 0, 0], normal = [0, 0, 1], size = [0.1, 0.1] }}
         {more}
         "#
-    );
-    parse_scene(&text, Path::new(".")).unwrap()
+    ))
+}
+
+/// A sphere about a point on the axis of the camera, or above the laser.
+fn ball(x: f64, z: f64, radius: f64) -> String {
+    format!("[[surface]]\nsphere = {{ centre = [{x}, 0, {z}], radius = {radius} }}")
 }
 
 fn render(scene: &Scene, method: Method) -> Frame {
     let options = RenderOptions {
-        samples_per_pixel: 16,
-        seed: 5,
         method,
-        ..RenderOptions::default()
+        ..options(16, 5)
     };
-    render_frame(scene, None, 0, &options, |_| (), &AtomicBool::new(false)).unwrap()
+    means::render(scene, &options)
 }
 
 fn radiance(frame: &Frame) -> f64 {
@@ -77,14 +77,13 @@ fn both_methods_bring_the_power_of_the_laser_to_a_blurred_target() {
 
 #[test]
 fn a_camera_in_glass_sees_light_compressed_by_the_square_of_the_index() {
-    let ball = "[[surface]]\nsphere = { centre = [0, 0, 0.1], radius = 0.05 }";
-    let mut scene = plate(ball);
+    let mut scene = plate(&ball(0.0, 0.1, 0.05));
     scene.lasers.clear();
     scene.surfaces.remove(0);
     scene.surfaces[0].material = Material::dielectric(1.5).unwrap();
     scene.lights = vec![Light::Environment(Environment::constant(4.0).unwrap())];
     let frame = render(&scene, Method::Path);
-    let mean = estimate::mean(frame.lights.values());
+    let mean = mean(frame.lights.values());
     // From near the centre no ray is reflected totally, and what is reflected comes out later. The
     // chance to end a path scatters one of 9216 samples in twenty-five by a twentieth, at most.
     assert!((mean / (2.25 * 4.0) - 1.0).abs() < 2e-3, "{mean}");
@@ -92,9 +91,8 @@ fn a_camera_in_glass_sees_light_compressed_by_the_square_of_the_index() {
 
 #[test]
 fn a_laser_in_a_ball_lights_only_its_inside() {
-    let ball = "[[surface]]\nsphere = { centre = [0.03, 0, 0.1], radius = 0.01 }";
     for method in [Method::Path, Method::Light] {
-        let frame = render(&plate(ball), method);
+        let frame = render(&plate(&ball(0.03, 0.1, 0.01)), method);
         let laser = &frame.lasers[0];
         assert!(radiance(&frame) <= 0.0, "{method:?} finds light");
         assert!(laser.power_on_target <= 0.0, "{method:?} finds power");
@@ -132,8 +130,7 @@ fn of_two_faces_in_one_place_the_first_counts() {
 
 #[test]
 fn a_camera_in_a_perfect_mirror_comes_to_an_end() {
-    let ball = "[[surface]]\nsphere = { centre = [0, 0, 0.1], radius = 0.05 }";
-    let mut scene = plate(ball);
+    let mut scene = plate(&ball(0.0, 0.1, 0.05));
     for surface in &mut scene.surfaces {
         surface.material = Material::mirror(1.0).unwrap();
     }
@@ -147,7 +144,7 @@ fn a_camera_in_a_perfect_mirror_comes_to_an_end() {
 fn in_glass_both_ends_find_the_light_of_a_laser_outside() {
     // Camera and plate are in glass, so the light enters it once, which compresses radiance but not
     // power. The beam is so wide that paths from the camera come out into it.
-    let mut scene = parse_scene(
+    let mut scene = renders::scene(
         r#"
         [camera]
         position = [0, 0, 0.1]
@@ -165,26 +162,20 @@ fn in_glass_both_ends_find_the_light_of_a_laser_outside() {
         [[surface]]
         sphere = { centre = [0, 0, 0.1], radius = 0.3 }
         "#,
-        Path::new("."),
-    )
-    .unwrap();
+    );
     scene.surfaces[1].material = Material::dielectric(1.5).unwrap();
-    let mean = |method, laser_events, seed| {
+    let light = |method, laser_events, seed| {
         let options = RenderOptions {
-            samples_per_pixel: 256,
-            seed,
             method,
             laser_events,
-            ..RenderOptions::default()
+            ..options(256, seed)
         };
-        let cancel = AtomicBool::new(false);
-        let frame = render_frame(&scene, None, 0, &options, |_| (), &cancel).unwrap();
-        estimate::mean(frame.lasers[0].single.values())
+        mean(means::render(&scene, &options).lasers[0].single.values())
     };
     let ratios: Vec<f64> = (0..12)
         .map(|seed| {
-            let path = mean(Method::Path, LaserEvents::Sampled, seed);
-            path / mean(Method::Light, LaserEvents::Beam, seed)
+            let path = light(Method::Path, LaserEvents::Sampled, seed);
+            path / light(Method::Light, LaserEvents::Beam, seed)
         })
         .collect();
     // Tells a square of the index, 2.25, from 1, and the reflected 4 % as well.
@@ -194,17 +185,19 @@ fn in_glass_both_ends_find_the_light_of_a_laser_outside() {
 #[test]
 fn a_plate_alone_is_lit_as_beside_what_nobody_sees() {
     // Behind the camera, and behind the aperture of the laser.
-    let behind = "[[surface]]\nsphere = { centre = [0, 0, 1], radius = 0.001 }";
+    let behind = ball(0.0, 1.0, 0.001);
     let lamp = "[[light]]\npoint = { position = [0.01, 0, 0.05], power = 0.1 }";
-    let [alone, beside] = ["", behind].map(|more| {
+    let [alone, beside] = ["", &behind].map(|more| {
         let mut scene = plate(&format!("{more}\n{lamp}"));
         scene.lasers.push(scene.lasers[0].clone());
-        let options = RenderOptions {
-            samples_per_pixel: 9,
-            max_depth: Some(1),
-            ..RenderOptions::default()
-        };
-        render_frame(&scene, None, 0, &options, |_| (), &AtomicBool::new(false)).unwrap()
+        let max_depth = Some(1);
+        means::render(
+            &scene,
+            &RenderOptions {
+                max_depth,
+                ..options(9, 0)
+            },
+        )
     });
     assert!(radiance(&alone) > 0.0, "it is lit");
     assert_eq!(alone, beside, "layers and rays");

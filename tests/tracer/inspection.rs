@@ -1,11 +1,12 @@
-use core::sync::atomic::AtomicBool;
-use std::path::Path;
-
 use glam::DVec2;
 use tem00::{
-    engine::{LaserInspection, LightFate, LightPart, inspect_lasers, render_frame},
-    scene::parse_scene,
-    tracer::{RenderOptions, Scene},
+    engine::{LaserInspection, LightFate, LightPart, inspect_lasers},
+    tracer::Scene,
+};
+
+use crate::{
+    means::render,
+    renders::{options, scene},
 };
 
 /// A spot of 1 mm on a plate, in the middle of an image of 48 × 40 pixels that shows 19 × 16 mm.
@@ -28,14 +29,13 @@ const SCENE: &str = r#"
     rectangle = { centre = [0, 0, 0], normal = [0, 0, 1], size = [0.02, 0.02] }
     "#;
 
-fn scene(text: &str) -> Scene {
-    parse_scene(text, Path::new(".")).unwrap()
-}
-
-/// Replaces a part of the scene.
-fn with(from: &str, to: &str) -> Scene {
-    assert!(SCENE.contains(from), "{from} is in the scene");
-    scene(&SCENE.replacen(from, to, 1))
+/// Replaces parts of the scene, each the first of its kind.
+fn with(changes: &[[&str; 2]]) -> String {
+    let change = |text: String, [from, to]: &[&str; 2]| {
+        assert!(text.contains(from), "{from} is in the scene");
+        text.replacen(from, to, 1)
+    };
+    changes.iter().fold(SCENE.to_owned(), change)
 }
 
 /// Adds sections to the scene.
@@ -49,21 +49,17 @@ fn inspected(scene: &Scene) -> LaserInspection {
 
 /// Returns the greatest radiance of light straight from the laser that a render finds.
 fn rendered(scene: &Scene) -> f32 {
-    let options = RenderOptions {
-        samples_per_pixel: 16,
-        ..scene.render
-    };
-    let frame = render_frame(scene, None, 0, &options, |_| (), &AtomicBool::new(false)).unwrap();
+    let mut options = options(16, 0);
+    options.crop = scene.render.crop;
+    let frame = render(scene, &options);
     let pixels = frame.lasers[0].single.values();
     pixels.iter().copied().fold(0.0, f32::max)
 }
 
 #[track_caller]
 fn assert_fraction(found: f64, expected: f64, tolerance: f64) {
-    assert!(
-        (found - expected).abs() <= tolerance,
-        "{found} is not {expected} ± {tolerance}"
-    );
+    let is_close = (found - expected).abs() <= tolerance;
+    assert!(is_close, "{found} is not {expected} ± {tolerance}");
 }
 
 /// Asserts that all the light meets this fate, and that a render finds none of it.
@@ -96,66 +92,52 @@ fn a_spot_in_the_image_is_seen_where_it_is() {
 }
 
 #[test]
-fn a_beam_beside_the_plate_misses() {
-    let away = with("centre = [0, 0, 0]", "centre = [0.07, 0, 0]");
-    assert_all(&away, LightFate::Misses, None);
-}
-
-#[test]
-fn the_back_of_a_one_sided_plate_takes_all_light() {
-    let back = with("normal = [0, 0, 1]", "normal = [0, 0, -1]");
-    assert!(inspected(&back).is_seen(), "both sides scatter");
-    let one_sided = scene(&format!(
-        "{}\none_sided = true",
-        SCENE.replace("normal = [0, 0, 1]", "normal = [0, 0, -1]")
-    ));
-    assert_all(&one_sided, LightFate::MeetsBack, Some(0));
-}
-
-#[test]
-fn a_laser_behind_the_plate_lights_the_far_side() {
-    let behind = with("position = [0.1, 0, 0.3]", "position = [0.1, 0, -0.3]");
-    assert_all(&behind, LightFate::LightsFarSide, Some(0));
-}
-
-#[test]
-fn a_spot_beside_the_image_is_located() {
-    let wide = SCENE.replace("[0.02, 0.02]", "[0.2, 0.2]");
-    let beside = wide.replacen(
+fn light_that_the_camera_does_not_see_has_its_fate() {
+    use LightFate::{BehindCamera, Hidden, LightsFarSide, MeetsBack, Misses, OutsideImage};
+    let back = ["normal = [0, 0, 1]", "normal = [0, 0, -1]"];
+    assert!(
+        inspected(&scene(&with(&[back]))).is_seen(),
+        "both sides scatter"
+    );
+    let one_sided = format!("{}\none_sided = true", with(&[back]));
+    let mask = "[[surface]]\nrectangle = { centre = [0, 0, 0.1], size = [0.02, 0.02] }";
+    let away = [
+        "look_at = [0, 0, 0]\n    focal",
+        "look_at = [0, 0, 0.6]\n    focal",
+    ];
+    for (text, fate, surface) in [
+        (
+            with(&[["centre = [0, 0, 0]", "centre = [0.07, 0, 0]"]]),
+            Misses,
+            None,
+        ),
+        (one_sided, MeetsBack, Some(0)),
+        (
+            with(&[["[0.1, 0, 0.3]", "[0.1, 0, -0.3]"]]),
+            LightsFarSide,
+            Some(0),
+        ),
+        (
+            format!("{SCENE}\n[render]\ncrop = [0, 0, 10, 10]"),
+            OutsideImage,
+            Some(0),
+        ),
+        (format!("{SCENE}\n{mask}"), Hidden { by: 1 }, Some(0)),
+    ] {
+        assert_all(&scene(&text), fate, surface);
+    }
+    let behind = assert_all(&scene(&with(&[away])), BehindCamera, Some(0));
+    assert_eq!(behind.pixel, None, "no image");
+    let aside = [
         "look_at = [0, 0, 0]\n    spot",
         "look_at = [0.04, 0.03, 0]\n    spot",
-        1,
-    );
-    assert_ne!(wide, beside, "the laser looks elsewhere");
-    let part = assert_all(&scene(&beside), LightFate::OutsideImage, Some(0));
+    ];
+    let beside = with(&[["[0.02, 0.02]", "[0.2, 0.2]"], aside]);
+    let part = assert_all(&scene(&beside), OutsideImage, Some(0));
     // 0.4 mm of the plate per pixel: m = 25/275.
     let pixel = part.pixel.unwrap();
     let expected = DVec2::new(24.0 + 100.0, 20.0 - 75.0);
     assert!(pixel.distance(expected) < 0.2, "{pixel} is not {expected}");
-}
-
-#[test]
-fn a_spot_beside_the_crop_is_outside() {
-    let crop = and("[render]\ncrop = [0, 0, 10, 10]");
-    assert_all(&crop, LightFate::OutsideImage, Some(0));
-}
-
-#[test]
-fn a_spot_behind_the_camera_has_no_image() {
-    let away = with(
-        "look_at = [0, 0, 0]\n    focal",
-        "look_at = [0, 0, 0.6]\n    focal",
-    );
-    let part = assert_all(&away, LightFate::BehindCamera, Some(0));
-    assert_eq!(part.pixel, None);
-}
-
-#[test]
-fn what_hides_a_spot_is_named() {
-    let mask = and(
-        "[[surface]]\nname = \"mask\"\nrectangle = { centre = [0, 0, 0.1], size = [0.02, 0.02] }",
-    );
-    assert_all(&mask, LightFate::Hidden { by: 1 }, Some(0));
 }
 
 #[test]
@@ -172,13 +154,13 @@ fn half_a_mask_hides_half_of_the_light() {
 #[test]
 fn light_over_a_mirror_counts_as_seen() {
     // A mirror at 45° turns the beam, which comes along −x, down onto the plate.
-    let text = SCENE
-        .replace("position = [0.1, 0, 0.3]", "position = [0.2, 0.007, 0.1]")
-        .replacen(
+    let text = with(&[
+        ["position = [0.1, 0, 0.3]", "position = [0.2, 0.007, 0.1]"],
+        [
             "look_at = [0, 0, 0]\n    spot",
             "look_at = [0, 0.007, 0.1]\n    spot",
-            1,
-        );
+        ],
+    ]);
     let mirror = "[[surface]]\nrectangle = { centre = [0, 0.007, 0.1], normal = [1, 0, -1], \
                   up = [0, 1, 0], size = [0.003, 0.003] }\nmirror = { reflectance = 0.5 }";
     let found = inspected(&scene(&format!("{text}\n{mirror}")));

@@ -1,33 +1,19 @@
-use core::{f64::consts::PI, sync::atomic::AtomicBool};
-use std::path::Path;
+use core::f64::consts::PI;
 
 use glam::DVec3;
-use tem00::{
-    engine::render_frame,
-    scene::parse_scene,
-    tracer::{
-        Environment, Frame, LaserEvents, Light, LightEvents, Material, Metal, RenderOptions, Scene,
-    },
+use tem00::tracer::{
+    Environment, Frame, LaserEvents, Light, LightEvents, Material, Metal, RenderOptions, Scene,
 };
 
-use super::estimate::{assert_mean, mean};
+use crate::{
+    means::{assert_mean, mean, render},
+    renders::{options, scene},
+};
 
 const SEEDS: u64 = 20;
 
-fn scene(text: &str) -> Scene {
-    parse_scene(text, Path::new(".")).unwrap()
-}
-
-fn render(scene: &Scene, options: &RenderOptions) -> Frame {
-    render_frame(scene, None, 0, options, |_| (), &AtomicBool::new(false)).unwrap()
-}
-
-fn options(samples_per_pixel: u32, seed: u64) -> RenderOptions {
-    RenderOptions {
-        samples_per_pixel,
-        seed,
-        ..RenderOptions::default()
-    }
+fn over_seeds(value: impl Fn(u64) -> f64) -> Vec<f64> {
+    (0..SEEDS).map(value).collect()
 }
 
 /// A ball of 0.1 m before the camera, or around it.
@@ -71,13 +57,12 @@ fn lossless_bodies_vanish_in_uniform_light() {
         for events in [LightEvents::Both, LightEvents::Scattering] {
             let images: Vec<Frame> = (0..SEEDS)
                 .map(|seed| {
-                    render(
-                        &furnace,
-                        &RenderOptions {
-                            light_events: events,
-                            ..options(16, seed)
-                        },
-                    )
+                    let light_events = events;
+                    let options = RenderOptions {
+                        light_events,
+                        ..options(16, seed)
+                    };
+                    render(&furnace, &options)
                 })
                 .collect();
             // A material that throws its direction away in proportion to what it reflects is exact.
@@ -102,28 +87,24 @@ fn a_sphere_keeps_each_reflection_of_the_series() {
     sphere.surfaces[0].material = Material::lambertian(REFLECTANCE).unwrap();
     // What a diffuse sphere reflects spreads evenly over it: ρᵏP / (πA) for each k-th reflection.
     let once = 2.0 / (PI * 4.0 * PI * 0.01);
-    for depth in [2_i32, 3, 5] {
-        let radiances: Vec<f64> = (0..SEEDS)
-            .map(|seed| {
-                let options = RenderOptions {
-                    max_depth: Some(depth.unsigned_abs()),
-                    ..options(16, seed)
-                };
-                mean(render(&sphere, &options).lasers[0].multiple.values())
-            })
-            .collect();
+    let layers = |depth: i32, samples, seed| {
+        let max_depth = Some(depth.unsigned_abs());
+        let options = RenderOptions {
+            max_depth,
+            ..options(samples, seed)
+        };
+        render(&sphere, &options).lasers.remove(0)
+    };
+    for depth in [2, 3, 5] {
+        let radiances = over_seeds(|seed| mean(layers(depth, 16, seed).multiple.values()));
         let expected: f64 = (2..=depth).map(|k| once * REFLECTANCE.powi(k)).sum();
         // The next reflection would add at least 8 %.
         assert_mean("series", &radiances, expected, 0.01 * expected);
     }
-    let direct = RenderOptions {
-        max_depth: Some(1),
-        ..options(4, 0)
-    };
-    let direct = render(&sphere, &direct).lasers.remove(0);
+    let direct = layers(1, 4, 0);
     assert!(
         direct.multiple.values().iter().all(|&v| v == 0.0),
-        "one surface only"
+        "one surface"
     );
     assert!(mean(direct.single.values()) > 0.0, "lit");
 }
@@ -151,10 +132,8 @@ fn polygon_irradiance(corners: [DVec3; 4], point: DVec3, normal: DVec3) -> f64 {
 fn a_sphere_under_an_area_light_obeys_lamberts_formula() {
     // A few micrometres of a sphere, 40° from its top, under a light 0.2 m square.
     let (sin, cos) = 40.0_f64.to_radians().sin_cos();
-    let (point, normal) = (
-        DVec3::new(0.1 * sin, 0.0, 0.1 * cos),
-        DVec3::new(sin, 0.0, cos),
-    );
+    let normal = DVec3::new(sin, 0.0, cos);
+    let point = 0.1 * normal;
     let eye = point + 0.3 * DVec3::new(0.8, 0.5, 0.2);
     let text = format!(
         r#"
@@ -179,24 +158,19 @@ fn a_sphere_under_an_area_light_obeys_lamberts_formula() {
         "#,
         eye.x, eye.y, eye.z, point.x, point.z
     );
-    let corner = |x: f64, y: f64| DVec3::new(0.05 + 0.1 * x, 0.1 * y, 0.25);
-    let corners = [
-        corner(-1.0, -1.0),
-        corner(1.0, -1.0),
-        corner(1.0, 1.0),
-        corner(-1.0, 1.0),
-    ];
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let corners = corners.map(|[x, y]| DVec3::new(0.05 + 0.1 * x, 0.1 * y, 0.25));
     let expected = 0.6 / PI * 10.0 * polygon_irradiance(corners, point, normal);
     for events in [LightEvents::Both, LightEvents::NextEvent] {
-        let radiances: Vec<f64> = (0..SEEDS)
-            .map(|seed| {
-                let options = RenderOptions {
-                    light_events: events,
-                    ..options(64, seed)
-                };
-                mean(render(&scene(&text), &options).lights.values())
-            })
-            .collect();
+        let scene = scene(&text);
+        let radiances = over_seeds(|seed| {
+            let light_events = events;
+            let options = RenderOptions {
+                light_events,
+                ..options(64, seed)
+            };
+            mean(render(&scene, &options).lights.values())
+        });
         assert_mean("sphere", &radiances, expected, 2e-3 * expected);
     }
 }
@@ -236,31 +210,24 @@ fn all_ways_to_find_a_light_agree() {
     let satin = Material::conductor(Metal::Aluminium, 0.3).unwrap();
     let plastic = Material::plastic(0.6, 1.5, 0.2).unwrap();
     let plaster = Material::oren_nayar(0.8, 0.5).unwrap();
-    for (name, first, second) in [
+    let pairs = [
         ("satin on plaster", satin, plaster),
         ("plastic on satin", plastic, satin),
-    ] {
+    ];
+    for (name, first, second) in pairs {
         let mut corner = corner(first, second);
         corner.lasers.clear();
         let of = |events, seed| {
-            let options = RenderOptions {
-                light_events: events,
-                max_depth: Some(4),
-                ..options(32, seed)
-            };
+            let mut options = options(32, seed);
+            (options.light_events, options.max_depth) = (events, Some(4));
             mean(render(&corner, &options).lights.values())
         };
-        let both: Vec<f64> = (0..SEEDS).map(|s| of(LightEvents::Both, s)).collect();
+        let both = over_seeds(|seed| of(LightEvents::Both, seed));
         let scale = both.iter().sum::<f64>() / SEEDS as f64;
-        for (events, precision) in [
-            (LightEvents::NextEvent, 0.02),
-            (LightEvents::Scattering, 0.02),
-        ] {
-            let differences: Vec<f64> = (0..SEEDS)
-                .zip(&both)
-                .map(|(s, both)| of(events, 100 + s) - both)
-                .collect();
-            assert_mean(name, &differences, 0.0, precision * scale);
+        for events in [LightEvents::NextEvent, LightEvents::Scattering] {
+            let pairs = (100..).zip(&both);
+            let differences: Vec<f64> = pairs.map(|(seed, both)| of(events, seed) - both).collect();
+            assert_mean(name, &differences, 0.0, 0.02 * scale);
         }
     }
 }
@@ -273,18 +240,14 @@ fn lasers_light_alike_by_the_beam_and_by_drawn_directions() {
         let mut corner = corner(first, second);
         corner.lights.clear();
         let of = |events, seed| {
-            let options = RenderOptions {
-                laser_events: events,
-                max_depth: Some(3),
-                ..options(16, seed)
-            };
+            let mut options = options(16, seed);
+            (options.laser_events, options.max_depth) = (events, Some(3));
             let layers = render(&corner, &options).lasers.remove(0);
             [&layers.single, &layers.multiple].map(|layer| mean(layer.values()))
         };
         let beam: Vec<[f64; 2]> = (0..SEEDS).map(|s| of(LaserEvents::Beam, s)).collect();
-        let drawn: Vec<[f64; 2]> = (0..SEEDS)
-            .map(|s| of(LaserEvents::Sampled, 100 + s))
-            .collect();
+        let drawn = (100..100 + SEEDS).map(|seed| of(LaserEvents::Sampled, seed));
+        let drawn: Vec<[f64; 2]> = drawn.collect();
         for layer in [0, 1] {
             let scale = beam.iter().map(|v| v[layer]).sum::<f64>() / SEEDS as f64;
             assert!(scale > 0.0, "{name}, layer {layer} is dark");
@@ -327,35 +290,16 @@ fn a_mirror_shows_coherent_light_dimmed_by_its_reflectance() {
     );
     over.surfaces[1].material = Material::mirror(0.7).unwrap();
     let of = |scene: &Scene, depth, seed| {
+        let max_depth = Some(depth);
         let options = RenderOptions {
-            max_depth: Some(depth),
+            max_depth,
             ..options(16, seed)
         };
         let layers = render(scene, &options).lasers.remove(0);
         assert!(mean(layers.multiple.values()) == 0.0, "one rough surface");
         mean(layers.single.values())
     };
-    let ratios: Vec<f64> = (0..SEEDS)
-        .map(|seed| of(&over, 2, seed) / of(&straight, 2, 100 + seed))
-        .collect();
+    let ratios = over_seeds(|seed| of(&over, 2, seed) / of(&straight, 2, 100 + seed));
     assert_mean("over a mirror", &ratios, 0.7, 2e-3);
     assert!(of(&over, 1, 0) == 0.0, "the mirror counts as a surface");
-}
-
-#[test]
-fn a_laser_inside_a_body_lights_nothing_outside() {
-    let mut hidden = ball(OUTSIDE);
-    let frame = render(&hidden, &options(4, 0));
-    let layers = &frame.lasers[0];
-    assert!(
-        layers.single.values().iter().all(|&v| v == 0.0),
-        "the laser is hidden"
-    );
-    assert!(layers.power_on_target == 0.0, "power");
-    hidden.surfaces[0].shape = hidden.surfaces[0]
-        .shape
-        .moved(&tem00::decorrelation::RigidMotion::along(DVec3::new(0.0, 0.0, -0.3)).unwrap());
-    hidden.surfaces[0].material = Material::lambertian(0.5).unwrap();
-    let behind = render(&hidden, &options(4, 0));
-    assert!(behind.lasers[0].power_on_target == 0.0, "behind the laser");
 }

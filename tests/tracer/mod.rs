@@ -2,7 +2,6 @@
 //! cases and what becomes of the light of a laser.
 
 mod edge_cases;
-mod estimate;
 mod inspection;
 mod integrator;
 mod render;

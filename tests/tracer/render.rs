@@ -1,18 +1,21 @@
 use core::sync::atomic::AtomicBool;
-use std::path::Path;
 
 use tem00::{
-    engine::{SpeckleModel, SpecklePlan, render_frame},
+    engine::render_frame,
     numerics::Grid,
-    scene::parse_scene,
-    tracer::{
-        Crop, Filter, Frame, Material, RenderError, RenderOptions, Sampling, Scene, TracerError,
-    },
+    tracer::{Crop, Filter, Frame, Material, RenderOptions, Sampling, Scene},
+};
+use tem00_testkit::refuses;
+
+use crate::{
+    means::render as render_smooth,
+    renders::{self, speckle},
 };
 
 /// Two lasers and a light on two plates.
 fn scene() -> Scene {
-    let text = r#"
+    renders::scene(
+        r#"
         [camera]
         position = [0, 0.05, 0.3]
         look_at = [0, 0, 0]
@@ -38,23 +41,16 @@ fn scene() -> Scene {
         rectangle = { centre = [0, -0.02, 0.02], normal = [0, 1, 0.2], size = [0.1, 0.03] }
         [[light]]
         rectangle = { centre = [0, 0.2, 0.2], normal = [0, -1, -1], size = [0.05, 0.05], radiance = 10 }
-    "#;
-    parse_scene(text, Path::new(".")).unwrap()
+        "#,
+    )
 }
 
 fn options() -> RenderOptions {
-    RenderOptions {
-        samples_per_pixel: 7,
-        seed: 3,
-        ..RenderOptions::default()
-    }
+    renders::options(7, 3)
 }
 
 fn render(scene: &Scene, options: &RenderOptions) -> Frame {
-    let plan = SpecklePlan::new(scene, 1).unwrap();
-    let model = SpeckleModel::generate(scene, &plan).unwrap();
-    let cancel = AtomicBool::new(false);
-    render_frame(scene, Some(&model), 0, options, |_| (), &cancel).unwrap()
+    renders::frame(scene, Some(&speckle(scene, 1)), 0, options)
 }
 
 fn with_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> R {
@@ -72,13 +68,8 @@ fn layers(frame: &Frame) -> Vec<&Grid<f32>> {
     ];
     all.extend(&frame.normal);
     for laser in &frame.lasers {
-        all.extend([
-            &laser.single,
-            &laser.multiple,
-            &laser.speckle,
-            &laser.radiance,
-            &laser.variance,
-        ]);
+        all.extend([&laser.single, &laser.multiple, &laser.speckle]);
+        all.extend([&laser.radiance, &laser.variance]);
     }
     all
 }
@@ -86,21 +77,21 @@ fn layers(frame: &Frame) -> Vec<&Grid<f32>> {
 #[test]
 fn frames_have_the_same_bits_for_any_number_of_threads() {
     let scene = scene();
-    for options in [
-        options(),
-        RenderOptions {
-            sampling: Sampling::TargetError(0.2),
-            filter: Filter::Gaussian {
-                radius: 1.5,
-                standard_deviation: 0.5,
-            },
-            ..options()
-        },
-        RenderOptions {
-            sampling: Sampling::Adaptive,
-            ..options()
-        },
+    let (radius, standard_deviation) = (1.5, 0.5);
+    let filter = Filter::Gaussian {
+        radius,
+        standard_deviation,
+    };
+    for (sampling, filter) in [
+        (Sampling::Even, Filter::default()),
+        (Sampling::TargetError(0.2), filter),
+        (Sampling::Adaptive, Filter::default()),
     ] {
+        let options = RenderOptions {
+            sampling,
+            filter,
+            ..options()
+        };
         let one = with_threads(1, || render(&scene, &options));
         for threads in [2, 7] {
             let many = with_threads(threads, || render(&scene, &options));
@@ -119,13 +110,11 @@ fn a_crop_has_the_bits_of_the_whole_image() {
         height: 4,
     };
     let whole = render(&scene, &options());
-    let part = render(
-        &scene,
-        &RenderOptions {
-            crop: Some(crop),
-            ..options()
-        },
-    );
+    let cropped = RenderOptions {
+        crop: Some(crop),
+        ..options()
+    };
+    let part = render(&scene, &cropped);
     assert_eq!(part.origin, [5, 2], "origin");
     assert_eq!(part.lights.width(), 34, "width");
     for (whole, part) in layers(&whole).into_iter().zip(layers(&part)) {
@@ -140,12 +129,13 @@ fn a_crop_has_the_bits_of_the_whole_image() {
 fn all_but_speckle_in_the_dark_is_the_same_without_it() {
     let scene = scene();
     for max_depth in [1, 3] {
+        let (max_depth, speckle_in_the_dark) = (Some(max_depth), false);
         let all = RenderOptions {
-            max_depth: Some(max_depth),
+            max_depth,
             ..options()
         };
         let light_only = RenderOptions {
-            speckle_in_the_dark: false,
+            speckle_in_the_dark,
             ..all
         };
         let [mut with, without] = [all, light_only].map(|options| render(&scene, &options));
@@ -161,8 +151,8 @@ fn all_but_speckle_in_the_dark_is_the_same_without_it() {
             }
             with.speckle = without.speckle.clone();
         }
-        assert!(max_depth > 1 || changed > 20, "{changed} dark pixels");
-        assert!(with == without, "a layer of light, depth {max_depth}");
+        assert!(max_depth > Some(1) || changed > 20, "{changed} dark pixels");
+        assert!(with == without, "a layer of light, depth {max_depth:?}");
     }
 }
 
@@ -173,8 +163,7 @@ fn many_lasers_in_one_pass_are_the_lasers_one_by_one() {
     for index in 0..2 {
         let mut alone = all.clone();
         alone.lasers = vec![all.lasers[index].clone()];
-        let cancel = AtomicBool::new(false);
-        let one = render_frame(&alone, None, 0, &options(), |_| (), &cancel).unwrap();
+        let one = render_smooth(&alone, &options());
         let (one, together) = (&one.lasers[0], &together.lasers[index]);
         // White surfaces leave the paths of all wavelengths the same.
         assert_eq!(one.single, together.single, "{index}");
@@ -200,32 +189,18 @@ fn depth_and_normal_are_those_of_the_plate() {
         x == 0.0 && y == 0.0 && (z - 1.0).abs() < 1e-6,
         "({x}, {y}, {z})"
     );
-    assert!(
-        frame
-            .samples
-            .values()
-            .iter()
-            .all(|n| n.to_bits() == 7.0_f32.to_bits()),
-        "samples"
-    );
-    let none = Frame {
-        ..render(&with_nothing_in_view(), &options())
+    let is_even = |layer: &Grid<f32>, value: f32| {
+        let mut values = layer.values().iter();
+        values.all(|v| v.to_bits() == value.to_bits())
     };
-    assert!(none.depth.values().iter().all(|&d| d == 0.0), "nothing");
+    assert!(is_even(&frame.samples, 7.0), "samples");
+    let none = render(&with_nothing_in_view(), &options());
+    assert!(is_even(&none.depth, 0.0), "nothing");
     assert!(
-        none.normal
-            .iter()
-            .all(|n| n.values().iter().all(|&n| n == 0.0)),
+        none.normal.iter().all(|n| is_even(n, 0.0)),
         "nothing has a normal"
     );
-    let speckle = &none.lasers[0].speckle;
-    assert!(
-        speckle
-            .values()
-            .iter()
-            .all(|s| s.to_bits() == 1.0_f32.to_bits()),
-        "no speckle"
-    );
+    assert!(is_even(&none.lasers[0].speckle, 1.0), "no speckle");
 }
 
 fn with_nothing_in_view() -> Scene {
@@ -240,7 +215,8 @@ fn with_nothing_in_view() -> Scene {
 
 /// A closed white sphere, whose incoherent radiance is known and the same in every pixel.
 fn sphere() -> (Scene, f64) {
-    let text = r#"
+    let mut scene = renders::scene(
+        r#"
         [camera]
         position = [0.02, 0.04, 0]
         look_at = [0, 0.08, 0.02]
@@ -257,18 +233,13 @@ fn sphere() -> (Scene, f64) {
         spot = { waist_radius = "0.5 um", waist_distance = 0 }
         [[surface]]
         sphere = { centre = [0, 0, 0], radius = 0.1 }
-    "#;
-    let mut scene = parse_scene(text, Path::new(".")).unwrap();
+        "#,
+    );
     scene.surfaces[0].material = Material::lambertian(0.5).unwrap();
     // ρ²P / (πA (1 − ρ)) after all reflections but the first.
     let area = 4.0 * core::f64::consts::PI * 0.01;
     let radiance = 0.25 * 2.0 / (core::f64::consts::PI * area * 0.5);
     (scene, radiance)
-}
-
-fn render_smooth(scene: &Scene, options: &RenderOptions) -> Frame {
-    let cancel = AtomicBool::new(false);
-    render_frame(scene, None, 0, options, |_| (), &cancel).unwrap()
 }
 
 #[test]
@@ -277,12 +248,7 @@ fn stated_variances_are_those_between_renders() {
     let (scene, radiance) = sphere();
     let (mut stated, mut squares) = (0.0, 0.0);
     for seed in 0..SEEDS {
-        let options = RenderOptions {
-            samples_per_pixel: 16,
-            seed,
-            ..RenderOptions::default()
-        };
-        let frame = render_smooth(&scene, &options);
+        let frame = render_smooth(&scene, &renders::options(16, seed));
         let laser = &frame.lasers[0];
         let pixels = laser.multiple.values().len() as f64;
         for (value, variance) in laser.multiple.values().iter().zip(laser.variance.values()) {
@@ -301,12 +267,7 @@ fn light_over_two_surfaces_is_found_with_few_samples() {
     let (scene, multiple) = sphere();
     let mut squares = Vec::new();
     for seed in 0..4 {
-        let options = RenderOptions {
-            samples_per_pixel: 16,
-            seed,
-            ..RenderOptions::default()
-        };
-        let frame = render_smooth(&scene, &options);
+        let frame = render_smooth(&scene, &renders::options(16, seed));
         let values = frame.lasers[0].multiple.values().iter();
         squares.extend(values.map(|&value| (f64::from(value) / multiple - 1.0).powi(2)));
     }
@@ -319,26 +280,25 @@ fn light_over_two_surfaces_is_found_with_few_samples() {
 fn a_target_is_reached_without_bias() {
     const TARGET: f64 = 0.1;
     let (scene, multiple) = sphere();
+    let max_depth = Some(1);
     let direct = RenderOptions {
-        max_depth: Some(1),
-        samples_per_pixel: 256,
-        ..RenderOptions::default()
+        max_depth,
+        ..renders::options(256, 0)
     };
     let single = render_smooth(&scene, &direct).lasers.remove(0);
     let (mut squares, mut biases) = (Vec::new(), Vec::new());
     for seed in 0..12 {
+        let sampling = Sampling::TargetError(TARGET);
         let options = RenderOptions {
-            samples_per_pixel: 16,
-            seed,
-            sampling: Sampling::TargetError(TARGET),
-            ..RenderOptions::default()
+            sampling,
+            ..renders::options(16, seed)
         };
         let frame = render_smooth(&scene, &options);
         let laser = &frame.lasers[0];
-        let samples = frame.samples.values();
+        let mut samples = frame.samples.values().iter();
         assert!(
-            samples.iter().all(|&n| (16.0..=1024.0).contains(&n)),
-            "numbers of samples: {samples:?}"
+            samples.all(|n| (16.0..=1024.0).contains(n)),
+            "numbers of samples"
         );
         let errors: Vec<f64> = (0..laser.multiple.values().len())
             .map(|i| {
@@ -364,13 +324,8 @@ fn adaptive_samples_find_edges_with_fewer_samples_and_without_bias() {
     const SEEDS: u64 = 16;
     let scene = scene();
     let render = |sampling, samples_per_pixel, seed| {
-        let options = RenderOptions {
-            sampling,
-            samples_per_pixel,
-            seed,
-            max_depth: Some(1),
-            ..options()
-        };
+        let mut options = renders::options(samples_per_pixel, seed);
+        (options.sampling, options.max_depth) = (sampling, Some(1));
         render_smooth(&scene, &options)
     };
     let truth = render(Sampling::Even, 1 << 14, 100);
@@ -400,15 +355,10 @@ fn adaptive_samples_find_edges_with_fewer_samples_and_without_bias() {
         let (even, _, of_even) = errors(Sampling::Even, samples);
         let (adaptive, bias, of_adaptive) = errors(Sampling::Adaptive, samples);
         let asked = f64::from(samples);
-        assert!(
-            (of_even - asked).abs() < 1e-9,
-            "{of_even} samples of a pixel"
-        );
+        assert!((of_even - asked).abs() < 1e-9, "{of_even} of a pixel");
         // The pilot takes a quarter, and what it leaves is used.
-        assert!(
-            (0.73 * asked..=0.75 * asked).contains(&of_adaptive),
-            "{of_adaptive} samples of a pixel"
-        );
+        let most = 0.73 * asked..=0.75 * asked;
+        assert!(most.contains(&of_adaptive), "{of_adaptive} of a pixel");
         assert!(adaptive < 0.25 * even, "{adaptive:e} for {even:e}");
         // The standard error of the mean, were pixels independent.
         let deviation = (adaptive / (SEEDS * 40 * 9) as f64).sqrt();
@@ -418,68 +368,20 @@ fn adaptive_samples_find_edges_with_fewer_samples_and_without_bias() {
 
 #[test]
 fn options_out_of_range_are_refused() {
-    let scene = scene();
+    let (scene, go_on) = (scene(), AtomicBool::new(false));
     let crop = |x, width| {
+        let (y, height) = (0, 1);
         Some(Crop {
             x,
-            y: 0,
+            y,
             width,
-            height: 1,
+            height,
         })
     };
-    let bad = [
-        (
-            "samples_per_pixel",
-            RenderOptions {
-                samples_per_pixel: 0,
-                ..options()
-            },
-        ),
-        (
-            "crop (columns)",
-            RenderOptions {
-                crop: crop(39, 2),
-                ..options()
-            },
-        ),
-        (
-            "crop (columns)",
-            RenderOptions {
-                crop: crop(0, 0),
-                ..options()
-            },
-        ),
-        (
-            "crop (columns)",
-            RenderOptions {
-                crop: crop(usize::MAX, 2),
-                ..options()
-            },
-        ),
-        (
-            "target_error",
-            RenderOptions {
-                sampling: Sampling::TargetError(0.0),
-                ..options()
-            },
-        ),
-        (
-            "target_error",
-            RenderOptions {
-                sampling: Sampling::TargetError(f64::NAN),
-                ..options()
-            },
-        ),
-    ];
-    for (name, options) in bad {
-        let cancel = AtomicBool::new(false);
-        let result = render_frame(&scene, None, 0, &options, |_| (), &cancel);
-        assert!(
-            matches!(
-                result,
-                Err(RenderError::Scene(TracerError::OutOfRange { parameter, .. })) if parameter == name
-            ),
-            "{name}: {result:?}"
-        );
-    }
+    refuses!(options = options() => render_frame(&scene, None, 0, &options, |_| (), &go_on);
+        options.samples_per_pixel: [0],
+        options.crop as "crop (columns)": [crop(39, 2), crop(0, 0), crop(usize::MAX, 2)],
+        options.sampling as "target_error":
+            [Sampling::TargetError(0.0), Sampling::TargetError(f64::NAN)],
+    );
 }

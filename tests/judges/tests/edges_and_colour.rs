@@ -5,17 +5,18 @@
 //! slant, so that 32 columns see it at 32 positions between two rows.
 
 use core::f64::consts::PI;
-use std::{path::Path, sync::atomic::AtomicBool};
+use std::sync::atomic::AtomicBool;
 
 use tem00::{
     calibration::CalibrationSettings,
     geometry::{Rectangle, Shape},
     numerics::Grid,
     scan::{Measurement, MeasurementScene, ScanSettings},
-    scene::parse_scene,
     tracer::{Material, Scene, Surface, Trajectory},
     triangulation::{DVec2, DVec3, DetectorSettings, SensorDescription},
 };
+
+use crate::renders;
 
 /// The angle between the axis of the camera and the plane of the laser, in radians.
 const ANGLE: f64 = PI / 6.0;
@@ -109,7 +110,7 @@ impl Part {
 }
 
 fn scene(part: &Part) -> Scene {
-    let text = format!(
+    let mut scene = renders::scene(&format!(
         r#"
         [render]
         frames = {FRAMES}
@@ -139,8 +140,7 @@ fn scene(part: &Part) -> Scene {
         SIZE[0],
         SIZE[1],
         4.0 * SIGMA,
-    );
-    let mut scene = parse_scene(&text, Path::new(".")).expect("a scene");
+    ));
     scene.surfaces = part.surfaces();
     scene
 }

@@ -25,6 +25,7 @@ use tem00::{
     numerics::{Fft2, Grid, disc_overlap},
     wave::{Complex, DVec3, Illumination, RoughSurface, Scatterer},
 };
+use tem00_testkit::Numbers;
 
 /// Distance from the plate to the pupil, in metres.
 const DISTANCE: f64 = 0.5;
@@ -36,27 +37,11 @@ const DENSITY: usize = 2;
 const GEOMETRIES: u64 = 14;
 const SURFACES: u64 = 120;
 
-/// A generator of random numbers, `SplitMix64`.
-struct Random(u64);
-
-impl Random {
-    fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// A direction within so many degrees of the normal, z.
-    fn direction(&mut self, degrees: f64) -> DVec3 {
-        let (angle, turn) = (
-            (degrees * self.uniform()).to_radians(),
-            TAU * self.uniform(),
-        );
-        let (sin, cos) = angle.sin_cos();
-        DVec3::new(sin * turn.cos(), sin * turn.sin(), cos)
-    }
+/// A direction within so many degrees of the normal, z.
+fn direction(random: &mut Numbers, degrees: f64) -> DVec3 {
+    let [angle, turn] = random.units();
+    let ((sin, cos), turn) = ((degrees * angle).to_radians().sin_cos(), TAU * turn);
+    DVec3::new(sin * turn.cos(), sin * turn.sin(), cos)
 }
 
 /// One incoherent part of the light.
@@ -116,7 +101,7 @@ impl Bench {
         DVec3::new(x, y, (1.0 - x * x - y * y).sqrt())
     }
 
-    fn surface(&self, random: &mut Random) -> RoughSurface {
+    fn surface(&self, random: &mut Numbers) -> RoughSurface {
         let sites = SIZE * DENSITY;
         let mut scatterers = Vec::new();
         for site in 0..sites * sites {
@@ -125,10 +110,10 @@ impl Bench {
                 .map(|part| part * self.period());
             let place = on_plate(&self.view, self.axes[0] * at[0] + self.axes[1] * at[1]);
             for height in self.heights(random) {
-                let radius = (-random.uniform().max(1e-300).ln()).sqrt();
+                let radius = (-random.unit().max(1e-300).ln()).sqrt();
                 scatterers.push(Scatterer {
                     position: place + DVec3::Z * height,
-                    amplitude: Complex::from_polar(radius, TAU * random.uniform()),
+                    amplitude: Complex::from_polar(radius, TAU * random.unit()),
                 });
             }
         }
@@ -136,11 +121,11 @@ impl Bench {
     }
 
     /// Normal heights of the scatterers of a site, spread over the quarters of a turn and two halves of the radii.
-    fn heights(&self, random: &mut Random) -> Vec<f64> {
+    fn heights(&self, random: &mut Numbers) -> Vec<f64> {
         if self.rms_height == 0.0 {
             return vec![0.0];
         }
-        let (turn, inner) = (random.uniform(), random.uniform());
+        let (turn, inner) = (random.unit(), random.unit());
         let height = |i: u32| {
             let part = 0.5 * (f64::from(i % 2) + (inner + 0.5 * f64::from(i / 4 % 2)).fract());
             let radius = (-2.0 * part.max(1e-300).ln()).sqrt();
@@ -187,8 +172,8 @@ impl Bench {
     /// What waves make of speckle, over many surfaces.
     fn measures(&self, parts: &[Part], seed: u64) -> [f64; MEASURES.len()] {
         let of_surface = |surface: u64| {
-            let mut random = Random(seed * 1_000_003 + surface);
-            let offset = [random.uniform() - 0.5, random.uniform() - 0.5];
+            let mut random = Numbers::new(seed * 1_000_003 + surface);
+            let offset = [random.unit() - 0.5, random.unit() - 0.5];
             let surface = self.surface(&mut random);
             let pixels = (SIZE * DENSITY).pow(2);
             let ([mut mixed, mut later], mut single) = ([0, 1].map(|_| vec![0.0; pixels]), 0.0);
@@ -263,8 +248,8 @@ fn on_plate(view: &CellGeometry, across: DVec3) -> DVec3 {
 
 /// Directions of a source, in periods of the paths over the plate, with their shares: discs of some sizes, a strip of
 /// modes, a ring, random directions of random shares.
-fn directions(geometry: u64, random: &mut Random) -> Vec<([f64; 2], f64)> {
-    let radius = 1.0 + 2.0 * random.uniform();
+fn directions(geometry: u64, random: &mut Numbers) -> Vec<([f64; 2], f64)> {
+    let radius = 1.0 + 2.0 * random.unit();
     let inside = |x: f64, y: f64| match geometry % 4 {
         0 | 1 => x.hypot(y) <= radius,
         2 => (0.3 * x + y).abs() < 0.6 && x.abs() < 5.0,
@@ -276,13 +261,9 @@ fn directions(geometry: u64, random: &mut Random) -> Vec<([f64; 2], f64)> {
         .map(|(x, y)| ([x, y], 1.0))
         .collect();
     if list.is_empty() {
-        let mut whole = || (9.0 * random.uniform()).floor() - 4.0;
+        let mut whole = || (9.0 * random.unit()).floor() - 4.0;
         let places: Vec<_> = (0..6).map(|_| [whole(), whole()]).collect();
-        list.extend(
-            places
-                .into_iter()
-                .map(|place| (place, 0.2 + random.uniform())),
-        );
+        list.extend(places.into_iter().map(|place| (place, 0.2 + random.unit())));
     }
     let total: f64 = list.iter().map(|(_, share)| share).sum();
     list.iter()
@@ -290,31 +271,35 @@ fn directions(geometry: u64, random: &mut Random) -> Vec<([f64; 2], f64)> {
         .collect()
 }
 
+fn cell(view: CellGeometry, rms_height: f64) -> ResolutionCell {
+    let cell = ResolutionCell::new(view).expect("a cell");
+    let correlation_length = 0.0;
+    let relief = Relief {
+        rms_height,
+        correlation_length,
+    };
+    cell.with_relief(relief).expect("a relief")
+}
+
 /// Returns the measures of waves and of the law in a random geometry: behind one wavelength, and behind three lines.
 fn compare(geometry: u64) -> Vec<[[f64; MEASURES.len()]; 2]> {
-    let mut random = Random(geometry * 7_919 + 11);
+    let mut random = Numbers::new(geometry * 7_919 + 11);
     let view = CellGeometry {
-        to_source: random.direction(60.0),
-        to_pupil: random.direction(50.0),
+        to_source: direction(&mut random, 60.0),
+        to_pupil: direction(&mut random, 50.0),
         normal: DVec3::Z,
-        sin_aperture: 0.008 + 0.012 * random.uniform(),
-        wavelength: 405e-9 + 255e-9 * random.uniform(),
+        sin_aperture: 0.008 + 0.012 * random.unit(),
+        wavelength: 405e-9 + 255e-9 * random.unit(),
     };
     let wave_number = TAU / view.wavelength;
     let rms_height = match geometry % 3 {
         0 => 0.0,
         // Phases of radians where the direction changes by as much as the pupil is wide.
-        _ => (1.0 + 3.0 * random.uniform()) / (wave_number * 2.0 * view.sin_aperture),
+        _ => (1.0 + 3.0 * random.unit()) / (wave_number * 2.0 * view.sin_aperture),
     };
     let bench = Bench::new(view, rms_height);
     let directions = directions(geometry, &mut random);
-    let cell = ResolutionCell::new(view).and_then(|cell| {
-        cell.with_relief(Relief {
-            rms_height,
-            correlation_length: 0.0,
-        })
-    });
-    let cell = cell.expect("a cell");
+    let cell = cell(view, rms_height);
     let step = bench.step();
     // Wave numbers differ by so little that the periods of all directions stay whole.
     let lines: &[(f64, f64)] = match step < 0.004 * wave_number {
@@ -384,8 +369,8 @@ fn speckle_under_sources_of_several_directions_is_that_of_the_law() {
 #[test]
 fn directions_displace_the_field_as_the_law_of_motion_says() {
     for seed in 0..20 {
-        let mut random = Random(seed);
-        let (to_source, to_pupil) = (random.direction(60.0), random.direction(50.0));
+        let mut random = Numbers::new(seed);
+        let (to_source, to_pupil) = (direction(&mut random, 60.0), direction(&mut random, 50.0));
         let view = CellGeometry {
             to_source,
             to_pupil,
@@ -393,7 +378,7 @@ fn directions_displace_the_field_as_the_law_of_motion_says() {
             sin_aperture: 0.02,
             wavelength: 650e-9,
         };
-        let other = (to_source + 0.015 * random.direction(90.0)).normalize();
+        let other = (to_source + 0.015 * direction(&mut random, 90.0)).normalize();
         let pupil = DISTANCE * to_pupil;
         let before = Configuration::new(ConfigurationData {
             wavelength: view.wavelength,
@@ -412,18 +397,12 @@ fn directions_displace_the_field_as_the_law_of_motion_says() {
         let phases = rms_height * before.height_phase_change(&after).expect("a change");
         let shared = (-phases * phases).exp() * disc_overlap(moved).powi(2);
 
-        let cell = ResolutionCell::new(view).and_then(|cell| {
-            cell.with_relief(Relief {
-                rms_height,
-                correlation_length: 0.0,
-            })
-        });
         let line = SpectralLine::monochromatic(view.wavelength).expect("a line");
         let both = [(to_source, 1.0), (other, 1.0)];
         let extent = SourceExtent::directions(&both).expect("directions");
         let speckle = PolychromaticSpeckle {
             line: &line,
-            cell: &cell.expect("a cell").with_source_extent(extent),
+            cell: &cell(view, rms_height).with_source_extent(extent),
         };
         let found = 2.0 * speckle.contrast().powi(2) - 1.0;
         // The law of motion is exact; the cell lacks about half of the angle, 0.0075, of a displacement below one pupil, by

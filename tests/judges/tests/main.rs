@@ -16,8 +16,9 @@ mod interval_coverage;
 mod line_image;
 mod line_noise;
 mod moving_scenes;
-mod moving_speckle;
 mod reference_and_engine;
+#[path = "../../renders.rs"]
+mod renders;
 mod step_height;
 mod tilted_sensors;
 mod two_estimators;

@@ -7,15 +7,16 @@ use std::{fs, path::Path, sync::atomic::AtomicBool};
 
 use tem00::{
     camera::{Camera, CameraDescription},
-    engine::{SpeckleModel, SpecklePlan, render_frame},
     numerics::Grid,
-    scene::{parse_scene, read_scene},
+    scene::read_scene,
     statistics::{pearson_correlation, t_test_mean},
     tracer::{
         Frame, LaserEvents, LightEvents, Material, Method, ReferenceSpeckle, RenderOptions,
         Sampling, Scene, render_reference,
     },
 };
+
+use crate::renders;
 
 /// Images of each scene, by seeds from 0.
 const SEEDS: u64 = 20;
@@ -104,11 +105,21 @@ fn assert_same_mean(what: &str, pairs: &[[f64; 2]]) {
     );
 }
 
+/// A frame by the reference.
+fn reference(
+    scene: &Scene,
+    speckle: Option<&ReferenceSpeckle>,
+    frame: u32,
+    options: &RenderOptions,
+) -> Frame {
+    let go_on = AtomicBool::new(false);
+    render_reference(scene, speckle, frame, options, |_| (), &go_on).expect("a render")
+}
+
 /// Renders a frame without speckle by both, once for each seed, and compares them block by block.
 ///
 /// Returns the number of blocks in which light over several surfaces was compared.
 fn assert_agree(name: &str, scene: &Scene, frame: u32, samples_per_pixel: u32) -> usize {
-    let go_on = AtomicBool::new(false);
     let pairs = (0..SEEDS).map(|seed| {
         let options = RenderOptions {
             samples_per_pixel,
@@ -116,9 +127,8 @@ fn assert_agree(name: &str, scene: &Scene, frame: u32, samples_per_pixel: u32) -
             seed,
             ..scene.render
         };
-        let engine = render_frame(scene, None, frame, &options, |_| (), &go_on);
-        let reference = render_reference(scene, None, frame, &options, |_| (), &go_on);
-        [engine, reference].map(|frame| compared(&frame.expect("a render")))
+        let engine = renders::frame(scene, None, frame, &options);
+        [engine, reference(scene, None, frame, &options)].map(|frame| compared(&frame))
     });
     let pairs: Vec<_> = pairs.collect();
     let (mut lit, mut multiple) = (0, 0);
@@ -148,10 +158,7 @@ fn reference_and_engine_agree_on_every_example() {
     let entries = fs::read_dir(folder).expect("a folder of scenes");
     let paths = entries.map(|entry| entry.expect("an entry").path());
     let mut paths: Vec<_> = paths
-        .filter(|path| {
-            path.extension()
-                .is_some_and(|extension| extension == "toml")
-        })
+        .filter(|path| path.extension().is_some_and(|e| e == "toml"))
         .collect();
     paths.sort();
     assert!(paths.len() >= 7, "{paths:?}");
@@ -163,7 +170,7 @@ fn reference_and_engine_agree_on_every_example() {
 
 /// A plate and a wall that stands on it, in the light of a laser and of what `more` adds.
 fn corner(more: &str) -> Scene {
-    let text = format!(
+    renders::scene(&format!(
         r#"
         [camera]
         position = [0.02, -0.1, 0.28]
@@ -190,8 +197,7 @@ fn corner(more: &str) -> Scene {
         conductor = {{ metal = "aluminium", roughness = 0.3 }}
         {more}
         "#
-    );
-    parse_scene(&text, Path::new(".")).expect("a valid scene")
+    ))
 }
 
 const LAMPS: &str = r#"
@@ -271,16 +277,15 @@ fn reference_and_engine_have_the_same_speckle() {
     scene.surfaces.remove(1);
     scene.surfaces[0].trajectory =
         tem00::tracer::Trajectory::steady(tem00::DVec3::new(15e-6, 0.0, 0.0)).expect("a motion");
-    let go_on = AtomicBool::new(false);
     let laws = |frames: [Frame; 2]| {
         let factors = frames.each_ref().map(|frame| &frame.lasers[0].speckle);
         let count = factors[0].values().len() as f64;
         let moment = |power: i32| {
-            let values = factors[0].values().iter();
-            values
-                .map(|&value| f64::from(value).powi(power))
-                .sum::<f64>()
-                / count
+            let powers = factors[0]
+                .values()
+                .iter()
+                .map(|&v| f64::from(v).powi(power));
+            powers.sum::<f64>() / count
         };
         let shared = pearson_correlation(factors[0], factors[1]).expect("two patterns");
         [moment(1), moment(2), shared]
@@ -291,18 +296,10 @@ fn reference_and_engine_have_the_same_speckle() {
             seed,
             ..scene.render
         };
-        let plan = SpecklePlan::new(&scene, seed).expect("small patterns");
-        let model = SpeckleModel::generate(&scene, &plan).expect("small patterns");
+        let model = renders::speckle(&scene, seed);
         let prepared = ReferenceSpeckle::prepare(&scene, seed).expect("small patterns");
-        let engine = [0, 1].map(|frame| {
-            let rendered = render_frame(&scene, Some(&model), frame, &options, |_| (), &go_on);
-            rendered.expect("a render")
-        });
-        let reference = [0, 1].map(|frame| {
-            let rendered =
-                render_reference(&scene, Some(&prepared), frame, &options, |_| (), &go_on);
-            rendered.expect("a render")
-        });
+        let engine = [0, 1].map(|frame| renders::frame(&scene, Some(&model), frame, &options));
+        let reference = [0, 1].map(|frame| reference(&scene, Some(&prepared), frame, &options));
         [laws(engine), laws(reference)]
     });
     let pairs: Vec<_> = pairs.collect();
@@ -315,9 +312,5 @@ fn reference_and_engine_have_the_same_speckle() {
     }
     let mean = |law: usize| pairs.iter().map(|pair| pair[1][law]).sum::<f64>() / SEEDS as f64;
     assert!(mean(1) > 1.5, "there is speckle: {}", mean(1));
-    assert!(
-        (0.2..0.95).contains(&mean(2)),
-        "a part is left: {}",
-        mean(2)
-    );
+    assert!((0.2..0.95).contains(&mean(2)), "{} is left", mean(2));
 }

@@ -9,7 +9,9 @@ use tem00::{
     wave::displacement_between,
 };
 
-use super::setting::{EYE, LENS, SIDE, Setting, Step, in_speckles, part, speckle, tolerance};
+use super::setting::{
+    EYE, LENS, SIDE, Setting, Step, assert_correlation, in_speckles, part, speckle, tolerance,
+};
 
 /// Slices per pupil diameter.
 const SLICES: f64 = 32.0;
@@ -111,11 +113,7 @@ fn cases() -> Vec<Case> {
             setting: near,
             surface: Step {
                 displacement: DVec3::new(2e-4, -3e-4, 2e-4),
-                ..Step::about(
-                    DVec3::new(0.0, 0.05, 0.0),
-                    DVec3::new(0.3, 1.0, 0.2),
-                    0.6e-3,
-                )
+                ..Step::about(0.05 * DVec3::Y, DVec3::new(0.3, 1.0, 0.2), 0.6e-3)
             },
             camera: Step::about(EYE, DVec3::new(0.3, -1.0, 0.5), 0.7e-3),
             laser: Step::along(DVec3::new(-1e-4, 2e-4, 1e-4)),
@@ -197,17 +195,11 @@ fn steady(frames: u32, reference: u32) -> (Scene, f64) {
 fn any_two_frames_correlate_by_their_distance_on_both_sides_of_the_reference() {
     let (scene, size) = steady(5, 2);
     let frames = speckle(&scene, &[0, 1, 2, 3, 4], 9);
-    for (i, j) in [(0, 1), (1, 2), (2, 3), (3, 4), (1, 3), (0, 2), (0, 4)] {
-        let width = SIDE - 40 * (j - i);
-        let before = part(&frames[i], [0, 0], [width, SIDE]);
-        let after = part(&frames[j], [40 * (j - i), 0], [width, SIDE]);
-        let measured = pearson_correlation(&before, &after).expect("bright frames");
-        let distance = 0.5 * (j - i) as f64;
-        let expected = pupil_overlap_correlation(distance);
-        assert!(
-            (measured - expected).abs() < tolerance((width * SIDE) as f64, size),
-            "frames {i} and {j}: {measured} | {expected}"
-        );
+    for (i, later) in [(0, 1_u8), (1, 1), (2, 1), (3, 1), (1, 2), (0, 2), (0, 4)] {
+        let pair = [&frames[i], &frames[i + usize::from(later)]];
+        let law = pupil_overlap_correlation(0.5 * f64::from(later));
+        let name = format!("frame {i} and {later} later");
+        assert_correlation(&name, pair, [40 * i32::from(later), 0], (law, size));
     }
 }
 
@@ -225,14 +217,13 @@ fn a_plate_that_swings_through_its_place_has_other_speckle_on_either_side() {
     let frames = speckle(&scene, &[0, 1, 2], 12);
     // A quarter of the pupil to either side, and 20 pixels.
     for (one, other, pixels, distance) in [(0, 1, 20, 0.25), (2, 0, 20, 0.25), (2, 1, 40, 0.5)] {
-        let width = SIDE - pixels;
-        let before = part(&frames[one], [0, 0], [width, SIDE]);
-        let after = part(&frames[other], [pixels, 0], [width, SIDE]);
-        let measured = pearson_correlation(&before, &after).expect("bright frames");
-        let expected = pupil_overlap_correlation(distance);
-        assert!(
-            (measured - expected).abs() < tolerance((width * SIDE) as f64, size),
-            "frames {one} and {other}: {measured} | {expected}"
+        let law = pupil_overlap_correlation(distance);
+        let name = format!("frames {one} and {other}");
+        assert_correlation(
+            &name,
+            [&frames[one], &frames[other]],
+            [pixels, 0],
+            (law, size),
         );
     }
 }

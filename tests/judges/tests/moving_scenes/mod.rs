@@ -3,6 +3,7 @@
 
 mod background;
 mod bodies;
+mod focus;
 mod sequences;
 mod setting;
 mod sums;

@@ -1,15 +1,14 @@
-use std::{path::Path, sync::atomic::AtomicBool};
-
 use tem00::{
     decorrelation::{
         CameraFrame, Configuration, ConfigurationData, DVec2, DVec3, Illumination, ImagingGeometry,
         LensData, RigidMotion, RigidMotions, SpeckleMotion,
     },
-    engine::{SpeckleModel, SpecklePlan, render_frame},
     numerics::Grid,
-    scene::parse_scene,
-    tracer::{RenderOptions, Rotation, Scene, Trajectory},
+    statistics::pearson_correlation,
+    tracer::{Rotation, Scene, Trajectory},
 };
+
+use crate::renders;
 
 /// A plate at the origin that faces a camera 0.3 m away.
 #[derive(Clone, Copy, Debug)]
@@ -52,7 +51,7 @@ impl Setting {
             Some(_) => "waist_radius = \"2 um\", waist_distance = 0",
             None => "waist_radius = \"4 mm\"",
         };
-        let text = format!(
+        renders::scene(&format!(
             r#"
             [render]
             frames = 2
@@ -75,8 +74,7 @@ impl Setting {
             rectangle = {{ size = [0.04, 0.04] }}
             "#,
             laser.x, laser.y, laser.z
-        );
-        parse_scene(&text, Path::new(".")).expect("a valid scene")
+        ))
     }
 
     pub(crate) fn geometry(&self) -> ImagingGeometry {
@@ -153,22 +151,38 @@ impl Step {
 
 /// The speckle layers of some frames of a scene.
 pub(crate) fn speckle(scene: &Scene, frames: &[u32], seed: u64) -> Vec<Grid<f32>> {
-    let options = RenderOptions {
-        samples_per_pixel: 4,
-        seed,
-        ..RenderOptions::default()
-    };
-    let plan = SpecklePlan::new(scene, seed).expect("small patterns");
-    let model = SpeckleModel::generate(scene, &plan).expect("small patterns");
-    let cancel = AtomicBool::new(false);
+    let (options, model) = (renders::options(4, seed), renders::speckle(scene, seed));
     let render = |&frame: &u32| {
-        render_frame(scene, Some(&model), frame, &options, |_| (), &cancel)
-            .expect("a render")
-            .lasers
-            .remove(0)
-            .speckle
+        let rendered = renders::frame(scene, Some(&model), frame, &options);
+        rendered.lasers.into_iter().next().expect("a laser").speckle
     };
     frames.iter().map(render).collect()
+}
+
+/// The correlation of two frames where the surface has moved by so many pixels to the right and up.
+pub(crate) fn correlation([before, after]: [&Grid<f32>; 2], [right, up]: [i32; 2]) -> f64 {
+    let pixels = |way: i32| usize::try_from(way.max(0)).expect("few pixels");
+    let size = [right, up].map(|way| SIDE - pixels(way.abs()));
+    // Rows count downwards.
+    let before = part(before, [pixels(-right), pixels(up)], size);
+    let after = part(after, [pixels(right), pixels(-up)], size);
+    pearson_correlation(&before, &after).expect("bright frames")
+}
+
+/// Asserts that two frames correlate as expected where the surface has moved by so many pixels, with speckles of `size`
+/// pixels.
+#[track_caller]
+pub(crate) fn assert_correlation(
+    name: &str,
+    frames: [&Grid<f32>; 2],
+    way: [i32; 2],
+    (expected, size): (f64, f64),
+) {
+    let found = correlation(frames, way);
+    let [width, height] = way.map(|way| SIDE as f64 - f64::from(way.abs()));
+    let allowed = tolerance(width * height, size);
+    let is_close = (found - expected).abs() < allowed;
+    assert!(is_close, "{name}: {found} | {expected} ± {allowed}");
 }
 
 /// A part of an image.

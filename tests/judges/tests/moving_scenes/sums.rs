@@ -5,12 +5,11 @@ use tem00::{
     numerics::Grid,
     statistics::{
         GammaIntensity, PartiallyPolarised, estimate::decorrelated_samples, kolmogorov_smirnov,
-        pearson_correlation,
     },
     tracer::{Scene, SurfaceSpeckle},
 };
 
-use super::setting::{LENS, SIDE, Setting, Step, part, speckle, tolerance};
+use super::setting::{LENS, Setting, Step, assert_correlation, speckle};
 
 /// Pixels between samples that count as independent: the first zero of the covariance lies 1.22 speckles
 /// of 6.6 pixels away.
@@ -87,14 +86,7 @@ fn sums_of_patterns_decorrelate_as_each_of_them_does() {
         polarisation: 0.4,
     };
     let frames = speckle(&scene, &[0, 1], 23);
-    let width = SIDE - 80;
-    let [before, after] =
-        [(0, 0), (1, 80)].map(|(frame, x)| part(&frames[frame], [x, 0], [width, SIDE]));
-    let measured = pearson_correlation(&before, &after).expect("bright frames");
-    let expected = pupil_overlap_correlation(0.25);
     let size = setting.geometry().speckle_size_in_pixels();
-    assert!(
-        (measured - expected).abs() < tolerance((width * SIDE) as f64, size),
-        "{measured} | {expected}"
-    );
+    let law = pupil_overlap_correlation(0.25);
+    assert_correlation("sum", [&frames[0], &frames[1]], [80, 0], (law, size));
 }

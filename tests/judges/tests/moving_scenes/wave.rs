@@ -81,10 +81,8 @@ impl Case {
         };
         let light = Illumination::point(WAVELENGTH, self.to_laser).expect("a wave");
         let window = |camera: &Camera| ImageWindow::new(camera, &sampling).expect("a window");
-        let windows = [
-            window(&camera),
-            window(&camera.moved(&of_judge(&self.camera))),
-        ];
+        let moved = camera.moved(&of_judge(&self.camera));
+        let windows = [&camera, &moved].map(window);
         mean(|seed| {
             let plate = plate(seed);
             let before = windows[0].image(&plate.lit_by(&light));
@@ -146,11 +144,7 @@ fn rendered_speckle_moves_and_decorrelates_as_wave_optics_says() {
             to_laser: near,
             plate: Step {
                 displacement: DVec3::new(1e-4, -1.5e-4, 1e-4),
-                ..Step::about(
-                    DVec3::new(0.0, 0.05, 0.0),
-                    DVec3::new(0.3, 1.0, 0.2),
-                    1.2e-3,
-                )
+                ..Step::about(0.05 * DVec3::Y, DVec3::new(0.3, 1.0, 0.2), 1.2e-3)
             },
             camera: Step::NONE,
             laser: Step::NONE,

@@ -1,4 +1,4 @@
-//! Rays per second through the tracer's intersector, and camera samples per second of a render.
+//! Rays per second through the tracer's intersector, and the time to build its hierarchy.
 //!
 //! An open box of [−1, 1]³ m with a displaced sphere of 1 thousand, 262 thousand and 1 million
 //! triangles, and a square area light of 0.5 m under its ceiling. Camera rays come 64 to a pixel of a
@@ -14,7 +14,7 @@
     reason = "a benchmark has no one to hand an error to"
 )]
 
-use std::{f64::consts::PI, hint::black_box, path::Path, sync::atomic::AtomicBool, time::Duration};
+use std::{f64::consts::PI, hint::black_box, time::Duration};
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec3;
@@ -25,10 +25,8 @@ use obvhs::{
 use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use tem00::camera::Ray;
-use tem00::engine::{SpeckleModel, SpecklePlan, render_frame, samples_per_frame};
 use tem00::geometry::{Hit, Intersector, Rectangle, Segment, Shape, TriangleMesh};
-use tem00::scene::parse_scene;
-use tem00::tracer::{LocalFrame, RenderOptions, Scene};
+use tem00::tracer::LocalFrame;
 
 /// Every eighth pixel of a 512² image in both directions, and the rays of each.
 const PIXELS: usize = 64;
@@ -38,25 +36,19 @@ const SAMPLES: usize = 64;
 /// A sphere of `columns` × `rows` quadrilaterals with ripples.
 fn displaced_sphere(columns: u32, rows: u32) -> TriangleMesh {
     let vertex = |i: u32, j: u32| {
-        let (phi, theta) = (
-            2.0 * PI * f64::from(i) / f64::from(columns),
-            PI * (f64::from(j) + 0.5) / f64::from(rows + 1),
-        );
+        let phi = 2.0 * PI * f64::from(i) / f64::from(columns);
+        let theta = PI * (f64::from(j) + 0.5) / f64::from(rows + 1);
         let radius = 0.5 + 0.025 * (13.0 * phi).sin() * (17.0 * theta).sin();
         radius * direction(theta.cos(), phi) - 0.2 * DVec3::Y
     };
-    let vertices = (0..=rows)
-        .flat_map(|j| (0..columns).map(move |i| vertex(i, j)))
-        .collect();
-    let triangles = (0..rows)
-        .flat_map(|j| (0..columns).map(move |i| (i, j)))
-        .flat_map(|(i, j)| {
-            let at = |i: u32, j: u32| j * columns + i % columns;
-            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-            [[a, b, c], [a, c, d]]
-        })
-        .collect();
-    TriangleMesh::new(vertices, triangles).expect("a valid mesh")
+    let places = |rows: u32| (0..rows).flat_map(move |j| (0..columns).map(move |i| (i, j)));
+    let vertices = places(rows + 1).map(|(i, j)| vertex(i, j)).collect();
+    let triangles = places(rows).flat_map(|(i, j)| {
+        let at = |i: u32, j: u32| j * columns + i % columns;
+        let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+        [[a, b, c], [a, c, d]]
+    });
+    TriangleMesh::new(vertices, triangles.collect()).expect("a valid mesh")
 }
 
 fn direction(cosine: f64, azimuth: f64) -> DVec3 {
@@ -67,17 +59,11 @@ fn direction(cosine: f64, azimuth: f64) -> DVec3 {
 /// The walls of the box, open towards +z, and the area light.
 fn rectangles() -> Vec<Rectangle> {
     let [x, y, z] = DVec3::AXES;
-    [
-        (-y, z, x),
-        (y, x, z),
-        (-z, x, y),
-        (-x, y, z),
-        (x, z, y),
-        (0.99 * y, 0.25 * x, 0.25 * z),
-    ]
-    .into_iter()
-    .map(|(centre, u, v)| Rectangle::new(centre, u, v).expect("a valid rectangle"))
-    .collect()
+    let light = (0.99 * y, 0.25 * x, 0.25 * z);
+    let walls = [(-y, z, x), (y, x, z), (-z, x, y), (-x, y, z), (x, z, y)];
+    let all = walls.into_iter().chain([light]);
+    all.map(|(centre, u, v)| Rectangle::new(centre, u, v).expect("a valid rectangle"))
+        .collect()
 }
 
 fn shapes(columns: u32, rows: u32) -> Vec<Shape> {
@@ -188,11 +174,9 @@ impl Peer {
     }
 
     fn intersect(&self, ray: &Ray) -> f32 {
-        let (origin, direction) = (ray.origin.as_vec3a(), ray.direction.as_vec3a());
         let mut hit = RayHit::none();
-        let ray = obvhs::ray::Ray::new(origin, direction, 1e-6, f32::MAX);
         let meet = |ray: &obvhs::ray::Ray, slot: usize| self.meet(ray, slot);
-        self.boxes.ray_traverse(ray, &mut hit, meet);
+        self.boxes.ray_traverse(endless(ray), &mut hit, meet);
         hit.t
     }
 
@@ -200,7 +184,6 @@ impl Peer {
     fn intersect_exactly(&self, ray: &Ray) -> f64 {
         let sheared = ShearedRay::new(ray);
         let mut nearest = f64::INFINITY;
-        let (origin, direction) = (ray.origin.as_vec3a(), ray.direction.as_vec3a());
         let meet = |_: &obvhs::ray::Ray, slot: usize| {
             let corners = &self.corners[self.boxes.primitive_indices[slot] as usize];
             if let Some(distance) = sheared.distance(corners) {
@@ -210,8 +193,8 @@ impl Peer {
             let end = nearest as f32;
             end
         };
-        let ray = obvhs::ray::Ray::new(origin, direction, 1e-6, f32::MAX);
-        self.boxes.ray_traverse(ray, &mut RayHit::none(), meet);
+        self.boxes
+            .ray_traverse(endless(ray), &mut RayHit::none(), meet);
         nearest
     }
 
@@ -255,15 +238,17 @@ impl ShearedRay {
 
     fn distance(&self, corners: &[DVec3; 3]) -> Option<f64> {
         let [a, b, c] = corners.map(|corner| self.to_local(corner));
-        let weights = DVec3::new(
-            c.x * b.y - c.y * b.x,
-            a.x * c.y - a.y * c.x,
-            b.x * a.y - b.y * a.x,
-        );
+        let area = |p: DVec3, q: DVec3| p.x * q.y - p.y * q.x;
+        let weights = DVec3::new(area(c, b), area(a, c), area(b, a));
         let outside = weights.min_element() < 0.0 && weights.max_element() > 0.0;
         let distance = weights.dot(DVec3::new(a.z, b.z, c.z)) / weights.element_sum();
         (!outside && distance > 0.0).then_some(distance)
     }
+}
+
+fn endless(ray: &Ray) -> obvhs::ray::Ray {
+    let (origin, direction) = (ray.origin.as_vec3a(), ray.direction.as_vec3a());
+    obvhs::ray::Ray::new(origin, direction, 1e-6, f32::MAX)
 }
 
 fn triangle(corners: [DVec3; 3]) -> Triangle {
@@ -290,11 +275,8 @@ fn intersections(criterion: &mut Criterion) {
                 bencher.iter(|| intersector.intersect_batch(black_box(rays), &mut hits));
             });
             group.bench_function(format!("{kind}, one by one"), |bencher| {
-                bencher.iter(|| {
-                    rays.iter()
-                        .filter_map(|ray| intersector.intersect(ray))
-                        .count()
-                });
+                let met = |ray: &&Ray| intersector.intersect(ray).is_some();
+                bencher.iter(|| rays.iter().filter(met).count());
             });
             group.bench_function(format!("{kind}, obvhs"), |bencher| {
                 bencher.iter(|| rays.iter().map(|ray| peer.intersect(ray)).sum::<f32>());
@@ -334,99 +316,12 @@ fn hierarchies(criterion: &mut Criterion) {
     group.finish();
 }
 
-fn scene() -> Scene {
-    let text = r#"
-        [camera]
-        position = [0, 0, 0.3]
-        look_at = [0, 0, 0]
-        focal_length = "25 mm"
-        f_number = 8
-        pixel_pitch = "3.45 um"
-        resolution = [128, 128]
-        [[laser]]
-        wavelength = "650 nm"
-        power = "5 mW"
-        position = [0.05, 0, 0.2]
-        look_at = [0, 0, 0]
-        line = { fan_angle = "30 deg", thickness = "0.2 mm" }
-        [[surface]]
-        rectangle = { centre = [0, 0, 0], normal = [0, 0, 1], size = [0.02, 0.02] }
-    "#;
-    parse_scene(text, Path::new(".")).expect("a valid scene")
-}
-
-fn renders(criterion: &mut Criterion) {
-    let scene = scene();
-    let options = RenderOptions::default();
-    let plan = SpecklePlan::new(&scene, 0).expect("a small pattern");
-    let model = SpeckleModel::generate(&scene, &plan).expect("a small pattern");
-    let mut group = criterion.benchmark_group("camera samples, all threads");
-    group.throughput(Throughput::Elements(samples_per_frame(&scene, &options)));
-    for (name, speckle) in [
-        ("laser line", None),
-        ("laser line with speckle", Some(&model)),
-    ] {
-        group.bench_function(name, |bencher| {
-            let cancel = AtomicBool::new(false);
-            bencher.iter(|| render_frame(&scene, speckle, 0, &options, |_| (), &cancel));
-        });
-    }
-    group.finish();
-}
-
-/// A corner whose walls light each other, by a laser so narrow that only the survey of their paths takes time.
-fn corner(linewidth: &str) -> Scene {
-    let text = format!(
-        r#"
-        [render]
-        samples_per_pixel = 32
-        [camera]
-        position = [0.1, 0, 0.3]
-        look_at = [0, 0, 0]
-        focal_length = "25 mm"
-        f_number = 8
-        pixel_pitch = "3.45 um"
-        resolution = [640, 480]
-        [[laser]]
-        wavelength = "650 nm"
-        linewidth = "{linewidth}"
-        power = "5 mW"
-        position = [0.1, 0, 0.2]
-        look_at = [0, 0, 0]
-        spot = {{ waist_radius = "5 mm" }}
-        [[surface]]
-        rectangle = {{ centre = [0.01, 0, 0], normal = [0, 0, 1], size = [0.04, 0.04] }}
-        [[surface]]
-        rectangle = {{ centre = [-0.01, 0, 0.02], normal = [1, 0, 0], size = [0.04, 0.04] }}
-    "#
-    );
-    parse_scene(&text, Path::new(".")).expect("a valid scene")
-}
-
-fn corners(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("a corner, all threads");
-    for (name, linewidth) in [("one wavelength", "0 nm"), ("surveyed", "1e-7 nm")] {
-        let scene = corner(linewidth);
-        let plan = SpecklePlan::new(&scene, 0).expect("a small pattern");
-        let model = SpeckleModel::generate(&scene, &plan).expect("a small pattern");
-        group.throughput(Throughput::Elements(samples_per_frame(
-            &scene,
-            &scene.render,
-        )));
-        group.bench_function(name, |bencher| {
-            let cancel = AtomicBool::new(false);
-            bencher.iter(|| render_frame(&scene, Some(&model), 0, &scene.render, |_| (), &cancel));
-        });
-    }
-    group.finish();
-}
-
 criterion_group! {
     name = benches;
     config = Criterion::default()
         .sample_size(10)
         .warm_up_time(Duration::from_millis(300))
         .measurement_time(Duration::from_secs(1));
-    targets = intersections, hierarchies, renders, corners
+    targets = intersections, hierarchies
 }
 criterion_main!(benches);

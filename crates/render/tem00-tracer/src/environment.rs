@@ -61,11 +61,11 @@ impl Environment {
     /// Returns an error if the radiance is negative or not finite.
     pub fn constant(radiance: f64) -> Result<Self, TracerError> {
         if !(radiance >= 0.0 && radiance.is_finite()) {
-            return Err(TracerError::OutOfRange {
-                parameter: "radiance",
-                value: radiance,
-                allowed: "finite and not negative",
-            });
+            return Err(TracerError::out_of_range(
+                "radiance",
+                radiance,
+                "finite and not negative",
+            ));
         }
         Ok(Self {
             radiance: Radiance::Constant(radiance),

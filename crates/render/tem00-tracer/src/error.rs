@@ -47,6 +47,18 @@ pub enum TracerError {
 }
 
 impl TracerError {
+    pub(crate) const fn out_of_range(
+        parameter: &'static str,
+        value: f64,
+        allowed: &'static str,
+    ) -> Self {
+        Self::OutOfRange {
+            parameter,
+            value,
+            allowed,
+        }
+    }
+
     /// Returns the key of a scene file whose value was rejected, where there is one.
     pub fn parameter(&self) -> Option<&'static str> {
         match self {

@@ -180,11 +180,7 @@ fn check(
     if range.contains(&value) {
         return Ok(());
     }
-    Err(TracerError::OutOfRange {
-        parameter,
-        value,
-        allowed,
-    })
+    Err(TracerError::out_of_range(parameter, value, allowed))
 }
 
 #[cfg(test)]

@@ -217,11 +217,11 @@ fn check(parameter: &'static str, value: f64) -> Result<(), TracerError> {
     if value >= 0.0 && value.is_finite() {
         return Ok(());
     }
-    Err(TracerError::OutOfRange {
+    Err(TracerError::out_of_range(
         parameter,
         value,
-        allowed: "finite and not negative",
-    })
+        "finite and not negative",
+    ))
 }
 
 #[cfg(test)]

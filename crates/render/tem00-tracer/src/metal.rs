@@ -3,8 +3,8 @@ mod tables;
 use core::ops::RangeInclusive;
 
 use self::tables::{
-    ALUMINIUM, BRASS, CHROMIUM, COPPER, GOLD, IRON, NICKEL, PLATINUM, Row, SILVER, STAINLESS_STEEL,
-    TITANIUM, TUNGSTEN,
+    ALUMINIUM, BRASS, CHROMIUM, COPPER, GOLD, IRON, NICKEL, PLATINUM, SILVER, STAINLESS_STEEL,
+    TITANIUM, TUNGSTEN, Table,
 };
 use crate::TracerError;
 
@@ -146,18 +146,10 @@ impl Metal {
             return Ok(());
         };
         if !(1e-6..=1e6).contains(&n) {
-            return Err(TracerError::OutOfRange {
-                parameter: "n",
-                value: n,
-                allowed: "between 1e-6 and 1e6",
-            });
+            return Err(TracerError::out_of_range("n", n, "between 1e-6 and 1e6"));
         }
         if !(0.0..=1e6).contains(&k) {
-            return Err(TracerError::OutOfRange {
-                parameter: "k",
-                value: k,
-                allowed: "between 0 and 1e6",
-            });
+            return Err(TracerError::out_of_range("k", k, "between 0 and 1e6"));
         }
         Ok(())
     }
@@ -167,16 +159,13 @@ impl Metal {
         if matches!(self, Self::Custom { .. }) || MEASURED.contains(&wavelength) {
             return Ok(());
         }
-        Err(TracerError::OutOfRange {
-            parameter: "wavelength",
-            value: wavelength,
-            allowed: "from 368e-9 m to 1088e-9 m, where the metal was measured",
-        })
+        let allowed = "from 368e-9 m to 1088e-9 m, where the metal was measured";
+        Err(TracerError::out_of_range("wavelength", wavelength, allowed))
     }
 
     /// Returns `n` and `k` at the wavelength of the table that is nearest to `wavelength`.
     pub(crate) fn nearest_refractive_index(self, wavelength: f64) -> (f64, f64) {
-        let table: &[Row] = match self {
+        let table = match self {
             Self::Aluminium => &ALUMINIUM,
             Self::Silver => &SILVER,
             Self::Gold => &GOLD,
@@ -224,15 +213,14 @@ pub(crate) fn fresnel_reflectance(cosine: f64, (n, k): (f64, f64)) -> f64 {
     (0.5 * perpendicular * (1.0 + ratio)).max(0.0)
 }
 
-fn interpolate(table: &[Row], nanometres: f64) -> (f64, f64) {
-    let last = table.len() - 1;
-    let above = table.partition_point(|row| row.0 < nanometres);
-    let (low, high) = (table[above.max(1) - 1], table[above.clamp(1, last)]);
-    let fraction = ((nanometres - low.0) / (high.0 - low.0)).clamp(0.0, 1.0);
-    (
-        low.1 + fraction * (high.1 - low.1),
-        low.2 + fraction * (high.2 - low.2),
-    )
+fn interpolate(table: &Table, nanometres: f64) -> (f64, f64) {
+    let measured = table.nanometres;
+    let above = measured.partition_point(|&at| at < nanometres);
+    let (low, high) = (above.max(1) - 1, above.clamp(1, measured.len() - 1));
+    let fraction = (nanometres - measured[low]) / (measured[high] - measured[low]);
+    let fraction = fraction.clamp(0.0, 1.0);
+    let between = |column: &[f64]| column[low] + fraction * (column[high] - column[low]);
+    (between(table.n), between(table.k))
 }
 
 /// The vacuum wavelengths, in metres, that all tables contain.

@@ -146,17 +146,25 @@ impl RenderOptions {
     /// Returns an error if an option is out of its range.
     pub fn area(&self, camera: &Camera) -> Result<Crop, TracerError> {
         if self.samples_per_pixel == 0 {
-            return Err(out_of_range("samples_per_pixel", 0.0, "at least 1"));
+            return Err(TracerError::out_of_range(
+                "samples_per_pixel",
+                0.0,
+                "at least 1",
+            ));
         }
         if let Sampling::TargetError(error) = self.sampling
             && !(error > 0.0 && error.is_finite())
         {
-            return Err(out_of_range("target_error", error, "positive and finite"));
+            return Err(TracerError::out_of_range(
+                "target_error",
+                error,
+                "positive and finite",
+            ));
         }
-        let [width, height] = [camera.width(), camera.height()];
+        let (x, y, width, height) = (0, 0, camera.width(), camera.height());
         let whole = Crop {
-            x: 0,
-            y: 0,
+            x,
+            y,
             width,
             height,
         };
@@ -175,15 +183,7 @@ fn check_range(
     let end = first.saturating_add(count);
     if count == 0 || end > size {
         let allowed = "in the image, with at least one pixel";
-        return Err(out_of_range(parameter, end as f64, allowed));
+        return Err(TracerError::out_of_range(parameter, end as f64, allowed));
     }
     Ok(())
-}
-
-const fn out_of_range(parameter: &'static str, value: f64, allowed: &'static str) -> TracerError {
-    TracerError::OutOfRange {
-        parameter,
-        value,
-        allowed,
-    }
 }

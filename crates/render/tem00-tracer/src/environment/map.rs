@@ -29,11 +29,11 @@ impl RadianceMap {
             .iter()
             .find(|value| !(**value >= 0.0 && value.is_finite()))
         {
-            return Err(TracerError::OutOfRange {
-                parameter: "radiance",
-                value: f64::from(*value),
-                allowed: "finite and not negative, everywhere in the map",
-            });
+            return Err(TracerError::out_of_range(
+                "radiance",
+                f64::from(*value),
+                "finite and not negative, everywhere in the map",
+            ));
         }
         let mut before_block =
             Grid::filled(radiance.width().div_ceil(BLOCK), radiance.height(), 0.0);

@@ -234,9 +234,5 @@ pub(super) fn check(
     if range.contains(&value) {
         return Ok(());
     }
-    Err(TracerError::OutOfRange {
-        parameter,
-        value,
-        allowed,
-    })
+    Err(TracerError::out_of_range(parameter, value, allowed))
 }

@@ -100,12 +100,12 @@ impl LaserInspection {
 ///
 /// # Errors
 ///
-/// Returns an error if the geometry cannot be built.
+/// Returns an error if the geometry cannot be built, or if an option of the render is out of its range.
 pub fn inspect_lasers(scene: &Scene, frame: u32) -> Result<Vec<LaserInspection>, TracerError> {
     let inspector = Inspector {
         scene,
         camera: scene.camera_at(frame),
-        area: scene.render.crop.unwrap_or_else(|| whole(&scene.camera)),
+        area: scene.render.area(&scene.camera)?,
         intersector: Intersector::build(&scene.shapes_at(frame))?,
         far: reach(scene),
     };
@@ -128,15 +128,6 @@ fn reach(scene: &Scene) -> f64 {
     let nothing = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (low, high) = points.fold(nothing, |(low, high), p| (low.min(p), high.max(p)));
     (high - low).length()
-}
-
-fn whole(camera: &Camera) -> Crop {
-    Crop {
-        x: 0,
-        y: 0,
-        width: camera.width(),
-        height: camera.height(),
-    }
 }
 
 /// Looks at the light in one frame.

@@ -206,7 +206,9 @@ impl<'a> Integrator<'a> {
         let mut kept = 0;
         for (index, hit) in hits.iter().map(Option::as_ref).enumerate() {
             let (mut path, ray) = (batch.paths[index], batch.rays[index]);
-            self.take_light(&path, &ray, hit, batch);
+            // The radiance that a ray meets by chance: that of lights and of sampled lasers.
+            self.meet_lights(&path, &ray, hit, batch);
+            self.meet_lasers(&path, &ray, hit, batch);
             let Some(vertex) = hit.and_then(|hit| self.vertex(&ray, hit)) else {
                 self.see_light(&path, &ray, hit, batch);
                 continue;
@@ -226,12 +228,6 @@ impl<'a> Integrator<'a> {
         batch.hits = hits;
         batch.paths.truncate(kept);
         batch.rays.truncate(kept);
-    }
-
-    /// Adds the radiance that a ray meets by chance: that of lights and of sampled lasers.
-    fn take_light(&self, path: &Path, ray: &Ray, hit: Option<&Hit>, batch: &mut Batch<'a>) {
-        self.meet_lights(path, ray, hit, batch);
-        self.meet_lasers(path, ray, hit, batch);
     }
 
     /// Returns the surface point that a ray meets, or `None` where it meets a light.

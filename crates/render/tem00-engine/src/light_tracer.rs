@@ -25,7 +25,7 @@ use rayon::prelude::*;
 use tem00_tracer::{LaserLayers, RenderError};
 
 pub(crate) use self::group::LightGroup;
-pub(crate) use self::job::{LightJob, LightLayers, LightSelection, LightTracer};
+pub(crate) use self::job::{LightJob, LightSelection, LightTracer};
 pub use self::specular_search::has_specular_surfaces_on_both_sides;
 use self::{connection::Connector, splats::SplatFilm};
 
@@ -61,7 +61,7 @@ impl Groups {
 const GROUPS_AT_ONCE: usize = 64;
 
 impl LightTracer<'_> {
-    /// Follows the light of one laser.
+    /// Follows the light of one laser, and adds it to its layers.
     ///
     /// `progress` is told, from any thread, the number of light paths done since its last call.
     ///
@@ -71,9 +71,10 @@ impl LightTracer<'_> {
     pub(crate) fn trace(
         &self,
         job: &LightJob,
+        layers: &mut LaserLayers,
         progress: &(impl Fn(u64) + Sync),
         cancel: &AtomicBool,
-    ) -> Result<LightLayers, RenderError> {
+    ) -> Result<(), RenderError> {
         let connector = Connector::new(self, job);
         let groups = Groups::new(job.paths);
         let mut film = SplatFilm::new(self.area);
@@ -94,25 +95,8 @@ impl LightTracer<'_> {
                 film.add(splats);
             }
         }
-        Ok(film.layers(groups.count, groups.paths))
-    }
-}
-
-impl LightLayers {
-    /// Adds the light to the layers of its laser.
-    pub(crate) fn add_to(&self, layers: &mut LaserLayers) {
-        let pairs = [
-            (&mut layers.single, &self.single),
-            (&mut layers.multiple, &self.multiple),
-            (&mut layers.radiance, &self.radiance),
-            (&mut layers.variance, &self.variance),
-        ];
-        for (sum, light) in pairs {
-            let values = sum.values_mut().iter_mut().zip(light.values());
-            values.for_each(|(sum, light)| *sum += light);
-        }
-        layers.power_on_target += self.power_on_target;
-        layers.power_error = layers.power_error.hypot(self.power_error);
+        film.add_to(layers, groups.count, groups.paths);
+        Ok(())
     }
 }
 

@@ -71,16 +71,9 @@ pub fn render_frame(
     let speckle = speckle.map(|model| {
         let speckle = model.in_frame(scene, frame)?;
         let map = asks_for_survey(scene, frame, options).then(|| {
-            let survey = Survey {
-                scene,
-                frame,
-                intersector: &intersector,
-                change: speckle.change(),
-                seed: options.seed,
-                max_depth: options.max_depth,
-                cells: SURVEY_CELLS,
-            };
-            survey.map()
+            let change = speckle.change();
+            let survey = Survey::new(scene, change, &intersector, frame, SURVEY_CELLS);
+            survey.with(options.seed, options.max_depth).map()
         });
         Ok::<_, TracerError>(speckle.with_multiple_light(map.flatten()))
     });
@@ -145,7 +138,7 @@ fn add_light_traced(
             paths,
             seed: options.seed,
         };
-        tracer.trace(&job, progress, cancel)?.add_to(layers);
+        tracer.trace(&job, layers, progress, cancel)?;
     }
     Ok(())
 }

@@ -26,17 +26,17 @@ use crate::{
 
 /// Which frame is surveyed, and how finely.
 pub(crate) struct Survey<'a> {
-    pub scene: &'a Scene,
-    pub frame: u32,
+    scene: &'a Scene,
+    frame: u32,
     /// The surfaces as they stand in the frame.
-    pub intersector: &'a Intersector,
+    intersector: &'a Intersector,
     /// The motion since the reference frame.
-    pub change: &'a Change,
-    pub seed: u64,
+    change: &'a Change,
+    seed: u64,
     /// The maximum number of surfaces that light may meet between laser and camera; `None` for no limit.
-    pub max_depth: Option<u32>,
+    max_depth: Option<u32>,
     /// The number of cells along the longer side of the image.
-    pub cells: usize,
+    cells: usize,
 }
 
 /// Tells the random numbers of a survey from those of a render.
@@ -78,15 +78,8 @@ impl SpecklePlan {
     pub fn new(scene: &Scene, seed: u64) -> Result<Self, TracerError> {
         let options = &scene.render;
         Self::with_survey(scene, seed, &|frame, intersector, change| {
-            let survey = Survey {
-                scene,
-                frame,
-                intersector,
-                change,
-                seed,
-                max_depth: options.max_depth,
-                cells: PLANNED_CELLS,
-            };
+            let survey = Survey::new(scene, change, intersector, frame, PLANNED_CELLS);
+            let survey = survey.with(seed, options.max_depth);
             asks_for_survey(scene, frame, options).then(|| survey.map())?
         })
     }
@@ -126,16 +119,9 @@ pub fn cascade_notes(scene: &Scene) -> Result<Vec<CascadeNote>, TracerError> {
         return Ok(Vec::new());
     }
     let frame = scene.reference_frame;
-    let survey = Survey {
-        scene,
-        frame,
-        intersector: &Intersector::build(&scene.shapes_at(frame))?,
-        change: &Change::new(scene, frame),
-        seed: 0,
-        max_depth: scene.render.max_depth,
-        cells: PLANNED_CELLS,
-    };
-    let map = survey.map();
+    let intersector = Intersector::build(&scene.shapes_at(frame))?;
+    let change = Change::new(scene, frame);
+    let map = Survey::new(scene, &change, &intersector, frame, PLANNED_CELLS).map();
     let notes = map.iter().flat_map(MultipleMap::strongest_cascades);
     Ok(notes
         .filter(|(_, variance)| *variance > CASCADE)
@@ -151,6 +137,34 @@ pub fn cascade_notes(scene: &Scene) -> Result<Vec<CascadeNote>, TracerError> {
 const CASCADE: f64 = 0.05;
 
 impl<'a> Survey<'a> {
+    /// Surveys a frame, in which the surfaces stand as the intersector has them, in so many cells.
+    pub(crate) const fn new(
+        scene: &'a Scene,
+        change: &'a Change,
+        intersector: &'a Intersector,
+        frame: u32,
+        cells: usize,
+    ) -> Self {
+        Self {
+            scene,
+            frame,
+            intersector,
+            change,
+            seed: 0,
+            max_depth: scene.render.max_depth,
+            cells,
+        }
+    }
+
+    /// The same by the options of a render.
+    pub(crate) const fn with(self, seed: u64, max_depth: Option<u32>) -> Self {
+        Self {
+            seed,
+            max_depth,
+            ..self
+        }
+    }
+
     /// Follows light from the lasers, connects what it meets with points that the camera sees, and returns the multiple
     /// light found there, if any.
     pub(crate) fn map(&self) -> Option<MultipleMap> {

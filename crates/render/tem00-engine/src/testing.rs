@@ -5,6 +5,8 @@ use tem00_camera::{Camera, CameraDescription};
 use tem00_geometry::{Rectangle, Shape};
 use tem00_tracer::{BeamShape, Laser, LaserDescription, Material, Scene, SpectralLine, Surface};
 
+use crate::{SpeckleModel, SpecklePlan};
+
 /// A camera of 25 mm at f/8 that looks at the origin, in focus there.
 pub(crate) fn camera(position: DVec3, resolution: [usize; 2]) -> CameraDescription {
     CameraDescription {
@@ -41,6 +43,12 @@ pub(crate) fn plate(centre: DVec3, normal: DVec3, size: [f64; 2]) -> Surface {
         Shape::Rectangle(rectangle),
         Material::lambertian(0.8).unwrap(),
     )
+}
+
+/// The speckle of a scene, of patterns by a seed.
+pub(crate) fn speckle(scene: &Scene, seed: u64) -> SpeckleModel {
+    let plan = SpecklePlan::new(scene, seed).unwrap();
+    SpeckleModel::generate(scene, &plan).unwrap()
 }
 
 /// A scene of one plate in one frame.

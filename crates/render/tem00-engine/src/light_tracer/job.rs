@@ -1,6 +1,5 @@
 use tem00_camera::Camera;
 use tem00_geometry::Intersector;
-use tem00_numerics::Grid;
 use tem00_tracer::{Crop, Scene};
 
 use crate::speckle::SpeckleFrame;
@@ -39,25 +38,4 @@ pub(crate) struct LightJob {
     /// The number of light paths. The same number gives the same bits in every part of the image.
     pub paths: u64,
     pub seed: u64,
-}
-
-/// The layers that light paths add to those of a laser.
-///
-/// Radiances in W/(m² sr), averaged over the square of the pixel: a light path comes upon its image
-/// point by chance, so that no other reconstruction filter applies.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct LightLayers {
-    /// Radiance of the light that has met one rough surface, before speckle.
-    pub single: Grid<f32>,
-    /// Radiance of the light that has met more than one, before speckle.
-    pub multiple: Grid<f32>,
-    /// Radiance of both, each path multiplied by its speckle factor.
-    pub radiance: Grid<f32>,
-    /// The variance of that, without bias: from groups of paths that are independent of each other.
-    pub variance: Grid<f32>,
-    /// The power that the light paths bring to the first rough surface where that is seen in the
-    /// image, in watts.
-    pub power_on_target: f64,
-    /// The standard error of that, from the groups; infinite for a single one.
-    pub power_error: f64,
 }

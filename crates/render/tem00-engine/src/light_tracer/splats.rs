@@ -1,7 +1,5 @@
-use tem00_numerics::Grid;
-use tem00_tracer::Crop;
-
-use super::LightLayers;
+use tem00_numerics::cast::to_f32;
+use tem00_tracer::{Crop, LaserLayers};
 
 /// Radiance that light paths bring to one pixel, in W/(m² sr).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -46,7 +44,6 @@ impl Splats {
 /// The image while it is made: 32 bytes per pixel.
 #[derive(Debug)]
 pub(super) struct SplatFilm {
-    area: Crop,
     pixels: Vec<PixelSums>,
     /// The sums over groups of the power and of its square.
     power: [f64; 2],
@@ -64,7 +61,6 @@ struct PixelSums {
 impl SplatFilm {
     pub(super) fn new(area: Crop) -> Self {
         Self {
-            area,
             pixels: vec![PixelSums::default(); area.width * area.height],
             power: [0.0; 2],
         }
@@ -83,8 +79,12 @@ impl SplatFilm {
         self.power[1] += splats.power.powi(2);
     }
 
-    /// Returns the layers after so many groups and paths, each of which stood for the whole laser.
-    pub(super) fn layers(&self, groups: u64, paths: u64) -> LightLayers {
+    /// Adds the means after so many groups and paths, each of which stood for the whole laser, to the layers of the laser.
+    ///
+    /// They are averaged over the square of the pixel: a light path comes upon its image point by chance, so that no
+    /// other reconstruction filter applies. The variance is without bias, from groups that are independent of each other,
+    /// and infinite for a single one.
+    pub(super) fn add_to(&self, layers: &mut LaserLayers, groups: u64, paths: u64) {
         let (groups, paths) = (groups as f64, paths.max(1) as f64);
         let variance = |[sum, squares]: [f64; 2]| {
             if groups < 2.0 {
@@ -94,24 +94,14 @@ impl SplatFilm {
             let scatter = (squares - sum * sum / groups).max(0.0);
             groups / (groups - 1.0) * scatter / (paths * paths)
         };
-        LightLayers {
-            single: self.layer(|pixel| pixel.single / paths),
-            multiple: self.layer(|pixel| pixel.multiple / paths),
-            radiance: self.layer(|pixel| pixel.radiance / paths),
-            variance: self.layer(|pixel| variance([pixel.radiance, pixel.squares])),
-            power_on_target: self.power[0] / paths,
-            power_error: variance(self.power).sqrt(),
+        for (index, pixel) in self.pixels.iter().enumerate() {
+            let variance = variance([pixel.radiance, pixel.squares]);
+            layers.single.values_mut()[index] += to_f32(pixel.single / paths);
+            layers.multiple.values_mut()[index] += to_f32(pixel.multiple / paths);
+            layers.radiance.values_mut()[index] += to_f32(pixel.radiance / paths);
+            layers.variance.values_mut()[index] += to_f32(variance);
         }
-    }
-
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "images are stored in single precision"
-    )]
-    fn layer(&self, value: impl Fn(&PixelSums) -> f64) -> Grid<f32> {
-        let Crop { width, height, .. } = self.area;
-        Grid::from_fn(width, height, |x, y| {
-            value(&self.pixels[y * width + x]) as f32
-        })
+        layers.power_on_target += self.power[0] / paths;
+        layers.power_error = layers.power_error.hypot(variance(self.power).sqrt());
     }
 }

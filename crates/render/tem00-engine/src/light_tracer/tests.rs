@@ -6,7 +6,10 @@ use tem00_geometry::{Intersector, Rectangle, Shape, TriangleMesh};
 use tem00_numerics::Grid;
 use tem00_statistics::{Moments, kolmogorov_smirnov, t_test_mean};
 use tem00_testkit::assert_absolute;
-use tem00_tracer::{Crop, LaserDescription, Material, Scene, Surface};
+use tem00_tracer::{
+    Crop, LaserDescription, Material, Scene, Surface,
+    film::{Film, FilmLayout},
+};
 
 use super::*;
 use crate::testing;
@@ -41,7 +44,7 @@ fn try_trace(
     change: impl Fn(&mut LightTracer<'_>),
     [paths, seed]: [u64; 2],
     cancelled: bool,
-) -> Result<LightLayers, RenderError> {
+) -> Result<LaserLayers, RenderError> {
     let intersector = Intersector::build(&scene.shapes_at(0)).unwrap();
     let mut tracer = LightTracer {
         scene,
@@ -54,22 +57,32 @@ fn try_trace(
         area: scene.render.area(&scene.camera).unwrap(),
     };
     change(&mut tracer);
+    let film = Film::new(&FilmLayout {
+        wavelengths: &[650e-9],
+        area: tracer.area,
+        strips: 1,
+        has_pilot: false,
+        light_traced: true,
+    });
+    let mut layers = film.unwrap().into_frame().lasers.remove(0);
     let laser = 0;
     let job = LightJob { laser, paths, seed };
-    tracer.trace(&job, &|_| (), &AtomicBool::new(cancelled))
+    let cancel = AtomicBool::new(cancelled);
+    tracer.trace(&job, &mut layers, &|_| (), &cancel)?;
+    Ok(layers)
 }
 
-fn trace(scene: &Scene, paths: u64, seed: u64) -> LightLayers {
+fn trace(scene: &Scene, paths: u64, seed: u64) -> LaserLayers {
     try_trace(scene, |_| (), [paths, seed], false).unwrap()
 }
 
 /// The light of paths of seeds from 0 on.
-fn traces(scene: &Scene, paths: u64, seeds: u64) -> Vec<LightLayers> {
+fn traces(scene: &Scene, paths: u64, seeds: u64) -> Vec<LaserLayers> {
     (0..seeds).map(|seed| trace(scene, paths, seed)).collect()
 }
 
 /// The power of each, in parts of that of the laser.
-fn powers(layers: &[LightLayers]) -> Vec<f64> {
+fn powers(layers: &[LaserLayers]) -> Vec<f64> {
     layers.iter().map(|l| l.power_on_target / POWER).collect()
 }
 

@@ -33,13 +33,8 @@ pub struct CorrelationNote {
 
 impl fmt::Display for CorrelationNote {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            surface,
-            laser,
-            frames: [first, second],
-            rendered,
-            law,
-        } = self;
+        let (surface, laser, [first, second]) = (&self.surface, self.laser, self.frames);
+        let (rendered, law) = (self.rendered, self.law);
         write!(
             f,
             "surface `{surface}`, laser {laser}: speckle of frames {first} and {second} correlates by {rendered:.2} where \

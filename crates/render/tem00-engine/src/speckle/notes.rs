@@ -17,15 +17,9 @@ pub struct RoughnessNote {
 
 impl fmt::Display for RoughnessNote {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            surface,
-            laser,
-            roughness,
-        } = self;
-        write!(
-            f,
-            "surface `{surface}` is too smooth for fully developed speckle of laser {laser}: {roughness}"
-        )
+        let (surface, laser) = (&self.surface, self.laser);
+        let text = "is too smooth for fully developed speckle of laser";
+        write!(f, "surface `{surface}` {text} {laser}: {}", self.roughness)
     }
 }
 
@@ -44,11 +38,7 @@ pub struct CascadeNote {
 
 impl fmt::Display for CascadeNote {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            surface,
-            laser,
-            contrast,
-        } = self;
+        let (surface, laser, contrast) = (&self.surface, self.laser, self.contrast);
         write!(
             f,
             "surface `{surface}` gets light of laser {laser} from a small part of another surface, whose own speckle would \

@@ -33,9 +33,9 @@ pub struct SpecklePlan {
 pub struct PatternPlan {
     wavelength: f64,
     speckle_size: f64,
-    allocations: Vec<PatternAllocation>,
+    pub(super) allocations: Vec<PatternAllocation>,
     /// The patterns in which each surface looks up its speckle.
-    surface_patterns: Vec<SurfacePatterns>,
+    pub(super) surface_patterns: Vec<SurfacePatterns>,
     /// The names of the surfaces.
     names: Vec<String>,
     notes: Vec<CorrelationNote>,
@@ -184,14 +184,6 @@ impl PatternPlan {
         let bandwidths =
             surfaces.filter_map(|&index| self.surface_patterns[index].bandwidth.as_ref());
         bandwidths.max_by(|a, b| a.reach.total_cmp(&b.reach))
-    }
-
-    pub(super) fn allocations(&self) -> &[PatternAllocation] {
-        &self.allocations
-    }
-
-    pub(super) fn surface_patterns(&self) -> &[SurfacePatterns] {
-        &self.surface_patterns
     }
 
     /// Returns the seed of allocation `number`: that of the laser for the first.

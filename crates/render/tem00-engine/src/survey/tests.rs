@@ -8,7 +8,7 @@ use tem00_decorrelation::pupil_overlap_correlation;
 use tem00_tracer::{Frame, LaserDescription};
 
 use super::*;
-use crate::{SpeckleModel, render_frame, testing};
+use crate::{render_frame, testing};
 
 const WAVELENGTH: f64 = 650e-9;
 
@@ -46,22 +46,14 @@ fn gaussian(linewidth: f64) -> SpectralLine {
 }
 
 fn render(scene: &Scene, frame: u32, seed: u64) -> Frame {
-    let plan = SpecklePlan::new(scene, seed).unwrap();
-    let model = SpeckleModel::generate(scene, &plan).unwrap();
+    let model = testing::speckle(scene, seed);
     let options = RenderOptions {
         samples_per_pixel: 4,
         seed,
         ..scene.render
     };
-    render_frame(
-        scene,
-        Some(&model),
-        frame,
-        &options,
-        |_| (),
-        &AtomicBool::new(false),
-    )
-    .unwrap()
+    let go_on = AtomicBool::new(false);
+    render_frame(scene, Some(&model), frame, &options, |_| (), &go_on).unwrap()
 }
 
 #[test]

@@ -12,9 +12,8 @@ const COMMON_LAYERS: u64 = 7;
 /// Layers of what first samples tell: two, two for neighbours, and a quarter for what follows from it.
 const PILOT_LAYERS: u64 = 5;
 
-/// Layers of the light followed from one laser, before it is added to its own: four sums in double
-/// precision, and four layers made of them.
-const LIGHT_LAYERS: u64 = 12;
+/// Layers of the light followed from one laser, before it is added to its own: four sums in double precision.
+const LIGHT_LAYERS: u64 = 8;
 
 /// Checks that the layers fit into the memory that the system says is available (Linux).
 ///
@@ -65,8 +64,8 @@ mod tests {
             light_traced: true,
             ..layout
         };
-        // One laser at a time: 32 bytes of sums and 16 of layers.
-        assert_eq!(needed(&light_traced), (257 << 22) + (48 << 20), "bytes");
+        // One laser at a time: 32 bytes of sums.
+        assert_eq!(needed(&light_traced), (257 << 22) + (32 << 20), "bytes");
     }
 
     #[test]

@@ -3,6 +3,7 @@ use tem00_camera::Camera;
 use tem00_coherence::{
     LineShape, PolychromaticSpeckle, Relief, ResolutionCell, SourceExtent, SpectralLine,
 };
+use tem00_testkit::{assert_absolute, assert_relative};
 use tem00_tracer::{Keyframe, LaserDescription, Scene, Trajectory};
 
 use super::{super::crossing::Waves, *};
@@ -65,9 +66,13 @@ fn seen(camera: &Camera, pixel: DVec2) -> SpecklePoint {
     }
 }
 
+/// The picture of a frame.
+fn picture_of(scene: &Scene, frame: u32) -> Vec<f64> {
+    picture(scene, &model(scene), frame, |_| DVec2::ZERO)
+}
+
 fn model(scene: &Scene) -> SpeckleModel {
-    let plan = SpecklePlan::new(scene, 11).unwrap();
-    SpeckleModel::generate(scene, &plan).unwrap()
+    testing::speckle(scene, 11)
 }
 
 /// The covariance of two pictures over the product of their means.
@@ -89,6 +94,22 @@ fn cell(scene: &Scene) -> ResolutionCell {
     cell.with_source_extent(scene.lasers[0].source_extent().clone())
 }
 
+/// What the law has in the middle of the picture.
+fn by_law(scene: &Scene, value: impl Fn(&PolychromaticSpeckle<'_>) -> f64) -> f64 {
+    let (line, cell) = (scene.lasers[0].spectral_line(), cell(scene));
+    value(&PolychromaticSpeckle { line, cell: &cell })
+}
+
+#[track_caller]
+fn assert_contrast(scene: &Scene, frame: u32) {
+    fn contrast(law: &PolychromaticSpeckle<'_>) -> f64 {
+        law.contrast()
+    }
+    let values = picture_of(scene, frame);
+    let found = covariance(&values, &values).sqrt();
+    assert_relative(found, by_law(scene, contrast), 0.045);
+}
+
 #[test]
 fn contrasts_are_those_of_the_law() {
     // The aperture has sin u = 0.0052.
@@ -97,14 +118,7 @@ fn contrasts_are_those_of_the_law() {
         let mut scene = scene(line, height);
         let extent = SourceExtent::disc(half_angle).unwrap();
         scene.lasers[0] = scene.lasers[0].clone().with_source_extent(extent);
-        let values = picture(&scene, &model(&scene), 0, |_| DVec2::ZERO);
-        let (line, cell) = (scene.lasers[0].spectral_line(), cell(&scene));
-        let law = PolychromaticSpeckle { line, cell: &cell }.contrast();
-        let found = covariance(&values, &values).sqrt();
-        assert!(
-            (found / law - 1.0).abs() < 0.045,
-            "{height}, {half_angle}: {found} for {law}"
-        );
+        assert_contrast(&scene, 0);
     }
 }
 
@@ -121,9 +135,7 @@ fn frames_of_motions_along_and_across_the_tilt_are_those_of_the_law() {
         scene.reference_frame = 2;
         let step = DVec3::new(way[0] / 30_f64.to_radians().cos(), way[1], 0.0);
         scene.surfaces[0].trajectory = Trajectory::steady(3.125e-3 * step).unwrap();
-        let (model, cell) = (model(&scene), cell(&scene));
-        let line = scene.lasers[0].spectral_line();
-        let law = PolychromaticSpeckle { line, cell: &cell };
+        let model = model(&scene);
         let geometry = scene.camera.imaging_geometry(650e-9).unwrap();
         let here = picture(&scene, &model, 2, |_| DVec2::ZERO);
         for frame in [1, 4] {
@@ -134,12 +146,9 @@ fn frames_of_motions_along_and_across_the_tilt_are_those_of_the_law() {
                 let near = shift(pixel).displacement;
                 shift(pixel + near).displacement
             });
-            let found = covariance(&here, &there);
-            let expected = law.covariance(way.map(|part| part * (f64::from(frame) - 2.0)));
-            assert!(
-                (found - expected).abs() < 0.04,
-                "{way:?}, frame {frame}: {found} for {expected}"
-            );
+            let way = way.map(|part| part * (f64::from(frame) - 2.0));
+            let expected = by_law(&scene, |law| law.covariance(way));
+            assert_absolute(covariance(&here, &there), expected, 0.04);
         }
     }
 }
@@ -152,16 +161,13 @@ fn correlations_that_are_noted_are_those_of_the_law() {
         let camera = testing::camera(scene.camera.position(), [48, 36]);
         scene.camera = Camera::new(camera).unwrap();
         let plan = SpecklePlan::new(&scene, 0).unwrap();
-        let bandwidth = plan.patterns()[0].surface_patterns()[0].bandwidth.clone();
-        let (cell, line) = (cell(&scene), scene.lasers[0].spectral_line());
-        let law = PolychromaticSpeckle { line, cell: &cell };
-        let waves = Waves::of(line, 0, bandwidth.unwrap());
+        let bandwidth = plan.patterns()[0].surface_patterns[0].bandwidth.clone();
+        let waves = Waves::of(scene.lasers[0].spectral_line(), 0, bandwidth.unwrap());
         for way in [[0.25, 0.0], [0.0, 0.25], [0.5, 0.0], [-0.1, 0.2]] {
             // The tilt is along x.
             let found = waves.correlation(DVec2::from_array(way), DVec2::X);
-            let expected = law.covariance(way) / law.covariance([0.0; 2]);
-            let error = (found - expected).abs();
-            assert!(error < 0.01, "{way:?}: {found} for {expected}");
+            let law = by_law(&scene, |law| law.covariance(way) / law.covariance([0.0; 2]));
+            assert_absolute(found, law, 0.01);
         }
     }
 }
@@ -177,32 +183,20 @@ fn surfaces_that_come_into_view_have_the_contrast_of_the_line() {
     };
     let keyframes = [away, Keyframe::unmoved(2.0)];
     scene.surfaces[0].trajectory = Trajectory::keyframed(DVec3::ZERO, keyframes).unwrap();
-    let values = picture(&scene, &model(&scene), 2, |_| DVec2::ZERO);
-    let (line, cell) = (scene.lasers[0].spectral_line(), cell(&scene));
-    let law = PolychromaticSpeckle { line, cell: &cell }.contrast();
-    let found = covariance(&values, &values).sqrt();
-    assert!((found / law - 1.0).abs() < 0.045, "{found} for {law}");
+    assert_contrast(&scene, 2);
 }
 
 #[test]
 fn grains_are_longer_along_the_tilt() {
     let scene = scene(gaussian(10e-9), 0.0);
     let model = model(&scene);
-    let size = scene
-        .camera
-        .imaging_geometry(650e-9)
-        .unwrap()
-        .speckle_size_in_pixels();
-    let (line, cell) = (scene.lasers[0].spectral_line(), cell(&scene));
-    let law = PolychromaticSpeckle { line, cell: &cell };
+    let geometry = scene.camera.imaging_geometry(650e-9).unwrap();
+    let size = geometry.speckle_size_in_pixels();
     let here = picture(&scene, &model, 0, |_| DVec2::ZERO);
     for lag in [[1.0, 0.0], [0.0, 1.0]] {
         let there = picture(&scene, &model, 0, |_| size * DVec2::from_array(lag));
-        let (found, expected) = (covariance(&here, &there), law.autocovariance(lag));
-        assert!(
-            (found - expected).abs() < 0.02,
-            "{lag:?}: {found} for {expected}"
-        );
+        let expected = by_law(&scene, |law| law.autocovariance(lag));
+        assert_absolute(covariance(&here, &there), expected, 0.02);
     }
 }
 

@@ -51,14 +51,14 @@ impl LaserPatterns {
         geometry: ImagingGeometry,
         plan: &PatternPlan,
     ) -> Result<Self, TracerError> {
-        let allocations = plan.allocations().iter().zip(0_u64..);
+        let allocations = plan.allocations.iter().zip(0_u64..);
         let patterns = allocations
             .map(|(allocation, number)| Pattern::generate(allocation, plan.seed_of(number)))
             .collect::<Result<_, _>>()?;
         Ok(Self {
             geometry,
             patterns,
-            surface_patterns: plan.surface_patterns().to_vec(),
+            surface_patterns: plan.surface_patterns.to_vec(),
         })
     }
 }

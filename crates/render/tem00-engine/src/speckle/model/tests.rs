@@ -29,8 +29,7 @@ fn scene() -> Scene {
 }
 
 fn model(scene: &Scene) -> SpeckleModel {
-    let plan = SpecklePlan::new(scene, 7).unwrap();
-    SpeckleModel::generate(scene, &plan).unwrap()
+    testing::speckle(scene, 7)
 }
 
 /// Points all over the image, on either plate by turns that get longer.

@@ -125,12 +125,12 @@ fn surfaces_that_move_apart_have_patterns_of_their_own_each_as_wide_as_it_needs(
     let mut left = moving(left, STEP);
     left.name = "left half".to_owned();
     let plan = plan(&with(scene(2, -STEP), [left]));
-    assert_eq!(plan.allocations().len(), 2, "two motions: {plan}");
-    for allocation in plan.allocations() {
+    assert_eq!(plan.allocations.len(), 2, "two motions: {plan}");
+    for allocation in &plan.allocations {
         assert_absolute(allocation.needs.region[0], 310.0, 3.0);
     }
     assert_ne!(plan.seed_of(0), plan.seed_of(1), "{plan}");
-    let allocations = plan.surface_patterns().iter().map(|p| p.allocation);
+    let allocations = plan.surface_patterns.iter().map(|p| p.allocation);
     assert!(allocations.eq([0, 1]), "{plan}");
     let text = plan.to_string();
     let lines: Vec<_> = text.lines().collect();
@@ -146,7 +146,7 @@ fn rest() -> Surface {
 #[test]
 fn what_stands_still_takes_one_slice() {
     let plan = plan(&with(scene(2, STEP), [rest()]));
-    let slices = plan.allocations().iter();
+    let slices = plan.allocations.iter();
     let slices = slices.map(|a| a.stack.path().slice_count());
     assert!(slices.eq([64, 1]), "{plan}");
     assert_eq!(plan.memory_bytes(), 65 * SLICE, "{plan}");
@@ -170,7 +170,7 @@ fn surfaces_that_move_alike_share_a_pattern_wherever_they_turn() {
     let moving = more(&Trajectory::steady(STEP).unwrap()).to_vec();
     for (step, more) in [(DVec3::ZERO, standing), (STEP, moving)] {
         let plan = plan(&with(scene(2, step), more));
-        assert_eq!(plan.allocations().len(), 1, "{step}: {plan}");
+        assert_eq!(plan.allocations.len(), 1, "{step}: {plan}");
     }
 }
 
@@ -179,13 +179,13 @@ fn a_memory_that_does_not_hold_patterns_for_all_holds_places_for_them() {
     let planned = |mebibytes| plan_within(mebibytes, with(scene(2, STEP), [rest()])).unwrap();
     // 32 slices of 3/4 MiB and one; less than 16 slices per diameter are not worth it.
     let own = planned(24.75);
-    assert_eq!(own.allocations().len(), 2, "{own}");
+    assert_eq!(own.allocations.len(), 2, "{own}");
     let shared = planned(24.7);
-    assert_eq!(shared.allocations().len(), 1, "{shared}");
+    assert_eq!(shared.allocations.len(), 1, "{shared}");
     assert_eq!(shared.stack().path().slice_count(), 32, "{shared}");
     assert_says(&shared, "2 positions in one pattern");
     let offsets: Vec<_> = shared
-        .surface_patterns()
+        .surface_patterns
         .iter()
         .map(|p| p.parts[0].offset)
         .collect();
@@ -211,7 +211,7 @@ fn sums_of_patterns_take_a_stack_for_each_part() {
     let own = plan(&scene);
     assert_eq!(own.memory_bytes(), 6 * 64 * SLICE, "{own}");
     assert_says(&own, "6 patterns that add up");
-    for (number, part) in own.surface_patterns()[0].parts.iter().enumerate() {
+    for (number, part) in own.surface_patterns[0].parts.iter().enumerate() {
         assert_eq!(part.stack, number, "{part:?}");
         assert_absolute(part.fraction, [0.25, 1.0 / 12.0][number % 2], 1e-15);
     }
@@ -233,7 +233,7 @@ fn motions_before_and_after_the_reference_frame_add_up() {
     let mut scene = scene(6, 1e-3 * DVec3::X);
     scene.reference_frame = 2;
     let plan = plan(&scene);
-    let allocation = &plan.allocations()[0];
+    let allocation = &plan.allocations[0];
     for (shift, expected) in allocation.shifts.iter().zip([2.0, 3.0]) {
         assert_absolute(*shift, expected / 3.125, 0.01);
     }
@@ -279,7 +279,7 @@ fn slices_that_do_not_fit_the_memory_are_those_of_one_frame_at_a_time() {
         assert_says(&plan, "slices at a time");
         // 6.4 diameters a frame, until the plate has left the image.
         let middles = [0, 6, 13, 13].map(|diameters| [192 * diameters, 0]);
-        assert_eq!(plan.allocations()[0].middles, middles, "{plan}");
+        assert_eq!(plan.allocations[0].middles, middles, "{plan}");
     }
     let (needed, allowed) = (9 << 20, 8 << 20);
     let refused = TracerError::PatternMemory { needed, allowed };
@@ -354,7 +354,7 @@ fn a_small_part_is_followed_where_the_rays_miss_it() {
     let part = moving(part, 0.02e-3 * DVec3::X);
     let plan = plan(&with(scene(1000, DVec3::ZERO), [part]));
     // It is seen until its left edge has left the image, 5.674 mm from the middle.
-    let [before, after] = plan.allocations()[1].shifts;
+    let [before, after] = plan.allocations[1].shifts;
     assert_absolute(before, 0.0, 0.0);
     assert_absolute(after, (5e-3 + 0.1e-3 + 5.674e-3) / 3.125e-3, 0.01);
 }

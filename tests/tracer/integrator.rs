@@ -1,9 +1,7 @@
 use core::f64::consts::PI;
 
 use glam::DVec3;
-use tem00::tracer::{
-    Environment, Frame, LaserEvents, Light, LightEvents, Material, Metal, RenderOptions, Scene,
-};
+use tem00::tracer::{Environment, Frame, Light, LightEvents, Material, RenderOptions, Scene};
 
 use crate::{
     means::{assert_mean, mean, render},
@@ -16,8 +14,8 @@ fn over_seeds(value: impl Fn(u64) -> f64) -> Vec<f64> {
     (0..SEEDS).map(value).collect()
 }
 
-/// A ball of 0.1 m before the camera, or around it.
-fn ball(camera: &str) -> Scene {
+/// A ball of 0.1 m before the camera, or around it, in a square image.
+pub(super) fn ball(camera: &str, side: usize) -> Scene {
     scene(&format!(
         r#"
         [camera]
@@ -26,7 +24,7 @@ fn ball(camera: &str) -> Scene {
         f_number = 8
         focus_distance = 0.4
         pixel_pitch = "200 um"
-        resolution = [16, 16]
+        resolution = [{side}, {side}]
         [[laser]]
         wavelength = "650 nm"
         power = 2
@@ -40,7 +38,7 @@ fn ball(camera: &str) -> Scene {
 }
 
 const OUTSIDE: &str = "position = [0, 0, 0.5]\nlook_at = [0, 0, 0]";
-const INSIDE: &str = "position = [0.02, 0.04, 0]\nlook_at = [0, 0.08, 0.02]";
+pub(super) const INSIDE: &str = "position = [0.02, 0.04, 0]\nlook_at = [0, 0.08, 0.02]";
 
 #[test]
 fn lossless_bodies_vanish_in_uniform_light() {
@@ -50,7 +48,7 @@ fn lossless_bodies_vanish_in_uniform_light() {
         ("glass", Material::dielectric(1.5).unwrap(), 5e-3),
     ];
     for (name, material, precision) in materials {
-        let mut furnace = ball(OUTSIDE);
+        let mut furnace = ball(OUTSIDE, 16);
         furnace.lasers.clear();
         furnace.lights = vec![Light::Environment(Environment::constant(3.0).unwrap())];
         furnace.surfaces[0].material = material;
@@ -83,7 +81,7 @@ fn lossless_bodies_vanish_in_uniform_light() {
 #[test]
 fn a_sphere_keeps_each_reflection_of_the_series() {
     const REFLECTANCE: f64 = 0.7;
-    let mut sphere = ball(INSIDE);
+    let mut sphere = ball(INSIDE, 16);
     sphere.surfaces[0].material = Material::lambertian(REFLECTANCE).unwrap();
     // What a diffuse sphere reflects spreads evenly over it: ρᵏP / (πA) for each k-th reflection.
     let once = 2.0 / (PI * 4.0 * PI * 0.01);
@@ -111,7 +109,7 @@ fn a_sphere_keeps_each_reflection_of_the_series() {
 
 #[test]
 fn environments_light_a_closed_sphere_from_nowhere() {
-    let mut sphere = ball(INSIDE);
+    let mut sphere = ball(INSIDE, 16);
     sphere.lasers.clear();
     sphere.lights = vec![Light::Environment(Environment::constant(1.0).unwrap())];
     let frame = render(&sphere, &options(4, 0));
@@ -172,89 +170,6 @@ fn a_sphere_under_an_area_light_obeys_lamberts_formula() {
             mean(render(&scene, &options).lights.values())
         });
         assert_mean("sphere", &radiances, expected, 2e-3 * expected);
-    }
-}
-
-/// A corner of two walls of different materials under a light and a laser.
-fn corner(first: Material, second: Material) -> Scene {
-    let mut corner = scene(
-        r#"
-        [camera]
-        position = [0.3, 0.2, 0.4]
-        look_at = [0.05, 0, 0.05]
-        focal_length = 0.025
-        f_number = 4
-        pixel_pitch = "400 um"
-        resolution = [12, 12]
-        [[laser]]
-        wavelength = "650 nm"
-        power = 1
-        position = [0.2, 0.02, 0.3]
-        look_at = [0.05, 0, 0]
-        spot = { waist_radius = "0.2 mm", m_squared = 400, waist_distance = 0 }
-        [[surface]]
-        rectangle = { centre = [0.1, 0, 0], normal = [0, 0, 1], size = [0.2, 0.2] }
-        [[surface]]
-        rectangle = { centre = [0, 0, 0.1], normal = [1, 0, 0], size = [0.2, 0.2] }
-        [[light]]
-        rectangle = { centre = [0.2, 0, 0.2], normal = [-1, 0, -1], size = [0.2, 0.1], radiance = 10 }
-        "#,
-    );
-    corner.surfaces[0].material = first;
-    corner.surfaces[1].material = second;
-    corner
-}
-
-#[test]
-fn all_ways_to_find_a_light_agree() {
-    let satin = Material::conductor(Metal::Aluminium, 0.3).unwrap();
-    let plastic = Material::plastic(0.6, 1.5, 0.2).unwrap();
-    let plaster = Material::oren_nayar(0.8, 0.5).unwrap();
-    let pairs = [
-        ("satin on plaster", satin, plaster),
-        ("plastic on satin", plastic, satin),
-    ];
-    for (name, first, second) in pairs {
-        let mut corner = corner(first, second);
-        corner.lasers.clear();
-        let of = |events, seed| {
-            let mut options = options(32, seed);
-            (options.light_events, options.max_depth) = (events, Some(4));
-            mean(render(&corner, &options).lights.values())
-        };
-        let both = over_seeds(|seed| of(LightEvents::Both, seed));
-        let scale = both.iter().sum::<f64>() / SEEDS as f64;
-        for events in [LightEvents::NextEvent, LightEvents::Scattering] {
-            let pairs = (100..).zip(&both);
-            let differences: Vec<f64> = pairs.map(|(seed, both)| of(events, seed) - both).collect();
-            assert_mean(name, &differences, 0.0, 0.02 * scale);
-        }
-    }
-}
-
-#[test]
-fn lasers_light_alike_by_the_beam_and_by_drawn_directions() {
-    let satin = Material::conductor(Metal::Aluminium, 0.3).unwrap();
-    let white = Material::lambertian(0.8).unwrap();
-    for (name, first, second) in [("white", white, white), ("satin", satin, white)] {
-        let mut corner = corner(first, second);
-        corner.lights.clear();
-        let of = |events, seed| {
-            let mut options = options(16, seed);
-            (options.laser_events, options.max_depth) = (events, Some(3));
-            let layers = render(&corner, &options).lasers.remove(0);
-            [&layers.single, &layers.multiple].map(|layer| mean(layer.values()))
-        };
-        let beam: Vec<[f64; 2]> = (0..SEEDS).map(|s| of(LaserEvents::Beam, s)).collect();
-        let drawn = (100..100 + SEEDS).map(|seed| of(LaserEvents::Sampled, seed));
-        let drawn: Vec<[f64; 2]> = drawn.collect();
-        for layer in [0, 1] {
-            let scale = beam.iter().map(|v| v[layer]).sum::<f64>() / SEEDS as f64;
-            assert!(scale > 0.0, "{name}, layer {layer} is dark");
-            let pairs = beam.iter().zip(&drawn);
-            let differences: Vec<f64> = pairs.map(|(a, b)| b[layer] - a[layer]).collect();
-            assert_mean(name, &differences, 0.0, 0.03 * scale);
-        }
     }
 }
 

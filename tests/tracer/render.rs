@@ -7,6 +7,7 @@ use tem00::{
 };
 use tem00_testkit::refuses;
 
+use super::integrator::{INSIDE, ball};
 use crate::{
     means::render as render_smooth,
     renders::{self, speckle},
@@ -215,26 +216,7 @@ fn with_nothing_in_view() -> Scene {
 
 /// A closed white sphere, whose incoherent radiance is known and the same in every pixel.
 fn sphere() -> (Scene, f64) {
-    let mut scene = renders::scene(
-        r#"
-        [camera]
-        position = [0.02, 0.04, 0]
-        look_at = [0, 0.08, 0.02]
-        focal_length = 0.025
-        f_number = 8
-        focus_distance = 0.3
-        pixel_pitch = "200 um"
-        resolution = [24, 24]
-        [[laser]]
-        wavelength = "650 nm"
-        power = 2
-        position = [0, 0, -0.09]
-        look_at = [0, 0, 0.5]
-        spot = { waist_radius = "0.5 um", waist_distance = 0 }
-        [[surface]]
-        sphere = { centre = [0, 0, 0], radius = 0.1 }
-        "#,
-    );
+    let mut scene = ball(INSIDE, 24);
     scene.surfaces[0].material = Material::lambertian(0.5).unwrap();
     // ρ²P / (πA (1 − ρ)) after all reflections but the first.
     let area = 4.0 * core::f64::consts::PI * 0.01;

@@ -145,6 +145,13 @@ mod tests {
         fan_axis: DVec3::X,
     };
 
+    const GEOMETRY: FanGeometry = FanGeometry {
+        fan_angle: 0.5,
+        apex_offset: 2e-3,
+        focus_distance: 0.1,
+        focus_curve: FocusCurve::EqualDistance,
+    };
+
     fn beam() -> GaussianBeam {
         GaussianBeam::from_waist(650e-9, 50e-6).unwrap()
     }
@@ -215,14 +222,8 @@ mod tests {
 
     #[test]
     fn printed_line_is_the_printed_fan() {
-        let geometry = FanGeometry {
-            fan_angle: 0.5,
-            apex_offset: 2e-3,
-            focus_distance: 0.1,
-            focus_curve: FocusCurve::EqualDistance,
-        };
         for profile in [LineProfile::GaussianTan, LineProfile::Powell { edge: 0.1 }] {
-            let line = LaserLine::new(beam(), geometry, profile.clone()).unwrap();
+            let line = LaserLine::new(beam(), GEOMETRY, profile.clone()).unwrap();
             let light = LineLight::place(&line, &PLACEMENT, 2e-3).unwrap();
             let fan = PrintedFan::new(&line);
             let p = DVec3::new(0.01, 2e-4, 0.15);
@@ -238,38 +239,24 @@ mod tests {
     #[test]
     fn unlit_points_have_no_event() {
         let spot = SpotLight::place(&beam(), 0.1, &PLACEMENT, 2e-3).unwrap();
-        let facing = [0.0, 0.0, -1.0];
-        let away = [0.0, 0.0, 1.0];
-        assert!(
-            spot_next_event(&spot, [0.0, 0.0, 0.1], away).is_none(),
-            "back side"
-        );
-        assert!(
-            spot_next_event(&spot, [0.1, 0.0, 0.1], facing).is_none(),
-            "cut-off"
-        );
-        assert!(
-            spot_next_event(&spot, [0.0, 0.0, -0.1], facing).is_none(),
+        let line = LaserLine::new(beam(), GEOMETRY, LineProfile::GaussianTan).unwrap();
+        let line = LineLight::place(&line, &PLACEMENT, 2e-3).unwrap();
+        let (facing, away) = ([0.0, 0.0, -1.0], [0.0, 0.0, 1.0]);
+        // On the back side, beyond the cut-off, and behind the aperture or at the lens.
+        for (p, n) in [([0.0, 0.0, 0.1], away), ([0.1, 0.0, 0.1], facing)] {
+            assert!(spot_next_event(&spot, p, n).is_none(), "{p:?}");
+        }
+        for (p, n) in [([0.0, 0.0, 0.1], away), ([0.0, 0.1, 0.1], facing)] {
+            assert!(line_next_event(&line, p, n).is_none(), "{p:?}");
+        }
+        assert_eq!(
+            spot_next_event(&spot, [0.0, 0.0, -0.1], facing),
+            None,
             "behind"
         );
-        let geometry = FanGeometry {
-            fan_angle: 0.5,
-            apex_offset: 2e-3,
-            focus_distance: 0.1,
-            focus_curve: FocusCurve::EqualDistance,
-        };
-        let line = LaserLine::new(beam(), geometry, LineProfile::GaussianTan).unwrap();
-        let line = LineLight::place(&line, &PLACEMENT, 2e-3).unwrap();
-        assert!(
-            line_next_event(&line, [0.0, 0.0, 0.1], away).is_none(),
-            "back side"
-        );
-        assert!(
-            line_next_event(&line, [0.0, 0.1, 0.1], facing).is_none(),
-            "cut-off"
-        );
-        assert!(
-            line_next_event(&line, [0.0, 0.0, 0.0], facing).is_none(),
+        assert_eq!(
+            line_next_event(&line, [0.0; 3], facing),
+            None,
             "at the lens"
         );
     }

@@ -108,30 +108,6 @@ fn printed_forms_are_special_cases() {
 }
 
 #[test]
-fn the_edges_of_the_fan_are_where_the_profiles_say() {
-    for fan_angle in FAN_ANGLES {
-        let edge = (0.5 * fan_angle).tan();
-        let [tan, angle, sine, flat_tan, flat_angle, _, powell, _] =
-            profiles().map(|profile| profile.slope_density(fan_angle).unwrap());
-        let fall = |density: SlopeDensity, u: f64| density.per_slope(u) / density.per_slope(0.0);
-        let sec = 1.0_f64.hypot(edge);
-        let in_variable = [
-            fall(tan, edge),
-            fall(angle, edge) * sec.powi(2),
-            fall(sine, edge) * sec.powi(3),
-        ];
-        for fall in in_variable {
-            assert_absolute(fall, (-2.0_f64).exp(), 1e-14);
-        }
-        assert_absolute(fall(powell, edge), 0.5, 1e-14);
-        for uniform in [flat_tan, flat_angle] {
-            let ends = [0.999_999, 1.000_001].map(|part| uniform.per_slope(part * edge) > 0.0);
-            assert_eq!(ends, [true, false], "{uniform:?}");
-        }
-    }
-}
-
-#[test]
 fn samples_invert_the_cumulative_density() {
     for density in densities() {
         // Where the density ends abruptly, its tails have the digits of the slope only.

@@ -64,24 +64,19 @@ enum Block {
     Table(Table),
     /// An explanation, on pages alone.
     Paragraph(String),
-    /// Drawings, pictures and files, on pages alone.
-    Figure(Figure),
-}
-
-/// A part that only a page shows.
-#[derive(Clone, Debug)]
-enum Figure {
-    /// The text of an SVG file of this program, and its caption.
-    Drawing(String, String),
-    /// The same, which the reader may turn.
-    Cloud(String, String),
-    /// The content of a PNG file of so many columns.
+    /// The text of an SVG file of this program and its caption, on pages alone, and whether the reader may turn it.
+    Drawing {
+        svg: String,
+        caption: String,
+        turns: bool,
+    },
+    /// The content of a PNG file of so many columns and its caption, on pages alone.
     Picture {
         png: Vec<u8>,
         columns: usize,
         caption: String,
     },
-    /// The name and the text of a file.
+    /// The name and the text of a file, on pages alone.
     File(String, String),
 }
 
@@ -174,14 +169,22 @@ impl Section {
 
     /// Adds a drawing with its caption. `svg` is the text of an SVG file of this program.
     pub fn drawing(&mut self, svg: impl Into<String>, caption: impl Into<String>) -> &mut Self {
-        let figure = Figure::Drawing(svg.into(), caption.into());
-        self.push(Block::Figure(figure))
+        self.push(Block::Drawing {
+            svg: svg.into(),
+            caption: caption.into(),
+            turns: false,
+        })
     }
 
     /// Adds points in space that the reader may turn, if there are any.
     pub fn cloud(&mut self, cloud: Cloud<'_>) -> &mut Self {
+        let turns = true;
         match cloud.draw() {
-            Some((svg, caption)) => self.push(Block::Figure(Figure::Cloud(svg, caption))),
+            Some((svg, caption)) => self.push(Block::Drawing {
+                svg,
+                caption,
+                turns,
+            }),
             None => self,
         }
     }
@@ -195,17 +198,16 @@ impl Section {
         caption: impl Into<String>,
     ) -> &mut Self {
         let caption = caption.into();
-        self.push(Block::Figure(Figure::Picture {
+        self.push(Block::Picture {
             png,
             columns,
             caption,
-        }))
+        })
     }
 
     /// Adds a file as it is, under its name.
     pub fn file(&mut self, name: impl Into<String>, text: impl Into<String>) -> &mut Self {
-        let figure = Figure::File(name.into(), text.into());
-        self.push(Block::Figure(figure))
+        self.push(Block::File(name.into(), text.into()))
     }
 
     fn push(&mut self, block: Block) -> &mut Self {

@@ -5,7 +5,7 @@ use std::{io::Write as _, path::Path};
 
 use base64::{Engine, engine::general_purpose::STANDARD};
 
-use super::{Block, Figure, Report, Section, Table, cell::Cell, cloud, escape::escaped, style};
+use super::{Block, Report, Section, Table, cell::Cell, cloud, escape::escaped, style};
 use crate::{atomic::write_atomically, failure::Failure};
 
 impl Report {
@@ -66,7 +66,7 @@ fn element(out: &mut String, name: &str, text: &str) -> fmt::Result {
 impl Section {
     fn turns(&self) -> bool {
         let mut blocks = self.blocks.iter();
-        blocks.any(|block| matches!(block, Block::Figure(Figure::Cloud(..))))
+        blocks.any(|block| matches!(block, Block::Drawing { turns: true, .. }))
     }
 
     fn write_html(&self, out: &mut String) -> fmt::Result {
@@ -74,9 +74,9 @@ impl Section {
         let shown = |block: &&Block| !matches!(block, Block::Data(..));
         let blocks: Vec<_> = self.blocks.iter().filter(shown).collect();
         // Names stand in one list, and drawings side by side.
-        let mut runs = blocks.chunk_by(|a, b| a.group() != Group::Alone && a.group() == b.group());
+        let mut runs = blocks.chunk_by(|a, b| a.tags() != ALONE && a.tags() == b.tags());
         runs.try_for_each(|run| {
-            let (start, end) = run[0].group().tags();
+            let (start, end) = run[0].tags();
             out.push_str(start);
             run.iter().try_for_each(|block| block.write_html(out))?;
             out.push_str(end);
@@ -85,30 +85,16 @@ impl Section {
     }
 }
 
-/// The kinds of blocks that stand together on a page.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Group {
-    Facts,
-    Drawings,
-    Alone,
-}
-
-impl Group {
-    const fn tags(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Facts => ("<dl>\n", "</dl>\n"),
-            Self::Drawings => ("<div class=\"drawings\">\n", "</div>\n"),
-            Self::Alone => ("", ""),
-        }
-    }
-}
+/// The tags about blocks that do not stand together.
+const ALONE: (&str, &str) = ("", "");
 
 impl Block {
-    const fn group(&self) -> Group {
+    /// Returns the tags about a run of blocks of this kind.
+    const fn tags(&self) -> (&'static str, &'static str) {
         match self {
-            Self::Fact(..) => Group::Facts,
-            Self::Figure(Figure::Drawing(..)) => Group::Drawings,
-            _ => Group::Alone,
+            Self::Fact(..) => ("<dl>\n", "</dl>\n"),
+            Self::Drawing { turns: false, .. } => ("<div class=\"drawings\">\n", "</div>\n"),
+            _ => ALONE,
         }
     }
 
@@ -121,15 +107,7 @@ impl Block {
             Self::Data(..) => Ok(()),
             Self::Table(table) => table.write_html(out),
             Self::Paragraph(text) => element(out, "p", text),
-            Self::Figure(figure) => figure.write_html(out),
-        }
-    }
-}
-
-impl Figure {
-    fn write_html(&self, out: &mut String) -> fmt::Result {
-        match self {
-            Self::Drawing(svg, caption) | Self::Cloud(svg, caption) => {
+            Self::Drawing { svg, caption, .. } => {
                 let label = format!("<svg role=\"img\" aria-label=\"{}\"", escaped(caption));
                 // A declaration may only begin a file.
                 let start = svg.find("<svg").unwrap_or(svg.len());
@@ -142,10 +120,8 @@ impl Figure {
             } => with_caption(out, &image(png, *columns, caption), caption),
             Self::File(name, text) => {
                 let (name, text) = (escaped(name), escaped(text));
-                writeln!(
-                    out,
-                    "<details><summary>{name}</summary><pre>{text}</pre></details>"
-                )
+                let details = "<details><summary>";
+                writeln!(out, "{details}{name}</summary><pre>{text}</pre></details>")
             }
         }
     }

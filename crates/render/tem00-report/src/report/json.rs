@@ -59,7 +59,10 @@ impl Section {
                     let key = table.key.map(str::to_owned);
                     map.extend(key.map(|key| (key, rows)));
                 }
-                Block::Paragraph(_) | Block::Figure(_) => (),
+                Block::Paragraph(_)
+                | Block::Drawing { .. }
+                | Block::Picture { .. }
+                | Block::File(..) => (),
             }
         }
         map

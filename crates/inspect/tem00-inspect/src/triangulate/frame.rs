@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use tem00_report::report::{Cell, Column, Table, units::NUMBER};
 use tem00_scan::MeasuredFrame;
-use tem00_triangulation::Validity;
 
 use crate::saturated_points::PointCounts;
 
@@ -13,12 +12,7 @@ use crate::saturated_points::PointCounts;
 pub(super) struct FrameRecord {
     pub(super) number: u32,
     pub(super) file: String,
-    /// The number of points that were found.
-    pub(super) points: usize,
-    /// The number of valid points.
-    pub(super) valid: usize,
-    /// The number of points on saturated pixels.
-    pub(super) saturated: usize,
+    pub(super) counts: PointCounts,
     /// The numbers of points that are not valid, by reason.
     pub(super) not_valid: BTreeMap<&'static str, usize>,
     pub(super) saturated_pixels: usize,
@@ -29,24 +23,18 @@ pub(super) struct FrameRecord {
 
 impl FrameRecord {
     pub(super) fn of(frame: &MeasuredFrame, file: String) -> Self {
-        let count = |validity: Validity| {
-            let points = frame.points.iter();
-            points.filter(|p| p.seen.validity == validity).count()
-        };
-        let valid = count(Validity::Valid);
+        let counts = PointCounts::of(frame.points.iter().map(|point| point.seen.validity));
         let mut not_valid = BTreeMap::new();
         for point in frame.points.iter().filter(|point| !point.is_valid()) {
             *not_valid.entry(point.seen.validity.name()).or_default() += 1;
         }
         let widths = frame.points.iter().filter(|point| point.is_valid());
         let width: f64 = widths.map(|point| point.seen.width).sum();
-        let mean_width = (valid > 0).then(|| width / valid as f64);
+        let mean_width = (counts.valid > 0).then(|| width / counts.valid as f64);
         Self {
             number: frame.frame,
             file,
-            points: frame.points.len(),
-            valid,
-            saturated: count(Validity::Saturated),
+            counts,
             not_valid,
             saturated_pixels: frame.raw.saturated_pixels(),
             peak: frame.raw.values.values().iter().copied().max().unwrap_or(0),
@@ -57,12 +45,12 @@ impl FrameRecord {
 
 /// Returns the numbers of points of all frames.
 pub(super) fn point_counts(frames: &[FrameRecord]) -> PointCounts {
-    let sum = |of: fn(&FrameRecord) -> usize| frames.iter().map(of).sum();
-    PointCounts {
-        points: sum(|frame| frame.points),
-        valid: sum(|frame| frame.valid),
-        saturated: sum(|frame| frame.saturated),
-    }
+    let counts = frames.iter().map(|frame| frame.counts);
+    counts.fold(PointCounts::default(), |sum, counts| PointCounts {
+        points: sum.points + counts.points,
+        valid: sum.valid + counts.valid,
+        saturated: sum.saturated + counts.saturated,
+    })
 }
 
 /// Returns the frames as a table.
@@ -83,9 +71,9 @@ pub(super) fn table(frames: &[FrameRecord]) -> Table {
         table.row([
             frame.number.into(),
             frame.file.as_str().into(),
-            frame.points.into(),
-            frame.valid.into(),
-            frame.saturated.into(),
+            frame.counts.points.into(),
+            frame.counts.valid.into(),
+            frame.counts.saturated.into(),
             Cell::new(&frame.not_valid, ""),
             u32::from(frame.peak).into(),
             frame.saturated_pixels.into(),

@@ -14,7 +14,7 @@ pub(super) struct Refusal {
 impl Refusal {
     /// Returns why no point of the frames is valid, or too few to measure with.
     pub(super) fn of(frames: &[FrameRecord]) -> Self {
-        let points: usize = frames.iter().map(|frame| frame.points).sum();
+        let points: usize = frames.iter().map(|frame| frame.counts.points).sum();
         let count = |reason: &Reason| -> usize {
             let counts = frames
                 .iter()
@@ -26,7 +26,7 @@ impl Refusal {
             .map(|reason| (count(reason), reason))
             .max_by_key(|(count, _)| *count)
             .filter(|(count, _)| *count > 0);
-        let valid: usize = frames.iter().map(|frame| frame.valid).sum();
+        let valid: usize = frames.iter().map(|frame| frame.counts.valid).sum();
         match most {
             Some((count, (_, what, advice))) => Self {
                 why: if valid == 0 {
@@ -94,14 +94,16 @@ const REASONS: [Reason; 6] = [
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::saturated_points::PointCounts;
 
     fn frame(points: usize, not_valid: &[(&'static str, usize)]) -> FrameRecord {
         FrameRecord {
             number: 0,
             file: String::new(),
-            points,
-            valid: 0,
-            saturated: 0,
+            counts: PointCounts {
+                points,
+                ..PointCounts::default()
+            },
             not_valid: not_valid.iter().copied().collect(),
             saturated_pixels: 0,
             peak: 90,
@@ -115,17 +117,16 @@ mod tests {
             frame(5, &[("saturated", 2), ("cut", 3)]),
             frame(4, &[("saturated", 4)]),
         ];
-        let found = Refusal::of(&frames);
-        assert!(
-            found.why.contains("9 points") && found.why.contains("6 lie on saturated pixels"),
-            "{found:?}"
-        );
-        assert!(found.advice.contains("lower `exposure`"), "{found:?}");
-        let dark = Refusal::of(&[frame(0, &[])]);
-        assert!(
-            dark.why.contains("90 DN") && dark.advice.contains("raise `exposure`"),
-            "{dark:?}"
-        );
+        let dark = [frame(0, &[])];
+        for (frames, why, advice) in [
+            (&frames[..], "9 points", "lower `exposure`"),
+            (&frames, "6 lie on saturated pixels", "lower `exposure`"),
+            (&dark, "90 DN", "raise `exposure`"),
+        ] {
+            let found = Refusal::of(frames);
+            assert!(found.why.contains(why), "{found:?}");
+            assert!(found.advice.contains(advice), "{found:?}");
+        }
     }
 
     #[test]

@@ -211,41 +211,27 @@ mod tests {
     #[test]
     fn images_are_paired_by_what_follows_their_kind() {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        for name in [
-            "board_02.png",
-            "line_02.TIF",
-            "board_01.tiff",
-            "notes.txt",
-            "other.png",
-        ] {
-            fs::write(folder.path().join(name), "").expect("the file is written");
-        }
+        let path = |name: &str| folder.path().join(name);
+        let refused = |folder: &Path| pairs(folder).expect_err("there are no pairs");
+        let told = refused(folder.path()).message().to_owned();
+        assert!(told.contains("0 images of boards"), "{told}");
+        let write = |name: &str| fs::write(path(name), "").expect("the file is written");
+        "board_02.png board_01.tiff notes.txt other.png"
+            .split(' ')
+            .for_each(write);
+        assert_eq!(refused(folder.path()).exit_code(), 2, "without a line");
+        write("line_02.TIF");
         let found = pairs(folder.path()).expect("there are pairs");
+        let pair = |lit, line: Option<&str>| Pair {
+            lit: path(lit),
+            line: line.map(path),
+        };
         let expected = [
-            Pair {
-                lit: folder.path().join("board_01.tiff"),
-                line: None,
-            },
-            Pair {
-                lit: folder.path().join("board_02.png"),
-                line: Some(folder.path().join("line_02.TIF")),
-            },
+            pair("board_01.tiff", None),
+            pair("board_02.png", Some("line_02.TIF")),
         ];
         assert_eq!(found, expected);
-    }
-
-    #[test]
-    fn folders_without_boards_are_refused_in_words() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let refused = |folder: &Path| pairs(folder).expect_err("there are no pairs");
-        let report = refused(folder.path()).report().unwrap_or_default();
-        assert!(report.contains("0 images of boards"), "{report}");
-        fs::write(folder.path().join("board_1.png"), "").expect("the file is written");
-        assert_eq!(refused(folder.path()).exit_code(), 2);
-        let missing = refused(&folder.path().join("missing"));
-        assert!(
-            missing.report().unwrap_or_default().contains("missing"),
-            "the folder is named"
-        );
+        let missing = refused(&path("missing")).message().to_owned();
+        assert!(missing.contains("missing"), "the folder is named");
     }
 }

@@ -229,24 +229,20 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let path = folder.path().join("calibration.json");
         let text = serde_json::to_string(&CalibrationRecord::of(&calibration())).expect("is JSON");
-        for (from, to, part) in [
-            ("tem00 calibration 1", "tem00 calibration 9", "format"),
-            (
-                "\"focal_length\":0.025",
-                "\"focal_length\":-1.0",
-                "focal_length",
-            ),
-            ("\"focal_length\"", "\"focal_lenght\"", "focal_lenght"),
-            ("\"normal\":[", "\"normal\":[0.0,", "no calibration"),
-            ("\"image distance\"", "\"distance\"", "parameters"),
-            ("{", "", "no calibration"),
-        ] {
-            assert!(text.contains(from), "{from} is in {text}");
-            fs::write(&path, text.replacen(from, to, 1)).expect("the file is written");
-            let failure = read_calibration(&path).expect_err(to);
+        for [from, to, part] in tem00_testkit::rows(
+            r#"tem00 calibration 1 => tem00 calibration 9 => format
+            "focal_length":0.025 => "focal_length":-1.0 => focal_length
+            "focal_length" => "focal_lenght" => focal_lenght
+            "normal":[ => "normal":[0.0, => no calibration
+            "image distance" => "distance" => parameters
+            { => => no calibration"#,
+        ) {
+            assert!(text.contains(&from), "{from} is in {text}");
+            fs::write(&path, text.replacen(&from, &to, 1)).expect("the file is written");
+            let failure = read_calibration(&path).expect_err(&to);
             assert_eq!(failure.exit_code(), 2, "{to}");
             let report = failure.report().unwrap_or_default();
-            assert!(report.contains(part), "{to}: {report}");
+            assert!(report.contains(&part), "{to}: {report}");
         }
         let missing = read_calibration(&folder.path().join("none.json"));
         assert!(missing.is_err(), "a missing file");

@@ -201,10 +201,7 @@ mod tests {
             writer.write_all(b"half")?;
             // Other tests write at the same time.
             discard(|path| path.starts_with(folder.path()));
-            assert!(
-                names(folder.path()).is_empty(),
-                "the temporary file is gone"
-            );
+            assert!(names(folder.path()).is_empty(), "the file is gone");
             Err(io::Error::other("killed"))
         });
         assert!(result.is_err(), "the failure is passed on");
@@ -224,10 +221,8 @@ mod tests {
         remove_abandoned(folder.path());
         let mut left = names(folder.path());
         left.sort();
-        assert_eq!(
-            left,
-            [".tem00-2.part", ".tem00-3", ".tem00-4.part", "a.part"]
-        );
+        let others = [".tem00-2.part", ".tem00-3", ".tem00-4.part", "a.part"];
+        assert_eq!(left, others);
         drop(other);
         probe_writable(&path("image.png")).expect("the folder can be written");
         assert!(!path(".tem00-2.part").exists(), "its writer has gone");
@@ -238,10 +233,8 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         probe_writable(&folder.path().join("image.png")).expect("the folder can be written");
         assert!(names(folder.path()).is_empty(), "nothing is left");
-        assert!(
-            probe_writable(folder.path()).is_err(),
-            "a folder is no file"
-        );
+        let refused = probe_writable(folder.path());
+        assert!(refused.is_err(), "a folder is no file");
         let missing = folder.path().join("missing").join("image.png");
         let error = probe_writable(&missing).expect_err("the folder is missing");
         assert!(!error.to_string().contains(".tem00-"), "{error}");

@@ -217,10 +217,8 @@ mod tests {
         let held = FolderLock::alone(path).expect("nobody has it");
         let own = Some(std::process::id());
         for second in [FolderLock::alone(path), FolderLock::shared(path, "a")] {
-            assert!(
-                matches!(second, Err(Refused::InUse(process)) if process == own),
-                "{second:?}"
-            );
+            let is_refused = matches!(second, Err(Refused::InUse(process)) if process == own);
+            assert!(is_refused, "{second:?}");
         }
         drop(held);
         assert!(!lock_file(path), "nothing is left");

@@ -79,25 +79,20 @@ mod tests {
     #[test]
     fn points_are_drawn_where_they_are() {
         let image = Grid::from_fn(3, 4, |x, y| (x + y) as f32);
-        let found = [
-            vec![
-                point(1.99, 0, Validity::Valid),
-                point(-0.2, 1, Validity::Valid),
-            ],
-            vec![],
-            vec![
-                point(3.0, 1, Validity::Saturated),
-                point(4.0, 0, Validity::Valid),
-            ],
-        ];
+        let (near, far) = (
+            point(1.99, 0, Validity::Valid),
+            point(-0.2, 1, Validity::Valid),
+        );
+        let (bad, out) = (
+            point(3.0, 1, Validity::Saturated),
+            point(4.0, 0, Validity::Valid),
+        );
+        let found = [vec![near, far], vec![], vec![bad, out]];
         let across = picture(&image, (&found, false));
         assert!(is(across[(0, 1)], COLOURS[0]), "the first line");
         assert!(is(across[(2, 3)], DOUBTFUL), "a saturated point");
-        let untouched = across
-            .values()
-            .iter()
-            .filter(|&&pixel| is(pixel, [pixel[0]; 3]))
-            .count();
+        let pixels = across.values().iter();
+        let untouched = pixels.filter(|&&pixel| is(pixel, [pixel[0]; 3])).count();
         assert_eq!(untouched, 10, "what lies outside is left out");
         assert!(is(across[(1, 3)], [0.8; 3]), "5 is white, and 4 is not");
 

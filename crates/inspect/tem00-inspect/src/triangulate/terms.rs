@@ -232,11 +232,8 @@ mod tests {
             (2, 0.5, 1.0),
             (1, 0.95, 1.0),
         ] {
-            assert_eq!(
-                quantile(&values[..count], part),
-                expected,
-                "{part} of {count}"
-            );
+            let found = quantile(&values[..count], part);
+            assert_eq!(found, expected, "{part} of {count}");
         }
     }
 }

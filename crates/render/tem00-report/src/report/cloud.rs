@@ -254,14 +254,12 @@ mod tests {
     use super::*;
 
     fn cloud(points: Vec<[f64; 3]>) -> Option<(String, String)> {
-        let labels = ["x (mm)", "y (mm)", "<z> (mm)"];
-        let to_scale = true;
-        Cloud {
-            labels,
-            to_scale,
+        let cloud = Cloud {
+            labels: ["x (mm)", "y (mm)", "<z> (mm)"],
+            to_scale: true,
             points,
-        }
-        .draw()
+        };
+        cloud.draw()
     }
 
     fn attribute<'a>(svg: &'a str, before: &str, name: &str) -> &'a str {
@@ -284,6 +282,10 @@ mod tests {
             .map(|(x, y)| (x.parse().expect("a number"), y.parse().expect("a number")))
             .collect();
         assert_eq!(places.len(), 4, "the lower corners");
+        assert!(
+            places[2].1 < places[0].1,
+            "from above: what is behind stands higher"
+        );
         let expected = -15.0_f64.to_radians().cos() * (2.0_f64 / 3.0).sqrt() * 210.0;
         assert!(
             (places[0].0 - expected).abs() < 0.2,

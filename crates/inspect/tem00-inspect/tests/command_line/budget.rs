@@ -279,7 +279,13 @@ fn a_certificate_states_the_height_to_quote() {
     fs::write(folder.path().join("setup.toml"), SETUP).expect("written");
     let path = folder.path().join("x/certificate.xml");
     let line = format!("budget a.toml --trials 0 --json -o x {UNCERTAIN_ANGLE}");
-    let certified = || (json(&said(folder.path(), &line, 0).out), read(&path));
+    let with_address = format!("{line} --set certificate.customer.email=a@example.org");
+    let certified = || {
+        (
+            json(&said(folder.path(), &with_address, 0).out),
+            read(&path),
+        )
+    };
     let (record, certificate) = certified();
     let measurement = &record["measurement"];
     assert_eq!(measurement["quoted"], "first_order", "{record}");
@@ -299,6 +305,7 @@ fn a_certificate_states_the_height_to_quote() {
     assert!((expanded / half - 1.0).abs() < 1e-12, "{expanded}, {half}");
     let parts = [
         "Lines &amp; &lt;heights&gt;",
+        "<dcc:eMail>a@example.org</dcc:eMail>",
         "not the result of a measurement",
     ];
     assert_has(&certificate, &parts);

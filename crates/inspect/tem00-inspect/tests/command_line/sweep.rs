@@ -63,6 +63,12 @@ fn a_table_is_the_same_however_its_tasks_are_shared() {
     assert!(rows[3].starts_with("2,10,0.2 mm,0.0000"), "{at_once}");
     assert!(rows[3].ends_with(",speckle,done,"), "{at_once}");
     assert_eq!(rows.len(), 7, "{at_once}");
+    let result = |row: &str| row.split(',').nth(3).map(str::to_owned);
+    assert_ne!(
+        result(rows[1]),
+        result(rows[2]),
+        "every key is changed: {at_once}"
+    );
     let listed = said(path, "sweep a.toml --list", 0).out;
     let expected = format!("{keys}\n0,5,0.2 mm\n1,5,0.3 mm\n");
     assert!(listed.starts_with(&expected), "{listed}");

@@ -150,6 +150,11 @@ fn a_report_is_well_formed() {
         assert!(met.iter().any(|tag| tag == name), "there is a {name}");
     }
     assert!(!met.iter().any(|tag| tag == "script"), "text is no script");
+    // Two drawings stand side by side, and the cloud alone.
+    let (html, _) = split(&report().html());
+    let (_, side_by_side) = html.split_once("<div class=\"drawings\">").expect("a row");
+    let (side_by_side, _) = side_by_side.split_once("</div>").expect("its end");
+    assert_eq!(side_by_side.matches("<figure>").count(), 2);
 }
 
 #[test]

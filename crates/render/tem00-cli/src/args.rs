@@ -28,7 +28,7 @@ Examples:
   tem00 pattern -o speckle.png                        write a speckle pattern and check it
   tem00 stats photo.png                               measure the speckle in an image
   tem00 speckle --wavelength 650nm --focal-length 25mm --f-number 8 --distance 300mm
-                                                      how large is the speckle?
+                                                      speckle size and contrast of a camera
 
 Set-ups of laser triangulation, and camera frames: tem00-inspect --help
 
@@ -43,7 +43,7 @@ pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
 
-    /// Print no notes and no progress: results and errors alone.
+    /// Suppress notes and progress; print only results and errors.
     #[arg(short, long, global = true)]
     pub(crate) quiet: bool,
 }
@@ -62,36 +62,35 @@ pub(crate) enum Command {
 
 /// Generate a speckle pattern and compare it with the theory.
 ///
-/// The pattern has Q × Q samples, is periodic, and has the mean 1. A random field of the diameter C
-/// in the pupil makes speckles of Q / C samples; so does a measured or computed field, which --field reads
-/// from a file. The table on standard output lists the measured values beside those of the theory, with
-/// the tolerance of each.
+/// The pattern has Q × Q samples, is periodic, and has mean 1. A random pupil field of diameter C gives
+/// speckles of Q / C samples, and so does a measured or computed field read with --field. The table on
+/// standard output compares measured values with theory and states the tolerance of each.
 #[derive(Args, Debug)]
 #[command(after_help = PATTERN_EXAMPLES)]
 pub(crate) struct PatternArgs {
-    /// The file to write: .png (16-bit grey), .exr or .npy (raw intensity, mean 1).
+    /// Output file: .png (16-bit grey), .exr or .npy (raw intensity, mean 1).
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
 
-    /// The size Q of the pattern, in samples [default: 512, or 4 C with --field].
+    /// Size Q of the pattern, in samples [default: 512, or 4 C with --field].
     #[arg(long, value_name = "Q")]
     pub(crate) size: Option<usize>,
 
-    /// The diameter C of the pupil, in samples: 8 to Q / 2 [default: Q / 4, speckles of 4 samples;
+    /// Diameter C of the pupil, in samples: 8 to Q / 2 [default: Q / 4, speckles of 4 samples;
     /// with --field its shorter side].
     #[arg(long, value_name = "C")]
     pub(crate) diameter: Option<usize>,
 
-    /// The seed of the random phases.
+    /// Seed of the random phases.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) seed: u64,
 
-    /// The complex field in the pupil, measured or computed, instead of a random one: a NumPy array
-    /// of complex64 or complex128, height × width. The pupil stands about its middle.
+    /// Complex pupil field, measured or computed, instead of a random one: a NumPy array
+    /// of complex64 or complex128, height × width, with the pupil in its middle.
     #[arg(long, value_name = "FILE.npy", conflicts_with = "seed")]
     pub(crate) field: Option<PathBuf>,
 
-    /// The shape of the pupil; annulus:0.3 sets the inner diameter, rectangle:0.5 the height, both
+    /// Shape of the pupil; annulus:0.3 sets the inner diameter, rectangle:0.5 the height, both
     /// in units of C [annulus alone: 0.5; rectangle alone: 1].
     #[arg(long, value_name = "circle|annulus[:INNER]|rectangle[:HEIGHT]", default_value = "circle",
           value_parser = pupil)]
@@ -110,46 +109,46 @@ Examples:
   tem00 pattern -o measured.npy --field pupil.npy     speckle behind a measured field
   tem00 pattern -o stopped.npy --field pupil.npy --diameter 300 --size 2048";
 
-/// Measure the speckle in an image, and compare it with the theory.
+/// Measure the speckle in an image and compare it with theory.
 ///
-/// The image may come from a camera, a simulation or this program: grey or in colours, an
-/// OpenEXR channel, or a two-dimensional NumPy array. The light should be even over the image: take a
-/// part of it with --crop, or divide by its local mean with --flatten. Where it is not, its own shape
-/// counts as contrast, and a warning says so.
+/// The image may come from a camera, a simulation or this program: grey or colour, an
+/// OpenEXR channel, or a two-dimensional NumPy array. The light should be even over the image: select a
+/// part with --crop, or divide by the local mean with --flatten. Uneven light increases the contrast,
+/// which gives a warning.
 #[derive(Args, Debug)]
 #[command(after_help = STATS_EXAMPLES)]
 pub(crate) struct StatsArgs {
-    /// The image: .png, .tif, .jpg, .bmp, .pgm, .exr or .npy.
+    /// Image: .png, .tif, .jpg, .bmp, .pgm, .exr or .npy.
     pub(crate) image: PathBuf,
 
-    /// Only this part of the image, in pixels from the upper left corner.
+    /// Use only this part of the image, in pixels from the upper left corner.
     #[arg(long, value_name = "X,Y,WIDTH,HEIGHT", value_parser = crop)]
     pub(crate) crop: Option<Crop>,
 
     /// Divide the image by its mean over PIXELS × PIXELS around each pixel, and correct contrast and
-    /// speckle size for what that takes from them [default: 20 speckle sizes, at most a third of the
+    /// speckle size for the effect of this division [default: 20 speckle sizes, at most a third of the
     /// image].
     #[arg(long, value_name = "PIXELS", num_args = 0..=1, require_equals = true)]
     pub(crate) flatten: Option<Option<usize>>,
 
-    /// The channel to take: R, G, B, or `channel` or `layer.channel` of an OpenEXR file [default:
-    /// Y, or the mean of R, G and B, or the only one that shows light].
+    /// Channel: R, G, B, or `channel` or `layer.channel` of an OpenEXR file [default:
+    /// Y, or the mean of R, G and B, or the only one that contains light].
     #[arg(long, value_name = "NAME")]
     pub(crate) channel: Option<String>,
 
-    /// The relation of grey values to light [default: as the file says, else linear].
+    /// Transfer curve from light to grey values [default: from the file, otherwise linear].
     #[arg(long, value_name = "CURVE")]
     pub(crate) transfer: Option<Transfer>,
 
-    /// The grey value of darkness, which is subtracted; noise about it may be negative.
+    /// Grey value without light, to be subtracted; noise around it may become negative.
     #[arg(long, value_name = "DN", value_parser = black_level)]
     pub(crate) black_level: Option<f64>,
 
-    /// Print JSON instead of a table, with the curves of the page.
+    /// Print JSON instead of a table, including the curves of the plot.
     #[arg(long)]
     pub(crate) json: bool,
 
-    /// Draw one page: histogram, autocovariance and power spectrum beside the theory.
+    /// Draw a page with histogram, autocovariance and power spectrum, compared with theory.
     #[arg(long, value_name = "FILE.svg|.png")]
     pub(crate) plot: Option<PathBuf>,
 }

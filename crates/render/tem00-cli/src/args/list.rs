@@ -3,9 +3,9 @@
 use clap::{Args, ValueEnum};
 use tem00_report::args::length;
 
-/// List what scenes can name: metals, materials, surfaces.
+/// List the names that scenes can use: metals, materials, surfaces.
 ///
-/// Each entry has its source, and typical values are marked.
+/// Each entry states its source, and typical values are marked.
 #[derive(Args, Debug)]
 #[command(after_help = LIST_EXAMPLES)]
 pub(crate) struct ListArgs {
@@ -13,14 +13,14 @@ pub(crate) struct ListArgs {
     #[arg(value_name = "WHAT")]
     pub(crate) what: Listed,
 
-    /// The vacuum wavelength for metals, as in "650 nm".
+    /// Vacuum wavelength for metals, as in "650 nm".
     #[arg(long, value_name = "LENGTH", default_value = "650 nm", value_parser = length)]
     pub(crate) wavelength: f64,
 }
 
 const LIST_EXAMPLES: &str = "\
 Examples:
-  tem00 list metals --wavelength 532nm    n, k and reflectance, and who measured them
+  tem00 list metals --wavelength 532nm    n, k and reflectance, with their source
   tem00 list surfaces                     finishes such as \"milled steel\"";
 
 /// The lists.
@@ -28,8 +28,8 @@ Examples:
 pub(crate) enum Listed {
     /// Metals with their complex refractive index.
     Metals,
-    /// Materials of surfaces, and their keys.
+    /// Materials of surfaces with their keys.
     Materials,
-    /// Finished surfaces by name.
+    /// Surfaces by finishing process and metal.
     Surfaces,
 }

@@ -17,7 +17,7 @@ pub struct SceneArgs {
     #[command(flatten)]
     pub files: FileArgs,
 
-    /// The folder for the files, made if it is missing [default: out/ and the name of the scene].
+    /// Output folder, created if missing [default: out/ and the name of the scene].
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
@@ -25,25 +25,25 @@ pub struct SceneArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     spp: Option<u32>,
 
-    /// Fewer samples where they agree, more at edges and in narrow beams: --spp on average at most
+    /// Distribute samples adaptively; --spp becomes the maximum mean per pixel
     /// [default: from the scene].
     #[arg(long)]
     adaptive: bool,
 
-    /// The seed of everything random [default: from the scene].
+    /// Random seed [default: from the scene].
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
 
-    /// Only these frames, counted from 0: one, or FIRST..LAST with both ends; a frame is the same however
-    /// frames are distributed [default: all].
+    /// Render only frame N or frames FIRST to LAST, inclusive, 0-based; each frame is independent of the
+    /// selection [default: all].
     #[arg(long, visible_alias = "frame", value_name = "N|FIRST..LAST")]
     pub frames: Option<IndexRange>,
 
-    /// Threads to work with, 1 to 1024, four for each core at most; the result does not depend on it [default: all].
+    /// Number of threads, 1 to 1024 and at most four per core; it does not change the result [default: all].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
 
-    /// Leave the speckle out.
+    /// Render without speckle.
     #[arg(long)]
     pub no_speckle: bool,
 }

@@ -4,40 +4,40 @@ use clap::Args;
 use tem00_config::ANGLE;
 use tem00_report::args::{length, positive};
 
-/// Compute the speckle size of a camera, the contrast in a pixel, and what decorrelates the speckle.
+/// Compute the speckle size of a camera, the contrast in a pixel, and the motions that decorrelate it.
 ///
-/// Nothing but the lens, the distance and the wavelength is needed: the surface is rough, and lit over
+/// This needs only the lens, the distance and the wavelength. The surface is rough and illuminated over
 /// more than a resolution cell. The size h, wavelength times working f-number, is the period of the finest
-/// fringes that the pupil lets through.
+/// fringes that the pupil transmits.
 #[derive(Args, Debug)]
 #[command(after_help = SPECKLE_EXAMPLES)]
 pub(crate) struct SpeckleArgs {
-    /// The vacuum wavelength, as in "650 nm".
+    /// Vacuum wavelength, as in "650 nm".
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub(crate) wavelength: f64,
 
-    /// The focal length of the lens, as in "25 mm".
+    /// Focal length of the lens, as in "25 mm".
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub(crate) focal_length: f64,
 
-    /// The f-number as engraved on the lens, for focus at infinity.
+    /// F-number as engraved on the lens, for focus at infinity.
     #[arg(long, value_name = "F", value_parser = positive)]
     pub(crate) f_number: f64,
 
-    /// The distance from the surface in focus to the entrance pupil, as in "300 mm"; to the lens, if it
-    /// is thin.
+    /// Distance from the surface in focus to the entrance pupil, as in "300 mm"; for a thin lens, to the
+    /// lens.
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub(crate) distance: f64,
 
-    /// The pixel pitch of the sensor, as in "3.45 um", for the contrast in a pixel.
+    /// Pixel pitch of the sensor, as in "3.45 um", for the contrast in a pixel.
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub(crate) pixel_pitch: Option<f64>,
 
-    /// The diameter of the exit pupil over that of the entrance pupil; 1 for a thin lens.
+    /// Pupil magnification, the diameter of the exit pupil over the diameter of the entrance pupil; 1 for a thin lens.
     #[arg(long, value_name = "RATIO", default_value_t = 1.0, value_parser = positive)]
     pub(crate) pupil_magnification: f64,
 
-    /// The angle between the light, which is collimated, and the line of sight, as in "30 deg"; the
+    /// Angle between the collimated light and the line of sight, as in "30 deg"; the
     /// surface faces the camera.
     #[arg(long, value_name = "ANGLE", default_value = "0 deg", value_parser = angle)]
     pub(crate) angle: f64,

@@ -1,5 +1,6 @@
-//! Thousands of surface points per second for the displacement and the correlation of speckle between
-//! two states, call by call and for the points of a body, and the time of each law of correlation.
+//! Thousands of surface points per second for the displacement and the correlation of speckle
+//! between two states, call by call and for the points of a body, and the time of each law of
+//! correlation.
 
 #![expect(
     clippy::expect_used,

@@ -1,13 +1,13 @@
 //! Rays per second through the tracer's intersector, and the time to build its hierarchy.
 //!
 //! An open box of [−1, 1]³ m with a displaced sphere of 1 thousand, 262 thousand and 1 million
-//! triangles, and a square area light of 0.5 m under its ceiling. Camera rays come 64 to a pixel of a
-//! 512² image, shadow rays go from where those end to points of the area light, second rays leave there
-//! as from a diffuse surface, and scattered rays join random points of a sphere.
+//! triangles, and a square area light of 0.5 m under its ceiling. Camera rays come 64 to a pixel of
+//! a 512² image, shadow rays go from where those end to points of the area light, second rays leave
+//! there as from a diffuse surface, and scattered rays join random points of a sphere.
 //!
-//! The peer is the CWBVH of obvhs over the same triangles, one ray at a time; the rectangles are two
-//! triangles each. It follows closest hits twice: in single precision with its own triangle test,
-//! and with the tracer's watertight test in double precision.
+//! The peer is the CWBVH of obvhs over the same triangles, one ray at a time; the rectangles are
+//! two triangles each. It follows closest hits twice: in single precision with its own triangle
+//! test, and with the tracer's watertight test in double precision.
 
 #![expect(
     clippy::expect_used,

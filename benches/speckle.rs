@@ -1,5 +1,5 @@
-//! Patterns per second against a dense transform, stacks, and look-ups per second beside what memory
-//! allows.
+//! Patterns per second against a dense transform, stacks, and look-ups per second beside what
+//! memory allows.
 //!
 //! The peer is what one writes first with `rustfft`: all rows, a transposition, all rows again and
 //! `|·|²`, from phasors that are already there. Ours includes their generation.
@@ -199,7 +199,8 @@ fn look_ups(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Reading coefficients one after the other: of one slice, which the last cache may hold, and of all.
+/// Reading coefficients one after the other: of one slice, which the last cache may hold, and of
+/// all.
 fn bandwidth(criterion: &mut Criterion) {
     let stack = stack();
     let mut group = criterion.benchmark_group("bandwidth");
@@ -228,7 +229,8 @@ fn sum(values: &[Complex<f32>]) -> f32 {
     sums.iter().sum()
 }
 
-/// The factors of an image of a plane that has moved, beside the same from the crates below, and their law alone.
+/// The factors of an image of a plane that has moved, beside the same from the crates below, and
+/// their law alone.
 fn factors(criterion: &mut Criterion) {
     let camera = Camera::new(CameraDescription::default()).expect("a camera");
     let laser = Laser::spot(650e-9, 3e-3);

@@ -1,7 +1,7 @@
 //! Columns per second of every line detector, on one core, against the loop one writes first.
 //!
-//! The peer takes the centre of gravity of a whole column with a known background: it neither searches
-//! for the line nor judges it.
+//! The peer takes the centre of gravity of a whole column with a known background: it neither
+//! searches for the line nor judges it.
 
 #![expect(
     clippy::expect_used,

@@ -66,7 +66,8 @@ fn displacements(criterion: &mut Criterion) {
     const SIZE: usize = 256;
     let plane = Illumination::plane(WAVELENGTH, DVec3::NEG_Z).expect("a plane wave");
     let lit = surface().lit_by(&plane);
-    // Every fourth sample of a coarse field, spread by linear interpolation: its details do not count.
+    // Every fourth sample of a coarse field, spread by linear interpolation: its details do not
+    // count.
     let coarse = Grid::from_fn(64, 64, |x, y| {
         let point = DVec3::new(x as f64 * 50e-6, y as f64 * 50e-6, 0.3);
         #[expect(

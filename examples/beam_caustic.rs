@@ -5,8 +5,8 @@
 //! ```
 //!
 //! The file has two columns, the position along the beam and the 1/e² radius (half of D4σ), both in
-//! mm; the second argument is the wavelength in metres. Without arguments, twelve radii of a beam with M² = 1.3
-//! at 650 nm are made up, with errors of 1 %.
+//! mm; the second argument is the wavelength in metres. Without arguments, twelve radii of a beam
+//! with M² = 1.3 at 650 nm are made up, with errors of 1 %.
 
 #![expect(clippy::print_stdout, reason = "an example prints its answer")]
 

@@ -5,9 +5,10 @@
 //! tem00-inspect calibrate out/calibration_boards --corners 9x6 --square "8.4 mm" --pixel-pitch "8 um"
 //! ```
 //!
-//! The boards stand before a camera with a barrel distortion that looks at the laser plane at 30°. The
-//! corners that the camera must see and those that are found are written beside the images, and the program prints how far from
-//! them the corners in the images are found. The folder is `out/calibration_boards` without one.
+//! The boards stand before a camera with a barrel distortion that looks at the laser plane at 30°.
+//! The corners that the camera must see and those that are found are written beside the images, and
+//! the program prints how far from them the corners in the images are found. The folder is
+//! `out/calibration_boards` without one.
 
 #![expect(clippy::print_stdout, reason = "an example prints its answer")]
 

@@ -7,8 +7,8 @@
 //!
 //! Compares the correlation of intensity after a pupil displacement, after an axial displacement,
 //! and after both: what looking the pattern up at the slice of Bergmann et al. 2016 gives, as
-//! printed; and the integral over the pupil, with the first state in focus or the defocus followed to
-//! the peak.
+//! printed; and the integral over the pupil, with the first state in focus or the defocus followed
+//! to the peak.
 
 #![expect(clippy::print_stdout, reason = "an example prints its answer")]
 

@@ -1,8 +1,8 @@
 //! Where does a lens focus a laser beam, and how small is the focus?
 //!
-//! Not where geometrical optics says: a waist in the front focal plane has its image in the back one,
-//! not at infinity, and no image is farther away than `f + f² / (2 z_R)`. Compares the closed form of
-//! Self 1983 with the ABCD law for an ideal lens and for a real, thick one.
+//! Not where geometrical optics says: a waist in the front focal plane has its image in the back
+//! one, not at infinity, and no image is farther away than `f + f² / (2 z_R)`. Compares the closed
+//! form of Self 1983 with the ABCD law for an ideal lens and for a real, thick one.
 
 #![expect(clippy::print_stdout, reason = "an example prints its answer")]
 

@@ -1,5 +1,6 @@
-//! Two worked examples of the *Guide to the expression of uncertainty in measurement*: what a gauge block's length
-//! (H.1) and a circuit's resistance (H.2, with correlations) are uncertain by, and which input dominates.
+//! Two worked examples of the *Guide to the expression of uncertainty in measurement*: what a gauge
+//! block's length (H.1) and a circuit's resistance (H.2, with correlations) are uncertain by, and
+//! which input dominates.
 //!
 //! ```sh
 //! cargo run --release --example guide_to_uncertainty -- [FILE]

@@ -5,8 +5,8 @@
 //! tem00-inspect lines out/line_frames/*_12_bit.png --bits 12
 //! ```
 //!
-//! One line, slightly curved, of 12 pixels full width: without speckle, with speckle of 2 pixels, and with
-//! speckle in the noise of 8 bits. The folder is `out/line_frames` without one.
+//! One line, slightly curved, of 12 pixels full width: without speckle, with speckle of 2 pixels,
+//! and with speckle in the noise of 8 bits. The folder is `out/line_frames` without one.
 
 #![expect(clippy::print_stdout, reason = "an example prints its answer")]
 

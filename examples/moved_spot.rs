@@ -1,4 +1,5 @@
-//! Two pictures of a plane under a laser spot that slides by 0.1 mm, and how much of the speckle is left.
+//! Two pictures of a plane under a laser spot that slides by 0.1 mm, and how much of the speckle is
+//! left.
 //!
 //!     cargo run --release --example moved_spot        writes out/moved_spot_0.png and out/moved_spot_1.png
 
@@ -27,7 +28,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let before = speckle.frame(&Pose::IDENTITY.into())?;
     let after = speckle.frame(&pose.into())?;
 
-    // Per hit: the point that is seen, here of the plane z = 0, how it is lit, and the speckle there.
+    // Per hit: the point that is seen, here of the plane z = 0, how it is lit, and the speckle
+    // there.
     let point = |pixel| {
         let ray = camera.ray(pixel);
         ray.origin - ray.origin.z / ray.direction.z * ray.direction

@@ -39,8 +39,8 @@ fn row(name: &str, range: RangeInclusive<f64>, x: &str, pair: impl Fn(f64) -> Op
     }
 }
 
-/// A surface under a camera with the axis (sin q1, 0, cos q1), seen along `sight`, that moves by 1 µm
-/// along `a`: what its speckle moves by in the image and in the pupil, in micrometres along x.
+/// A surface under a camera with the axis (sin q1, 0, cos q1), seen along `sight`, that moves by 1
+/// µm along `a`: what its speckle moves by in the image and in the pupil, in micrometres along x.
 fn moved(
     geometry: &ImagingGeometry,
     q1: f64,

@@ -4,9 +4,9 @@
 //! cargo run --release --example thin_line
 //! ```
 //!
-//! Images of lines on a rough surface by wave optics, beside two that are made of a speckle pattern:
-//! times the irradiance on the surface, and times the same blurred by the lens. Widths are 1/e²
-//! half-widths, in speckle sizes on the surface.
+//! Images of lines on a rough surface by wave optics, beside two that are made of a speckle
+//! pattern: times the irradiance on the surface, and times the same blurred by the lens. Widths are
+//! 1/e² half-widths, in speckle sizes on the surface.
 
 #![expect(clippy::print_stdout, reason = "an example prints its answer")]
 

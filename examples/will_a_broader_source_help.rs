@@ -1,11 +1,12 @@
-//! Will a broader source help? How much contrast does speckle lose to a linewidth, and how much of its noise a laser
-//! line?
+//! Will a broader source help? How much contrast does speckle lose to a linewidth, and how much of
+//! its noise a laser line?
 //!
 //! ```sh
 //! cargo run --release --example will_a_broader_source_help
 //! ```
 //!
-//! A laser line along the normal of a surface, seen at 30° to it across the line, by rows finer than a speckle.
+//! A laser line along the normal of a surface, seen at 30° to it across the line, by rows finer
+//! than a speckle.
 
 #![expect(clippy::print_stdout, reason = "an example prints its answer")]
 

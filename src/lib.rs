@@ -1,11 +1,13 @@
 //! Physics of laser light for renderers.
 //!
-//! A renderer that has laser light with speckle that moves as it should calls few names: a [`Laser`] lights a point,
-//! [`Speckle`] chooses the patterns for a [`Camera`] and the poses of bodies, and [`SpeckleFrame::factor`] multiplies the
-//! light of a hit. How: `docs/integration.md` in the repository.
+//! A renderer that has laser light with speckle that moves as it should calls few names: a
+//! [`Laser`] lights a point, [`Speckle`] chooses the patterns for a [`Camera`] and the poses of
+//! bodies, and [`SpeckleFrame::factor`] multiplies the light of a hit. How: `docs/integration.md`
+//! in the repository.
 //!
-//! These names are the upper level. The modules are the level below, for a renderer that wants lights alone, patterns of its
-//! own or the law of motion: `docs/functions.md`. Each is a crate, and they meet through plain numbers.
+//! These names are the upper level. The modules are the level below, for a renderer that wants
+//! lights alone, patterns of its own or the law of motion: `docs/functions.md`. Each is a crate,
+//! and they meet through plain numbers.
 //!
 //! | module | crate | what it holds |
 //! |---|---|---|

@@ -113,8 +113,8 @@ fn an_area_light_lights_by_its_form_factor() {
     assert_mean("area light", &radiances, expected, 0.01 * expected);
 }
 
-/// Two plates that face each other, `GAP` apart, under a laser that stands just before the upper one
-/// and lights the lower one.
+/// Two plates that face each other, `GAP` apart, under a laser that stands just before the upper
+/// one and lights the lower one.
 mod facing_plates {
     use tem00::beam::GaussianBeam;
 
@@ -134,8 +134,8 @@ mod facing_plates {
         (0..CELLS).map(move |i| half * ((2 * i + 1) as f64 / CELLS as f64 - 1.0))
     }
 
-    /// Returns the irradiance at `x` off the axis of one plate by the radiance, round the axis, of a
-    /// square of the other.
+    /// Returns the irradiance at `x` off the axis of one plate by the radiance, round the axis, of
+    /// a square of the other.
     fn irradiance(x: f64, half: f64, radiance: impl Fn(f64) -> f64) -> f64 {
         let cell = (2.0 * half / CELLS as f64).powi(2);
         let rows = cells(half).flat_map(|u| cells(half).map(move |v| (u, v)));
@@ -176,7 +176,8 @@ mod facing_plates {
         LOWER / std::f64::consts::PI * irradiance(x, HALF, upper)
     }
 
-    /// Returns the light that has met more than one surface, where a camera between the plates looks.
+    /// Returns the light that has met more than one surface, where a camera between the plates
+    /// looks.
     fn seen(camera_height: f64, height: f64, max_depth: u32, seed: u64) -> f64 {
         let scene = format!(
             r#"

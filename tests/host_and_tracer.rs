@@ -1,4 +1,5 @@
-//! A host that calls the factor of a hit, and the tracer, show the same speckle: contrast, mean, and what two frames share.
+//! A host that calls the factor of a hit, and the tracer, show the same speckle: contrast, mean,
+//! and what two frames share.
 
 use tem00::{
     Camera, CameraDescription, DVec2, DVec3, Laser, Pose, Speckle, SpeckleFrame,

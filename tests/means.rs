@@ -18,7 +18,8 @@ pub(crate) fn mean(values: &[f32]) -> f64 {
     values.iter().map(|&v| f64::from(v)).sum::<f64>() / values.len() as f64
 }
 
-/// Asserts that values of renders with different seeds have the mean `expected`, and can tell by `precision`.
+/// Asserts that values of renders with different seeds have the mean `expected`, and can tell by
+/// `precision`.
 #[track_caller]
 pub(crate) fn assert_mean(name: &str, values: &[f64], expected: f64, precision: f64) {
     let test = t_test_mean(values, expected).expect("renders with noise");

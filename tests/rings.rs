@@ -1,4 +1,5 @@
-//! The rings of the house: an arrow between crates only falls, and what a renderer links stays light.
+//! The rings of the house: an arrow between crates only falls, and what a renderer links stays
+//! light.
 
 use std::{collections::BTreeMap, fs, path::Path};
 

@@ -1,4 +1,5 @@
-//! The function files for graphics cards: what their texts promise. What they compute is tested on a card.
+//! The function files for graphics cards: what their texts promise. What they compute is tested on
+//! a card.
 
 use naga::{
     Module, Type, TypeInner,

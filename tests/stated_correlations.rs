@@ -25,8 +25,8 @@ fn slice(stack: &SpeckleStack, u: f64) -> Grid<f32> {
     })
 }
 
-/// The standard error of the correlation of two independent patterns: the variance is 0.585 h²/A, with
-/// A = Q² and h = Q/C.
+/// The standard error of the correlation of two independent patterns: the variance is 0.585 h²/A,
+/// with A = Q² and h = Q/C.
 fn standard_error() -> f64 {
     0.585_f64.sqrt() / DIAMETER as f64
 }

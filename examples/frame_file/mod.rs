@@ -5,7 +5,8 @@ use std::{error::Error, fs, io::BufWriter, path::Path};
 use png::{BitDepth, ColorType, Encoder};
 use tem00::triangulation::RawFrame;
 
-/// Writes the grey values of a frame as PNG, of 8 bits if they have no more and of 16 bits otherwise.
+/// Writes the grey values of a frame as PNG, of 8 bits if they have no more and of 16 bits
+/// otherwise.
 pub(crate) fn write(path: &Path, frame: &RawFrame) -> Result<(), Box<dyn Error>> {
     let (width, height) = (frame.values.width(), frame.values.height());
     let file = BufWriter::new(fs::File::create(path)?);

@@ -1,4 +1,5 @@
-//! A path tracer of its own under a laser line whose speckle moves with a sphere: of this library it knows a handful of names.
+//! A path tracer of its own under a laser line whose speckle moves with a sphere: of this library
+//! it knows a handful of names.
 //!
 //!     cargo run --release --example host              writes out/host.png, two frames
 

@@ -1,7 +1,7 @@
 //! A turned and drilled flange, in millimetres, standing on z = 0 around the z axis.
 //!
-//! Closed loops of points are joined by bands of quadrilaterals. Bands are smooth along their loops and
-//! meet at sharp edges.
+//! Closed loops of points are joined by bands of quadrilaterals. Bands are smooth along their loops
+//! and meet at sharp edges.
 
 use core::f64::consts::TAU;
 use core::fmt::Write as _;
@@ -150,8 +150,8 @@ impl Obj {
         (first..first + points.len()).collect()
     }
 
-    /// Writes the band between two loops of as many points; it faces to the right of the way from the
-    /// first to the second along the loops' direction.
+    /// Writes the band between two loops of as many points; it faces to the right of the way from
+    /// the first to the second along the loops' direction.
     fn join(&mut self, from: &[usize], to: &[usize]) {
         let count = from.len();
         for i in 0..count {

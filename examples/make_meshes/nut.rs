@@ -1,6 +1,6 @@
-//! A hexagon nut M10 after the dimensions of ISO 4032, in millimetres, standing on z = 0 around the z
-//! axis: 16 across flats, 8.4 high, both ends chamfered at 30°. The thread is left out: the bore has its
-//! minor diameter.
+//! A hexagon nut M10 after the dimensions of ISO 4032, in millimetres, standing on z = 0 around the
+//! z axis: 16 across flats, 8.4 high, both ends chamfered at 30°. The thread is left out: the bore
+//! has its minor diameter.
 
 use core::f64::consts::{FRAC_PI_6, TAU};
 

@@ -22,8 +22,8 @@ impl Ply {
         }
     }
 
-    /// Adds the strip between two lines of as many points, each with its normal; it faces to the right of
-    /// the way from the first line to the second along their direction.
+    /// Adds the strip between two lines of as many points, each with its normal; it faces to the
+    /// right of the way from the first line to the second along their direction.
     pub(crate) fn strip(
         &mut self,
         from: impl Iterator<Item = (Point, Point)>,

@@ -35,7 +35,8 @@ pub(crate) fn groove_ply() -> String {
     milled("a block with a groove, in millimetres", &GROOVE, 12.0)
 }
 
-/// Returns a part with a profile that goes from left to right over its top, open below and at its ends.
+/// Returns a part with a profile that goes from left to right over its top, open below and at its
+/// ends.
 fn milled(title: &'static str, profile: &[[f64; 2]], half_depth: f64) -> String {
     let mut ply = Ply::new(title);
     for pair in profile.windows(2) {

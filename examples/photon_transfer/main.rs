@@ -4,10 +4,10 @@
 //! cargo run --release --example photon_transfer -- [FOLDER]
 //! ```
 //!
-//! Frames of even light and darkness after EMVA 1288: pairs over the exposure time, up to saturation,
-//! and two stacks for the differences between pixels. The folder, `out/photon_transfer` without one,
-//! gets the frames, `emva1288.txt`, which lists them for programs that evaluate such series, and
-//! `sensor.json`, which says what was put in.
+//! Frames of even light and darkness after EMVA 1288: pairs over the exposure time, up to
+//! saturation, and two stacks for the differences between pixels. The folder, `out/photon_transfer`
+//! without one, gets the frames, `emva1288.txt`, which lists them for programs that evaluate such
+//! series, and `sensor.json`, which says what was put in.
 
 #![expect(clippy::print_stdout, reason = "an example prints its answer")]
 
@@ -48,8 +48,9 @@ fn description() -> SensorDescription {
     }
 }
 
-/// The exposures, as fractions of the one that fills the wells. The last but two stays 1.5 % below it, as
-/// far as shot noise and the pixels' responses spread: no well is full yet, and in the next all are.
+/// The exposures, as fractions of the one that fills the wells. The last but two stays 1.5 % below
+/// it, as far as shot noise and the pixels' responses spread: no well is full yet, and in the next
+/// all are.
 fn exposures() -> impl Iterator<Item = f64> {
     (1..=35).map(|step| 0.985 / 33.0 * f64::from(step))
 }
@@ -62,7 +63,8 @@ struct Exposure {
     dark: Vec<RawFrame>,
 }
 
-/// The pairs of all exposure times under one irradiance, in W/m², and the stacks of one in the middle.
+/// The pairs of all exposure times under one irradiance, in W/m², and the stacks of one in the
+/// middle.
 struct Series {
     irradiance: f64,
     pairs: Vec<Exposure>,

@@ -24,7 +24,8 @@ proptest! {
         let pattern = field.pattern_at(case.offset, case.defocus);
         let samples = decorrelated_samples(pattern.values(), stride).expect("a finite pattern");
         let test = kolmogorov_smirnov(&samples, exponential_cumulative).expect("samples");
-        // Some 0.8 N samples of N unit phasors: the law is off by 0.12/N, the test sees 1.4/√(0.8 N).
+        // Some 0.8 N samples of N unit phasors: the law is off by 0.12/N, the test sees 1.4/√(0.8
+        // N).
         prop_assert!(samples.len() > 900, "{} samples", samples.len());
         // 40 cases: a correct generator fails one of them with a probability of 4e−5.
         prop_assert!(test.p_value > 1e-6, "p = {:e}", test.p_value);
@@ -99,8 +100,8 @@ fn the_contrast_of_a_pattern_spreads_as_derived() {
             .standard_deviation();
         let correlations = Lattice::of(&field, [0.0; 2]).correlations();
         let derived = covariance_spread(&correlations, [0, 0], None);
-        // A spread from n tiles is known to 1/√(2n), four of them; what the derivation leaves out is
-        // of the order of 1/√N = 3 %.
+        // A spread from n tiles is known to 1/√(2n), four of them; what the derivation leaves out
+        // is of the order of 1/√N = 3 %.
         let tolerance = 4.0 / (2.0 * TILES as f64).sqrt() + 0.03;
         assert!(
             (measured / derived - 1.0).abs() < tolerance,

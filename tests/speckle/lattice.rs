@@ -199,8 +199,8 @@ impl Lattice {
         shared.sum::<Complex<f64>>() / self.power()
     }
 
-    /// The least stride whose multiples, and those plus or minus `lag`, correlate by less than 5 % in
-    /// intensity: pairs `lag` apart taken at this stride are independent.
+    /// The least stride whose multiples, and those plus or minus `lag`, correlate by less than 5 %
+    /// in intensity: pairs `lag` apart taken at this stride are independent.
     pub(crate) fn stride(&self, lag: [i64; 2]) -> usize {
         let least = lag[0].abs().max(lag[1].abs()) + 1;
         let apart = |stride: i64| {
@@ -253,8 +253,8 @@ pub(crate) fn signed(index: usize) -> i64 {
     i64::try_from(index).unwrap_or(i64::MAX)
 }
 
-/// The standard deviation, from pattern to pattern, of the mean of (I(x) − 1)(I(x + lag) − 1) over a
-/// tile. At zero lag, for the squared contrast, it is 2 √(mean |μ|⁴).
+/// The standard deviation, from pattern to pattern, of the mean of (I(x) − 1)(I(x + lag) − 1) over
+/// a tile. At zero lag, for the squared contrast, it is 2 √(mean |μ|⁴).
 ///
 /// With the field U a Gaussian process, the part of the product that varies is the Wick product
 /// :|U(x)|² |U(x + lag)|²:, whose covariance at the distance d is |μ(d)² + μ(d + lag) μ(d − lag)|².

@@ -1,5 +1,5 @@
-//! The look-ups as printed in Bergmann et al. 2016 against ours: what of the contrast is left between
-//! samples and between slices.
+//! The look-ups as printed in Bergmann et al. 2016 against ours: what of the contrast is left
+//! between samples and between slices.
 
 use tem00::{
     speckle::{PupilField, SlicePath, SpeckleStack},
@@ -65,7 +65,8 @@ fn the_gain_is_as_stated() {
     for (size, stated) in [(96, 0.757), (192, 0.927), (384, 0.981)] {
         let field = PupilField::new(size, 48, 0).expect("a valid field");
         let [printed, ours] = shares(&field, 1, [0.5; 2], 0.0).map(|shares| root(&shares));
-        // C = 48 is off the disc by 1e−3; the mean of twelve shares spreads by 1e−3, here four of it.
+        // C = 48 is off the disc by 1e−3; the mean of twelve shares spreads by 1e−3, here four of
+        // it.
         assert!(
             (printed - stated).abs() < 5e-3,
             "printed {printed}, stated {stated}"

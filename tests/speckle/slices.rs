@@ -54,8 +54,8 @@ fn shift(stack: &SpeckleStack, from: usize, to: usize) -> [i64; 2] {
     [if 2 * x < period { x } else { x - period }, b[1] - a[1]]
 }
 
-/// What two slices share by counting; on a lattice that has closed, from both sides: as one wave where it
-/// closes with the pattern, else as waves that the tile averages apart.
+/// What two slices share by counting; on a lattice that has closed, from both sides: as one wave
+/// where it closes with the pattern, else as waves that the tile averages apart.
 fn counted_overlaps(
     lattice: &Lattice,
     [x, y]: [i64; 2],
@@ -69,8 +69,8 @@ fn counted_overlaps(
     }
 }
 
-/// The mean over the tile of one amplitude times the conjugate of the other, in the frame of the lattice.
-/// For unit phasors it holds no noise.
+/// The mean over the tile of one amplitude times the conjugate of the other, in the frame of the
+/// lattice. For unit phasors it holds no noise.
 fn correlation_in_the_lattice(stack: &SpeckleStack, i: usize, j: usize) -> Complex<f64> {
     let step = shift(stack, i, j);
     let size = stack.size();
@@ -129,8 +129,8 @@ proptest! {
                 }
             }
             let rms = (square / pattern.values().values().len() as f64).sqrt();
-            // The stated 4.3e−3 of the field at a speckle size of 2, twice that behind a square, falls with
-            // its fourth power; |U|² doubles it.
+            // The stated 4.3e−3 of the field at a speckle size of 2, twice that behind a square,
+            // falls with its fourth power; |U|² doubles it.
             let corners = if matches!(case.shape, Shape::Rectangle(_) | Shape::Aberrated(_)) { 2.0 } else { 1.0 };
             let stated = corners * 2.0 * 4.3e-3 * (2.0 / stack.speckle_size()).powi(4) + 1e-6;
             prop_assert!(rms < stated, "slice {index}: {rms:e}, stated {stated:e}");

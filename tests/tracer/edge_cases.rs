@@ -63,8 +63,8 @@ fn both_methods_bring_the_power_of_the_laser_to_a_blurred_target() {
     for method in [Method::Path, Method::Light] {
         let power = render(&scene, method).lasers[0].power_on_target;
         // All of the footprint but some 1e−6 is in the image. If they were independent, the 1050
-        // samples in πw² would give the power within 1 / √1050, which is 3 %; strata do better. Light
-        // paths lose what misses the image.
+        // samples in πw² would give the power within 1 / √1050, which is 3 %; strata do better.
+        // Light paths lose what misses the image.
         let tolerance = if method == Method::Path { 0.06 } else { 1e-4 };
         assert!(
             (power / POWER - 1.0).abs() < tolerance,

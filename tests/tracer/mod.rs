@@ -1,5 +1,5 @@
-//! The reference tracer on scenes that are written as text: estimators against closed forms, the film, edge
-//! cases and what becomes of the light of a laser.
+//! The reference tracer on scenes that are written as text: estimators against closed forms, the
+//! film, edge cases and what becomes of the light of a laser.
 
 mod edge_cases;
 mod inspection;

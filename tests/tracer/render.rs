@@ -293,8 +293,8 @@ fn a_target_is_reached_without_bias() {
         biases.push(errors.iter().sum::<f64>() / n);
     }
     let rms = squares.iter().sum::<f64>() / squares.len() as f64;
-    // The rest of the target is for the uncertainty of the estimated error, and for samples that are more even than the
-    // independent ones for which it is asked.
+    // The rest of the target is for the uncertainty of the estimated error, and for samples that
+    // are more even than the independent ones for which it is asked.
     assert!((0.4 * TARGET..TARGET).contains(&rms), "error {rms}");
     let bias = biases.iter().sum::<f64>() / biases.len() as f64;
     // 4 standard errors of the mean over 6912 pixels: what a pilot finds, the image does not see.

@@ -1,6 +1,7 @@
 //! Nanoseconds per single call of a light through the C interface and of the library itself.
 //!
-//! Both answer the same questions about the same points; the difference is what the interface checks.
+//! Both answer the same questions about the same points; the difference is what the interface
+//! checks.
 
 #![expect(
     clippy::expect_used,

@@ -1,4 +1,5 @@
-//! Light that is not of one wavelength: described, then asked what it makes of speckle and how to show it.
+//! Light that is not of one wavelength: described, then asked what it makes of speckle and how to
+//! show it.
 
 mod description;
 
@@ -12,17 +13,19 @@ use crate::{
     status::Status,
 };
 
-/// The light of a laser with a linewidth in one resolution cell of a camera. It never changes: any number of threads may ask it
-/// at once.
+/// The light of a laser with a linewidth in one resolution cell of a camera. It never changes: any
+/// number of threads may ask it at once.
 ///
-/// To show it, draw a wave for each camera sample, and add what it finds in the stacks of pattern j and height h:
+/// To show it, draw a wave for each camera sample, and add what it finds in the stacks of pattern j
+/// and height h:
 ///
 /// `I = sum_j patterns[j] |sum_h heights[2h + 1] exp(i heights[2h] wave.phase_per_height) U_jh(x, y, u)|^2`
 ///
-/// `U_jh` is `tem00_stack_amplitude` of stacks of one description but their own seeds, on a straight path whose x axis
-/// leads along `tilt` in the image. The shift of the wave adds to u: `wave.pupil_shift` times the slices of a diameter,
-/// `2 half_period / length`. With 32 of them the contrast is right to 1 %, with 8 it is 4 % too high. Without heights
-/// the intensities of one wavelength add, `I = sum_j patterns[j] I_j`.
+/// `U_jh` is `tem00_stack_amplitude` of stacks of one description but their own seeds, on a
+/// straight path whose x axis leads along `tilt` in the image. The shift of the wave adds to u:
+/// `wave.pupil_shift` times the slices of a diameter, `2 half_period / length`. With 32 of them the
+/// contrast is right to 1 %, with 8 it is 4 % too high. Without heights the intensities of one
+/// wavelength add, `I = sum_j patterns[j] I_j`.
 #[derive(Debug)]
 pub struct Bandwidth {
     line: SpectralLine,
@@ -39,17 +42,20 @@ pub struct BandwidthInfo {
     pub contrast: f64,
     /// Coherence length in metres; infinite for peaks without a width.
     pub coherence_length: f64,
-    /// Unit vector along which the field moves across the pupil where the wave number grows; 0, 0, 0 without a tilt of the cell.
+    /// Unit vector along which the field moves across the pupil where the wave number grows; 0, 0,
+    /// 0 without a tilt of the cell.
     pub tilt: [f64; 3],
-    /// Difference of wave numbers that moves it by the pupil's diameter, in rad/m; infinite without a tilt.
+    /// Difference of wave numbers that moves it by the pupil's diameter, in rad/m; infinite without
+    /// a tilt.
     pub tilt_wave_number: f64,
-    /// Fractions of the light in patterns whose intensities add: one; or, of heights that dominate or of the directions of a
-    /// source, as many as its contrast asks for, at most 1024. They belong to the handle.
+    /// Fractions of the light in patterns whose intensities add: one; or, of heights that dominate
+    /// or of the directions of a source, as many as its contrast asks for, at most 1024. They
+    /// belong to the handle.
     pub patterns: *const f64,
     /// Number of patterns.
     pub pattern_count: usize,
-    /// Heights of the relief in metres whose fields add, each with the root of its fraction of the light. They belong
-    /// to the handle.
+    /// Heights of the relief in metres whose fields add, each with the root of its fraction of the
+    /// light. They belong to the handle.
     pub heights: *const f64,
     /// Number of heights; 0 if each pattern is looked up as in one wavelength.
     pub height_count: usize,
@@ -111,8 +117,8 @@ impl Bandwidth {
     }
 }
 
-/// Prepares the light of a laser with a linewidth: in milliseconds, or in seconds for a correlation length of a thousand
-/// speckles. One serves all places at which the directions differ by little.
+/// Prepares the light of a laser with a linewidth: in milliseconds, or in seconds for a correlation
+/// length of a thousand speckles. One serves all places at which the directions differ by little.
 ///
 /// On failure `*bandwidth` is null.
 ///
@@ -155,7 +161,8 @@ pub unsafe extern "C" fn tem00_bandwidth_describe(
     answer!(bandwidth: borrow => info: bandwidth.info())
 }
 
-/// Draws a wave number with a random number from 0 to 1: stratified ones, among the samples of a pixel, leave the least noise.
+/// Draws a wave number with a random number from 0 to 1: stratified ones, among the samples of a
+/// pixel, leave the least noise.
 ///
 /// # Safety
 ///
@@ -169,9 +176,11 @@ pub unsafe extern "C" fn tem00_bandwidth_draw(
     answer!(bandwidth: borrow, uniform: check_variate => wave: bandwidth.wave(uniform))
 }
 
-/// Computes the covariance of two frames over the square of the mean intensity: what a motion leaves of the contrast squared.
+/// Computes the covariance of two frames over the square of the mean intensity: what a motion
+/// leaves of the contrast squared.
 ///
-/// `displacement` holds the motion of the field between them, in pupil diameters along the tilt and across it. In focus.
+/// `displacement` holds the motion of the field between them, in pupil diameters along the tilt and
+/// across it. In focus.
 ///
 /// # Safety
 ///
@@ -186,11 +195,11 @@ pub unsafe extern "C" fn tem00_bandwidth_covariance(
         covariance: bandwidth.speckle().covariance(displacement))
 }
 
-/// Computes the standard deviation of the position of a laser line over that in light of one wavelength: what counts for its
-/// noise, where the contrast does not.
+/// Computes the standard deviation of the position of a laser line over that in light of one
+/// wavelength: what counts for its noise, where the contrast does not.
 ///
-/// `row_height` is the height of the rows along which the line is looked for, in speckle sizes: 0 for rows finer than a
-/// speckle; rows taller than 40 count as tall, and so do round spots.
+/// `row_height` is the height of the rows along which the line is looked for, in speckle sizes: 0
+/// for rows finer than a speckle; rows taller than 40 count as tall, and so do round spots.
 ///
 /// # Safety
 ///

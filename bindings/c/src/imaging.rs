@@ -12,8 +12,8 @@ use tem00_decorrelation::ImagingGeometry;
 
 use crate::pointers;
 
-/// A camera focused on a surface: a lens, its pupils and the sensor behind it. It never changes: any
-/// number of threads may ask it at once.
+/// A camera focused on a surface: a lens, its pupils and the sensor behind it. It never changes:
+/// any number of threads may ask it at once.
 #[derive(Debug)]
 pub struct Imaging(ImagingGeometry);
 

@@ -6,12 +6,12 @@
 //! # Conventions
 //!
 //! - SI units, radians, double precision; `_f32` where a function has a twin in single precision.
-//! - Every function that can fail returns a [`Status`] and writes its results through pointers, only
-//!   when it succeeds.
-//! - What owns memory is a handle behind a pointer, made by `create` and freed by `destroy`; it never
-//!   changes, so that threads may share it. Everything else is a plain struct.
-//! - No panic crosses the boundary: one guard around each function makes it [`Status::Panic`]. Pointers become
-//!   references in `pointers.rs` alone.
+//! - Every function that can fail returns a [`Status`] and writes its results through pointers,
+//!   only when it succeeds.
+//! - What owns memory is a handle behind a pointer, made by `create` and freed by `destroy`; it
+//!   never changes, so that threads may share it. Everything else is a plain struct.
+//! - No panic crosses the boundary: one guard around each function makes it [`Status::Panic`].
+//!   Pointers become references in `pointers.rs` alone.
 //!
 //! # Scope and non-goals
 //!

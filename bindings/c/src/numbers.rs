@@ -71,7 +71,8 @@ pub(crate) fn check_result(name: &str, values: &[f64]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns the unit vector along a vector: the vector itself where its length is 1 but for rounding.
+/// Returns the unit vector along a vector: the vector itself where its length is 1 but for
+/// rounding.
 pub(crate) fn unit_vector(name: &str, vector: [f64; 3]) -> Result<[f64; 3], Failure> {
     check_coordinates(name, &vector)?;
     let length = vector.iter().fold(0.0_f64, |sum, x| sum.hypot(*x));

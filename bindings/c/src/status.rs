@@ -149,9 +149,9 @@ fn keep(failure: &Failure) -> Status {
 /// Returns why the last call that failed on this thread failed, in UTF-8, with the parameter, its
 /// value and what is allowed; empty if none has failed.
 ///
-/// The text stays in one place for as long as the thread lives: the pointer never dangles meanwhile, and
-/// after the next call that fails on this thread it has the text of that one. Copy what is to be kept
-/// longer. Not to be freed. Messages are cut off after 2047 bytes.
+/// The text stays in one place for as long as the thread lives: the pointer never dangles
+/// meanwhile, and after the next call that fails on this thread it has the text of that one. Copy
+/// what is to be kept longer. Not to be freed. Messages are cut off after 2047 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn tem00_last_error() -> *const c_char {
     MESSAGE.with(Text::pointer)

@@ -30,7 +30,8 @@ struct Seeded {
 }
 
 impl Values {
-    /// Room for the values of apertures of `field` that differ from `aperture` in their place alone.
+    /// Room for the values of apertures of `field` that differ from `aperture` in their place
+    /// alone.
     pub(crate) fn new(
         gpu: &Gpu,
         field: &PupilField,

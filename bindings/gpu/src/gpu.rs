@@ -72,7 +72,8 @@ impl Gpu {
     ///
     /// # Errors
     ///
-    /// Returns an error if the device fails or is lost, and in a browser, where nothing can be waited for.
+    /// Returns an error if the device fails or is lost, and in a browser, where nothing can be
+    /// waited for.
     pub fn read<T: bytemuck::Pod>(&self, buffer: &wgpu::Buffer) -> Result<Vec<T>, GpuError> {
         let failed = |error: &dyn core::fmt::Display| GpuError::Device(error.to_string());
         let (sender, receiver) = std::sync::mpsc::channel();

@@ -7,9 +7,11 @@ use crate::{
     transform::{Finish, Transform},
 };
 
-/// A speckle pattern on the card: intensity with mean 1 on W × H samples, row after row, periodic in both axes.
+/// A speckle pattern on the card: intensity with mean 1 on W × H samples, row after row, periodic
+/// in both axes.
 ///
-/// It is the [`pattern_at`](PupilField::pattern_at) of the library from the same seed, to the rounding of `f32`.
+/// It is the [`pattern_at`](PupilField::pattern_at) of the library from the same seed, to the
+/// rounding of `f32`.
 ///
 /// # Examples
 ///
@@ -32,12 +34,13 @@ pub struct GpuPattern {
 }
 
 impl GpuPattern {
-    /// Generates the intensity behind the pupil displaced by `offset` diameters and out of focus by `defocus`.
+    /// Generates the intensity behind the pupil displaced by `offset` diameters and out of focus by
+    /// `defocus`.
     ///
     /// # Errors
     ///
-    /// Returns an error if a side of the pattern has a prime factor above 5, if it is too large for a buffer of the
-    /// device, or if the device fails.
+    /// Returns an error if a side of the pattern has a prime factor above 5, if it is too large for
+    /// a buffer of the device, or if the device fails.
     ///
     /// # Panics
     ///

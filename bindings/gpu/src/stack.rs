@@ -23,8 +23,8 @@ const GROUP: usize = 64;
 
 /// A stack of speckle on the card, for look-ups there.
 ///
-/// It has the coefficients and the laws of a [`SpeckleStack`]: uploaded, or generated on the card from the seed, where both
-/// agree to the rounding of `f32`.
+/// It has the coefficients and the laws of a [`SpeckleStack`]: uploaded, or generated on the card
+/// from the seed, where both agree to the rounding of `f32`.
 ///
 /// # Examples
 ///
@@ -45,8 +45,10 @@ const GROUP: usize = 64;
 ///
 /// # In a pass of your own
 ///
-/// A shader begins with [`wgsl`](Self::wgsl), its pipeline has [`bind_group_layout`](Self::bind_group_layout) at that group,
-/// and its pass sets [`bind_group`](Self::bind_group) there. [`Gpu::of`] takes the device and the queue of the renderer.
+/// A shader begins with [`wgsl`](Self::wgsl), its pipeline has
+/// [`bind_group_layout`](Self::bind_group_layout) at that group, and its pass sets
+/// [`bind_group`](Self::bind_group) there. [`Gpu::of`] takes the device and the queue of the
+/// renderer.
 #[derive(Clone)]
 pub struct GpuStack {
     gpu: Gpu,
@@ -80,9 +82,9 @@ impl GpuStack {
     ///
     /// # Errors
     ///
-    /// Returns an error if the half period of `path` is zero or too large, if its length is, if the slices take more than the
-    /// memory limit or than a buffer of the device, if a side of the pattern has a prime factor above 5, or if the device
-    /// fails.
+    /// Returns an error if the half period of `path` is zero or too large, if its length is, if the
+    /// slices take more than the memory limit or than a buffer of the device, if a side of the
+    /// pattern has a prime factor above 5, or if the device fails.
     pub fn generate_with(
         gpu: &Gpu,
         field: &PupilField,
@@ -107,7 +109,8 @@ impl GpuStack {
     ///
     /// # Errors
     ///
-    /// Returns an error if the slices take more than a buffer of the device, or if the device fails.
+    /// Returns an error if the slices take more than a buffer of the device, or if the device
+    /// fails.
     pub fn upload(gpu: &Gpu, stack: &SpeckleStack) -> Result<Self, GpuError> {
         let [width, height] = stack.size();
         gpu.guarded(|| {
@@ -144,14 +147,14 @@ impl GpuStack {
         })
     }
 
-    /// Returns the functions of `tem00_speckle::closed_form::WGSL` with the stack that they read, `tem00_stack`, bound as
-    /// this group: what a shader of your own begins with.
+    /// Returns the functions of `tem00_speckle::closed_form::WGSL` with the stack that they read,
+    /// `tem00_stack`, bound as this group: what a shader of your own begins with.
     pub fn wgsl(group: u32) -> String {
         let bindings = include_str!("../shaders/stack.wgsl").replace("GROUP", &group.to_string());
         format!("{}\n{bindings}", closed_form::WGSL)
     }
-    /// Returns the layout of [`bind_group`](Self::bind_group), for compute and fragment shaders: a uniform and two storage
-    /// buffers that are read.
+    /// Returns the layout of [`bind_group`](Self::bind_group), for compute and fragment shaders: a
+    /// uniform and two storage buffers that are read.
     pub fn bind_group_layout(gpu: &Gpu) -> BindGroupLayout {
         let read = BufferBindingType::Storage { read_only: true };
         gpu.device()
@@ -180,8 +183,8 @@ impl GpuStack {
         self.slices
     }
 
-    /// Looks up the intensities, with mean 1, at points (x, y, u): x and y in samples and u in slices, all finite and below
-    /// 2³¹.
+    /// Looks up the intensities, with mean 1, at points (x, y, u): x and y in samples and u in
+    /// slices, all finite and below 2³¹.
     ///
     /// # Errors
     ///

@@ -194,8 +194,8 @@ impl Stage {
     }
 }
 
-/// The stages of the transform of a box of `extent` in an array of `size`: the rows of the box, then all columns. The last
-/// stands apart.
+/// The stages of the transform of a box of `extent` in an array of `size`: the rows of the box,
+/// then all columns. The last stands apart.
 fn stages(
     [width, height]: [usize; 2],
     [columns, rows]: [usize; 2],

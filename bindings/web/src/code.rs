@@ -23,7 +23,8 @@ pub(crate) const FUNCTIONS: [&str; 3] = [
     code!(tem00_shading::WGSL),
 ];
 
-/// Returns the first bytes of a text without its lines of comments and its indents, and how many it has.
+/// Returns the first bytes of a text without its lines of comments and its indents, and how many it
+/// has.
 pub(crate) const fn without_comments<const N: usize>(text: &str) -> ([u8; N], usize) {
     let text = text.as_bytes();
     let (mut kept, mut length) = ([0; N], 0);

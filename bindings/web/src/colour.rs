@@ -2,10 +2,12 @@
 
 use tem00_numerics::cast::to_f32;
 
-/// Linear sRGB of the wavelength in nanometres, its largest channel 1; dim red beyond what the eye sees.
+/// Linear sRGB of the wavelength in nanometres, its largest channel 1; dim red beyond what the eye
+/// sees.
 ///
-/// The colour matching functions are the sums of Gaussian lobes of Wyman, Sloan and Shirley 2013 ("Simple Analytic
-/// Approximations to the CIE XYZ Color Matching Functions", multi-lobe fit). What sRGB cannot show is cut off.
+/// The colour matching functions are the sums of Gaussian lobes of Wyman, Sloan and Shirley 2013
+/// ("Simple Analytic Approximations to the CIE XYZ Color Matching Functions", multi-lobe fit). What
+/// sRGB cannot show is cut off.
 pub(crate) fn of_wavelength(nanometres: f64) -> [f32; 3] {
     let lobe = |height: f64, middle: f64, below: f64, above: f64| {
         let rate = if nanometres < middle { below } else { above };

@@ -1,4 +1,5 @@
-//! The page: a part under a laser on a canvas, drawn by one pass that calls the function files of the physics crates.
+//! The page: a part under a laser on a canvas, drawn by one pass that calls the function files of
+//! the physics crates.
 //!
 //! All but the canvas runs elsewhere too, where tests hold it to the reference tracer.
 

@@ -14,7 +14,8 @@ pub struct Measured {
     pub contrast: f64,
     /// The same by theory, for the speckle size of the lens.
     pub contrast_in_theory: f64,
-    /// Speckle size, in pixels: that whose neighbouring pixels are as much alike as those of the frame.
+    /// Speckle size, in pixels: that whose neighbouring pixels are as much alike as those of the
+    /// frame.
     pub size: f64,
     /// The same by theory, λ d / D.
     pub size_in_theory: f64,
@@ -24,10 +25,11 @@ pub struct Measured {
     pub pixels: u32,
 }
 
-/// Measures the speckle on a film of `width` pixels a row: light with speckle, light without, light of the lamp, correlation.
+/// Measures the speckle on a film of `width` pixels a row: light with speckle, light without, light
+/// of the lamp, correlation.
 ///
-/// Pixels count that have at least a tenth of the brightest one's light. Returns `None` where fewer than 200 do: of so
-/// few nothing can be said.
+/// Pixels count that have at least a tenth of the brightest one's light. Returns `None` where fewer
+/// than 200 do: of so few nothing can be said.
 pub fn measure(film: &[[f32; 4]], width: usize, size_in_theory: f64) -> Option<Measured> {
     let brightest = film.iter().fold(0.0_f32, |most, pixel| most.max(pixel[1]));
     let is_lit = |pixel: &[f32; 4]| pixel[1] >= 0.1 * brightest && pixel[1] > 0.0;
@@ -57,7 +59,8 @@ pub fn measure(film: &[[f32; 4]], width: usize, size_in_theory: f64) -> Option<M
     })
 }
 
-/// The variance of a pixel, the mean of its samples, and its covariance with the next one, for a speckle size in pixels.
+/// The variance of a pixel, the mean of its samples, and its covariance with the next one, for a
+/// speckle size in pixels.
 fn covariances(size: f64) -> [f64; 2] {
     let place = |i: u32| (f64::from(i) + 0.5) / f64::from(SAMPLES);
     let offsets: Vec<f64> = (0..SAMPLES)
@@ -74,7 +77,8 @@ fn covariances(size: f64) -> [f64; 2] {
     })
 }
 
-/// The speckle size whose neighbouring pixels correlate so, by bisection; 0 or infinite beyond 0.3 to 30 pixels.
+/// The speckle size whose neighbouring pixels correlate so, by bisection; 0 or infinite beyond 0.3
+/// to 30 pixels.
 fn size_of(likeness: f64) -> f64 {
     let of = |size: f64| {
         let [variance, next] = covariances(size);
@@ -98,7 +102,8 @@ fn size_of(likeness: f64) -> f64 {
     (low * high).sqrt()
 }
 
-/// The root of the mean square and the largest of the differences between the speckle of two films, where both are lit.
+/// The root of the mean square and the largest of the differences between the speckle of two films,
+/// where both are lit.
 pub fn difference(a: &[[f32; 4]], b: &[[f32; 4]]) -> [f64; 2] {
     let factor = |pixel: &[f32; 4]| f64::from(pixel[0] / pixel[1]);
     let lit = a.iter().zip(b).filter(|(a, b)| a[1] > 0.0 && b[1] > 0.0);

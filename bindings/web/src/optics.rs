@@ -136,7 +136,8 @@ pub fn rows_of(pose: &Pose) -> [[f32; 4]; 2] {
     [rotation, translation].map(|row| row.map(to_f32))
 }
 
-/// The part of the sensor's range, at 10,000 electrons and half of all photons found, that a radiance of 1 W/(m² sr) fills.
+/// The part of the sensor's range, at 10,000 electrons and half of all photons found, that a
+/// radiance of 1 W/(m² sr) fills.
 pub fn exposure(values: &Values) -> f64 {
     const PHOTON: f64 = 6.626_070_15e-34 * 299_792_458.0;
     let full = 10_000.0 / 0.5 * PHOTON / (1e-9 * values.wavelength) / (PITCH * PITCH);

@@ -135,7 +135,8 @@ impl Page {
         })
     }
 
-    /// Promises what is measured in the picture: a `Measured`, or `undefined` where too few pixels are lit.
+    /// Promises what is measured in the picture: a `Measured`, or `undefined` where too few pixels
+    /// are lit.
     pub fn measure(&self) -> Promise {
         let film = self.film(None);
         let size = optics::geometry(&self.values).map(|geometry| geometry.speckle_size_in_pixels());
@@ -146,8 +147,8 @@ impl Page {
         })
     }
 
-    /// Promises how far the picture is from one whose stack the library has made: the root of the mean square and the largest
-    /// of the differences of the speckle of lit pixels.
+    /// Promises how far the picture is from one whose stack the library has made: the root of the
+    /// mean square and the largest of the differences of the speckle of lit pixels.
     ///
     /// # Errors
     ///

@@ -1,4 +1,5 @@
-//! What a renderer in JavaScript needs to call the function files itself: their text, a light, frames and a stack.
+//! What a renderer in JavaScript needs to call the function files itself: their text, a light,
+//! frames and a stack.
 
 use glam::DVec3;
 use tem00_camera::{Camera, CameraDescription};
@@ -31,15 +32,16 @@ pub struct SpotSpeckle {
 
 #[wasm_bindgen]
 impl SpotSpeckle {
-    /// Makes the speckle of a `beam` from `origin` that is in focus at `target`, on a part in the image of a `lens` at `eye`
-    /// that looks at `look_at`, with y up, and is in focus there.
+    /// Makes the speckle of a `beam` from `origin` that is in focus at `target`, on a part in the
+    /// image of a `lens` at `eye` that looks at `look_at`, with y up, and is in focus there.
     ///
-    /// The beam has a wavelength, a power in watts and a waist radius; the lens a focal length, an f-number, a field of view
-    /// from edge to edge in degrees, and as many pixels along each edge.
+    /// The beam has a wavelength, a power in watts and a waist radius; the lens a focal length, an
+    /// f-number, a field of view from edge to edge in degrees, and as many pixels along each edge.
     ///
     /// # Errors
     ///
-    /// Returns an error where an array has another length, or the beam, the camera or the memory is refused.
+    /// Returns an error where an array has another length, or the beam, the camera or the memory is
+    /// refused.
     #[wasm_bindgen(constructor)]
     pub fn new(
         beam: &[f64],
@@ -102,7 +104,8 @@ impl SpotSpeckle {
         Ok(light.to_rows_f32().as_flattened().to_vec())
     }
 
-    /// Returns the speckle of a part that has moved by `step`, as the numbers of `Tem00SpeckleFrame`.
+    /// Returns the speckle of a part that has moved by `step`, as the numbers of
+    /// `Tem00SpeckleFrame`.
     ///
     /// # Errors
     ///

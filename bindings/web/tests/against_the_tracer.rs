@@ -22,7 +22,8 @@ use tem00_web::{
 
 const WIDTH: usize = SENSOR[0] as usize;
 
-/// Light with speckle, light without, the lamp, the correlation with the part at rest, of each pixel.
+/// Light with speckle, light without, the lamp, the correlation with the part at rest, of each
+/// pixel.
 type Film = Vec<[f32; 4]>;
 
 /// The plate nearly from above, so that a slide of 24 pixel pitches moves its image by one pixel.
@@ -87,7 +88,8 @@ fn film_of(frame: &Frame) -> Film {
         .collect()
 }
 
-/// Σ over the pixels of the light without speckle, and the standard deviation of its rows, in pixels.
+/// Σ over the pixels of the light without speckle, and the standard deviation of its rows, in
+/// pixels.
 fn power_and_width(film: &Film) -> [f64; 2] {
     let mut moments = [0.0; 3];
     for (index, pixel) in film.iter().enumerate() {
@@ -100,7 +102,8 @@ fn power_and_width(film: &Film) -> [f64; 2] {
     [moments[0], (moments[2] / moments[0] - mean * mean).sqrt()]
 }
 
-/// The correlation of the speckle of lit pixels with that of the frame before, one pixel to the left.
+/// The correlation of the speckle of lit pixels with that of the frame before, one pixel to the
+/// left.
 fn correlation(before: &Film, after: &Film) -> f64 {
     let brightest = before
         .iter()

@@ -25,8 +25,9 @@ fn simulated(setup: &Setup, trials: u32) -> Simulation {
 
 #[test]
 fn trials_in_light_of_a_linewidth_agree_with_first_order() {
-    // Without a tilt there would be 1.9 times as much of the first, without heights 1.2 times of the second. Rows that are
-    // averaged keep more of their noise than thin ones: 1.25 times. Of the last there is a 75th, far below that of 1024 patterns.
+    // Without a tilt there would be 1.9 times as much of the first, without heights 1.2 times of
+    // the second. Rows that are averaged keep more of their noise than thin ones: 1.25 times. Of
+    // the last there is a 75th, far below that of 1024 patterns.
     for (linewidth, half_angle, rms_height, correlation_length, columns) in [
         (20e-9, 0.0, 0.0, 0.0, 1),
         (10e-9, 0.0, 10e-6, 20e-6, 1),

@@ -49,7 +49,8 @@ fn a_rendered_set_up_has_the_characteristics_of_its_budget() {
     let flat = found.flat.expect("seen");
 
     assert_relative(flat.measurement_noise.value, budget.combined(), 0.1);
-    // 95 % of normal numbers lie within ± 1.95996 σ; with speckle the line's places are nearly normal.
+    // 95 % of normal numbers lie within ± 1.95996 σ; with speckle the line's places are nearly
+    // normal.
     let of_noise = 2.0 * 1.959_96 * flat.measurement_noise.value;
     assert_relative(flat.form[0].value, of_noise, 0.03);
 

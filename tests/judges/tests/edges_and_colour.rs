@@ -1,8 +1,9 @@
-//! Artefacts of edges and colour: how far a rendered scanner errs at a step of reflectance, at a corner and at the end
-//! of a strip, by the centre of gravity of each profile and by space–time analysis (Curless & Levoy 1995).
+//! Artefacts of edges and colour: how far a rendered scanner errs at a step of reflectance, at a
+//! corner and at the end of a strip, by the centre of gravity of each profile and by space–time
+//! analysis (Curless & Levoy 1995).
 //!
-//! Line and pixels are those of their scanner. Each case moves under the line by one pixel per frame, its edge at a
-//! slant, so that 32 columns see it at 32 positions between two rows.
+//! Line and pixels are those of their scanner. Each case moves under the line by one pixel per
+//! frame, its edge at a slant, so that 32 columns see it at 32 positions between two rows.
 
 use core::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
@@ -240,7 +241,8 @@ fn is_whole(point: &Point) -> bool {
     (MARGIN..f64::from(FRAMES) - MARGIN).contains(&point.frame)
 }
 
-/// The greatest error in height of the points with at least a part of the light of the brightest, in metres.
+/// The greatest error in height of the points with at least a part of the light of the brightest,
+/// in metres.
 fn greatest_error(points: &[Point], part: &Part, least_light: f64) -> f64 {
     let brightest = points.iter().map(|point| point.light).fold(0.0, f64::max);
     points
@@ -250,8 +252,9 @@ fn greatest_error(points: &[Point], part: &Part, least_light: f64) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The height at which a profile's centre of gravity puts a part whose edge is at `edge`, in metres: a sum over the
-/// light of the line, each bit of which is seen at `seen` of its place in the image.
+/// The height at which a profile's centre of gravity puts a part whose edge is at `edge`, in
+/// metres: a sum over the light of the line, each bit of which is seen at `seen` of its place in
+/// the image.
 fn profile_height(part: &Part, edge: f64, seen: impl Fn(f64) -> f64) -> f64 {
     const INTERVALS: u32 = 20_000;
     const REACH: f64 = 8.0 * SIGMA;
@@ -273,7 +276,8 @@ fn profile_height(part: &Part, edge: f64, seen: impl Fn(f64) -> f64) -> f64 {
     moment / light / ANGLE.sin()
 }
 
-/// The greatest error in height of such profiles, in metres, over the edges that the columns of a scan see.
+/// The greatest error in height of such profiles, in metres, over the edges that the columns of a
+/// scan see.
 fn greatest_profile_error(part: &Part, seen: impl Fn(f64) -> f64) -> f64 {
     let edges = (-200..200).map(|i| (f64::from(i) + 0.5) / SIZE[0] as f64 * step());
     // The line's middle must be on the part.
@@ -289,15 +293,17 @@ fn row(place: f64) -> f64 {
     ((place / footprint()).floor() + 0.5) * footprint()
 }
 
-/// Noise and perspective of rendered heights, in metres: three times the greatest error on an even card, 0.34 µm.
+/// Noise and perspective of rendered heights, in metres: three times the greatest error on an even
+/// card, 0.34 µm.
 const NOISE: f64 = 1e-6;
 
-/// By how much the edges that the columns see may miss the worst case of space–time analysis, in metres. Their distance
-/// from it is at most 1/64 of a pixel, and no error near its maximum changes by more than half of a pixel per pixel: that
-/// is the law of the strip.
+/// By how much the edges that the columns see may miss the worst case of space–time analysis, in
+/// metres. Their distance from it is at most 1/64 of a pixel, and no error near its maximum changes
+/// by more than half of a pixel per pixel: that is the law of the strip.
 const BETWEEN_EDGES: f64 = HEIGHT_PER_PIXEL / 128.0;
 
-/// Compares the greatest errors of both ways, in metres, with the model and with the law of space–time analysis.
+/// Compares the greatest errors of both ways, in metres, with the model and with the law of
+/// space–time analysis.
 fn compare(part: &Part, least_light: f64, law: f64) {
     let [profiles, passages] = scan(part).map(|points| {
         assert!(points.len() > 200, "{} points of {part:?}", points.len());
@@ -333,12 +339,13 @@ fn a_corner_errs_by_the_line_in_profiles_and_by_the_pixel_in_space_and_time() {
 
 #[test]
 fn the_end_of_a_strip_errs_by_the_line_in_profiles_and_by_the_pixel_in_space_and_time() {
-    // At the end of the strip a profile, as well as a pixel in space and time, has half of its light.
+    // At the end of the strip a profile, as well as a pixel in space and time, has half of its
+    // light.
     compare(&Part::STRIP, 0.5, 0.25 * HEIGHT_PER_PIXEL);
 }
 
-/// Steps of reflectance, and where the centre of gravity lies on the edge itself, in standard deviations of the line:
-/// the root t of t (Φ(t) + r Φ(−t)) = (r − 1) φ(t), by bisection.
+/// Steps of reflectance, and where the centre of gravity lies on the edge itself, in standard
+/// deviations of the line: the root t of t (Φ(t) + r Φ(−t)) = (r − 1) φ(t), by bisection.
 const EDGES: [[f64; 2]; 3] = [[2.0, 0.276_030], [5.0, 0.636_027], [10.0, 0.901_462]];
 
 #[test]

@@ -1,9 +1,9 @@
 //! Speckle under a source of several directions, judged by wave optics from first principles.
 //!
-//! The judge sums the waves of scatterers with exact distances, one direction of the source and one wavelength after the
-//! other, and adds the intensities of the images. It knows nothing of overlaps of pupils. Pupil, wave numbers and
-//! directions are chosen so that the image and all paths over the plate repeat: no wave sees an edge. The exact law of
-//! motion judges the displacement, too.
+//! The judge sums the waves of scatterers with exact distances, one direction of the source and one
+//! wavelength after the other, and adds the intensities of the images. It knows nothing of overlaps
+//! of pupils. Pupil, wave numbers and directions are chosen so that the image and all paths over
+//! the plate repeat: no wave sees an edge. The exact law of motion judges the displacement, too.
 
 #![expect(
     clippy::cast_possible_truncation,
@@ -30,7 +30,8 @@ use tem00_testkit::Numbers;
 /// Distance from the plate to the pupil, in metres.
 const DISTANCE: f64 = 0.5;
 
-/// Speckles after which the plate repeats, on both sides; scatterers and pixels of a speckle, on both sides.
+/// Speckles after which the plate repeats, on both sides; scatterers and pixels of a speckle, on
+/// both sides.
 const SIZE: usize = 10;
 const DENSITY: usize = 2;
 
@@ -88,7 +89,8 @@ impl Bench {
         TAU / (self.view.to_source + self.view.to_pupil).dot(end).abs()
     }
 
-    /// The direction to the source whose paths over the plate are so many wavelengths longer along both axes.
+    /// The direction to the source whose paths over the plate are so many wavelengths longer along
+    /// both axes.
     fn source(&self, wavelengths: [f64; 2]) -> DVec3 {
         let [first, second] = self
             .axes
@@ -120,7 +122,8 @@ impl Bench {
         RoughSurface::from_scatterers(scatterers).expect("a surface")
     }
 
-    /// Normal heights of the scatterers of a site, spread over the quarters of a turn and two halves of the radii.
+    /// Normal heights of the scatterers of a site, spread over the quarters of a turn and two
+    /// halves of the radii.
     fn heights(&self, random: &mut Numbers) -> Vec<f64> {
         if self.rms_height == 0.0 {
             return vec![0.0];
@@ -134,7 +137,8 @@ impl Bench {
         (0..8).map(height).collect()
     }
 
-    /// The images of a surface in a part of the light, behind the pupil and behind the pupil that has moved.
+    /// The images of a surface in a part of the light, behind the pupil and behind the pupil that
+    /// has moved.
     fn images(&self, surface: &RoughSurface, part: &Part, offset: [f64; 2]) -> [Vec<f64>; 2] {
         let pixels = SIZE * DENSITY;
         let transform = Fft2::new(pixels, pixels)
@@ -246,8 +250,8 @@ fn on_plate(view: &CellGeometry, across: DVec3) -> DVec3 {
     across - view.to_pupil * (across.z / view.to_pupil.z)
 }
 
-/// Directions of a source, in periods of the paths over the plate, with their shares: discs of some sizes, a strip of
-/// modes, a ring, random directions of random shares.
+/// Directions of a source, in periods of the paths over the plate, with their shares: discs of some
+/// sizes, a strip of modes, a ring, random directions of random shares.
 fn directions(geometry: u64, random: &mut Numbers) -> Vec<([f64; 2], f64)> {
     let radius = 1.0 + 2.0 * random.unit();
     let inside = |x: f64, y: f64| match geometry % 4 {
@@ -281,7 +285,8 @@ fn cell(view: CellGeometry, rms_height: f64) -> ResolutionCell {
     cell.with_relief(relief).expect("a relief")
 }
 
-/// Returns the measures of waves and of the law in a random geometry: behind one wavelength, and behind three lines.
+/// Returns the measures of waves and of the law in a random geometry: behind one wavelength, and
+/// behind three lines.
 fn compare(geometry: u64) -> Vec<[[f64; MEASURES.len()]; 2]> {
     let mut random = Numbers::new(geometry * 7_919 + 11);
     let view = CellGeometry {
@@ -405,8 +410,8 @@ fn directions_displace_the_field_as_the_law_of_motion_says() {
             cell: &cell(view, rms_height).with_source_extent(extent),
         };
         let found = 2.0 * speckle.contrast().powi(2) - 1.0;
-        // The law of motion is exact; the cell lacks about half of the angle, 0.0075, of a displacement below one pupil, by
-        // which the overlap falls by 2.5.
+        // The law of motion is exact; the cell lacks about half of the angle, 0.0075, of a
+        // displacement below one pupil, by which the overlap falls by 2.5.
         assert!((found - shared).abs() < 0.02, "{seed}: {found}, {shared}");
     }
 }

@@ -1,5 +1,6 @@
-//! How often intervals of 95 % about a measured height hold the true one: 10⁴ measurements of each set-up, every one with a
-//! set-up that is drawn from what is known of it, a simulated frame, and the line that the detector finds in it.
+//! How often intervals of 95 % about a measured height hold the true one: 10⁴ measurements of each
+//! set-up, every one with a set-up that is drawn from what is known of it, a simulated frame, and
+//! the line that the detector finds in it.
 //!
 //! The tests are statistical but not flaky: all seeds are fixed.
 
@@ -100,7 +101,8 @@ impl Case {
         errors
     }
 
-    /// Draws a true set-up, exposes a frame of the line at the height, and evaluates it as the set-up is described.
+    /// Draws a true set-up, exposes a frame of the line at the height, and evaluates it as the
+    /// set-up is described.
     fn measured(&self, measurement: &Measurement, index: u64) -> f64 {
         let mut random = ChaCha8Rng::seed_from_u64(11);
         random.set_stream(index);
@@ -133,7 +135,8 @@ impl Case {
         self.setup.height_at(row).expect("a height")
     }
 
-    /// The intervals about a measured height, less that height: by the law of propagation, and by that of distributions.
+    /// The intervals about a measured height, less that height: by the law of propagation, and by
+    /// that of distributions.
     fn intervals(&self, height: f64) -> [CoverageInterval; 2] {
         let measurement = self.measurement(height);
         let first_order = measurement.first_order().expect("first order");
@@ -148,8 +151,8 @@ impl Case {
         ends.map(|[low, high]| CoverageInterval { low, high })
     }
 
-    /// The misses of the law of propagation, of the propagation of distributions, and of the errors of the virtual experiment
-    /// laid about each measured height.
+    /// The misses of the law of propagation, of the propagation of distributions, and of the errors
+    /// of the virtual experiment laid about each measured height.
     fn misses(&self) -> [Misses; 3] {
         let errors = self.errors();
         let (first, last) = (errors[0], errors[errors.len() - 1]);
@@ -181,8 +184,8 @@ impl Case {
     }
 }
 
-/// Fractions that the law of propagation and the virtual experiment hold, to the nearest percent; the propagation of
-/// distributions is held to 95 ± 0.5 % of every set-up.
+/// Fractions that the law of propagation and the virtual experiment hold, to the nearest percent;
+/// the propagation of distributions is held to 95 ± 0.5 % of every set-up.
 const HELD: [(&str, [f64; 2]); 4] = [
     ("data sheet", [0.95, 0.95]),
     ("four degrees of freedom", [0.94, 0.95]),

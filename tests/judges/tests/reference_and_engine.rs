@@ -1,7 +1,9 @@
-//! The reference integrator judges the engine: both render the same scenes, and agree within their standard errors.
+//! The reference integrator judges the engine: both render the same scenes, and agree within their
+//! standard errors.
 //!
-//! They share the scene, its materials and the intersector, and no code that follows light: the reference follows one
-//! sample at a time with random numbers of its own, and has its speckle from the call per hit.
+//! They share the scene, its materials and the intersector, and no code that follows light: the
+//! reference follows one sample at a time with random numbers of its own, and has its speckle from
+//! the call per hit.
 
 use std::{fs, path::Path, sync::atomic::AtomicBool};
 
@@ -24,8 +26,8 @@ const SEEDS: u64 = 20;
 /// Pixels along the side of a block.
 const BLOCK: usize = 8;
 
-/// The probability with which a comparison of correct images fails: some ten thousand of this file fail with 0.001
-/// together. A block may differ by some eight standard errors of 20 pairs.
+/// The probability with which a comparison of correct images fails: some ten thousand of this file
+/// fail with 0.001 together. A block may differ by some eight standard errors of 20 pairs.
 const SIGNIFICANCE: f64 = 1e-7;
 
 /// The scene with so many columns and the same view.
@@ -77,8 +79,8 @@ fn compared(frame: &Frame) -> Vec<(String, Vec<f64>)> {
     all
 }
 
-/// Tells whether no few images hold most of what the reference has found: otherwise they tell no mean. It finds thin
-/// lines of light on other surfaces by chance alone.
+/// Tells whether no few images hold most of what the reference has found: otherwise they tell no
+/// mean. It finds thin lines of light on other surfaces by chance alone.
 fn is_found_often(pairs: &[[f64; 2]]) -> bool {
     let sum = |power: i32| pairs.iter().map(|pair| pair[1].powi(power)).sum::<f64>();
     sum(1).powi(2) > 0.6 * pairs.len() as f64 * sum(2)

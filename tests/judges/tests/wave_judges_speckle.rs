@@ -17,8 +17,8 @@ use tem00::{
 /// Images of a line, each 40 speckle sizes long.
 const IMAGES: u64 = 12;
 
-/// Four times the relative standard error 1/√(2K) of a standard deviation, from the K = 12 · 40 · π/4
-/// speckles along the images.
+/// Four times the relative standard error 1/√(2K) of a standard deviation, from the K = 12 · 40 ·
+/// π/4 speckles along the images.
 const FOUR_ERRORS: f64 = 0.15;
 
 fn rows(image: impl Fn(u64) -> Vec<Row>) -> Vec<Row> {

@@ -1,4 +1,5 @@
-//! Shared helpers of the tests: tables of refusals, hostile bytes, p-values, tolerances, random numbers.
+//! Shared helpers of the tests: tables of refusals, hostile bytes, p-values, tolerances, random
+//! numbers.
 //!
 //! The crate knows no other crate of the workspace, so that the lowest of them can use it.
 

@@ -1,4 +1,5 @@
-/// Returns the rows of a table in text: a row a line, its cells between `=>`, with `\\n` where a cell has a line end.
+/// Returns the rows of a table in text: a row a line, its cells between `=>`, with `\\n` where a
+/// cell has a line end.
 ///
 /// Empty lines and those that begin with `//` are no rows.
 pub fn rows<const N: usize>(table: &str) -> impl Iterator<Item = [String; N]> {

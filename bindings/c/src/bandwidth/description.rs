@@ -18,8 +18,8 @@ pub enum LineShape {
     Rectangular = 2,
 }
 
-/// The light of a laser, and how a camera sees the surface that it lights, in focus. Directions lead away from the surface, of any
-/// length; lengths in metres.
+/// The light of a laser, and how a camera sees the surface that it lights, in focus. Directions
+/// lead away from the surface, of any length; lengths in metres.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct BandwidthDescription {
@@ -35,8 +35,8 @@ pub struct BandwidthDescription {
     pub peak_count: usize,
     /// To the source.
     pub to_source: [f64; 3],
-    /// Half-angle of the disc from which light reaches the surface, seen from there, at most 0.3 rad; 0 for a point. Light of
-    /// its parts does not interfere.
+    /// Half-angle of the disc from which light reaches the surface, seen from there, at most 0.3
+    /// rad; 0 for a point. Light of its parts does not interfere.
     pub source_half_angle: f64,
     /// To the centre of the pupil.
     pub to_pupil: [f64; 3],
@@ -46,7 +46,8 @@ pub struct BandwidthDescription {
     pub sin_aperture: f64,
     /// Root mean square height of the relief that is finer than a speckle, at most 1 mm.
     pub rms_height: f64,
-    /// Distance at which the correlation of the heights falls to 1/e, at most 1 mm; 0 if they differ as soon as scatterers do.
+    /// Distance at which the correlation of the heights falls to 1/e, at most 1 mm; 0 if they
+    /// differ as soon as scatterers do.
     pub correlation_length: f64,
 }
 

@@ -216,8 +216,8 @@ pub unsafe extern "C" fn tem00_imaging_describe(
 /// Computes where in a speckle pattern a pixel lies, in pattern samples, not wrapped to its period.
 ///
 /// `pixel` holds its position in pixels, x to the right and y down as rows count, from any origin;
-/// `displacement` the motion of the speckle since the reference state to the right and up, in metres on
-/// the sensor; `pattern_speckle_size` is the speckle size of the pattern in samples.
+/// `displacement` the motion of the speckle since the reference state to the right and up, in
+/// metres on the sensor; `pattern_speckle_size` is the speckle size of the pattern in samples.
 ///
 /// # Safety
 ///

@@ -193,8 +193,8 @@ pub unsafe extern "C" fn tem00_light_irradiance_batch_f32(
 
 /// Computes the next events at `count` points: the bits of `tem00_light_next_event`.
 ///
-/// `x`, `y`, `z` hold the coordinates, in metres. The columns of `events` are written; they must not
-/// overlap with each other nor with the coordinates.
+/// `x`, `y`, `z` hold the coordinates, in metres. The columns of `events` are written; they must
+/// not overlap with each other nor with the coordinates.
 ///
 /// # Safety
 ///
@@ -231,8 +231,8 @@ pub unsafe extern "C" fn tem00_light_next_event_batch_f32(
 /// Draws a direction from the light that arrives at each of `count` points: the bits of
 /// `tem00_light_next_event_sampled`.
 ///
-/// `points` holds x, y, z in metres of one point after the other, `u` two random numbers in [0, 1) for
-/// each; `events` must not overlap with them. Where it is dark, all of an event is 0.
+/// `points` holds x, y, z in metres of one point after the other, `u` two random numbers in [0, 1)
+/// for each; `events` must not overlap with them. Where it is dark, all of an event is 0.
 ///
 /// # Safety
 ///

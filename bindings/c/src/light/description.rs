@@ -42,8 +42,8 @@ pub struct SpotDescription {
     pub m_squared: f64,
 }
 
-/// An elliptic Gaussian beam with two principal axes, as of a laser diode. Its arrays hold the value
-/// of the first axis, then that of the second; a refusal names one as "`waist_radius[1]`".
+/// An elliptic Gaussian beam with two principal axes, as of a laser diode. Its arrays hold the
+/// value of the first axis, then that of the second; a refusal names one as "`waist_radius[1]`".
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct EllipticDescription {
@@ -185,7 +185,8 @@ impl EllipticDescription {
 impl LineDescription {
     /// # Safety
     ///
-    /// If the profile is tabulated, `angles` and `powers` are null or point to `knot_count` numbers.
+    /// If the profile is tabulated, `angles` and `powers` are null or point to `knot_count`
+    /// numbers.
     unsafe fn light(&self) -> Result<Light, Failure> {
         // SAFETY: by the contract of this function.
         let profile = unsafe { self.line_profile() }?;

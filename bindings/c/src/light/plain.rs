@@ -13,7 +13,8 @@ pub enum LightKind {
     TabulatedLine = 2,
 }
 
-/// A light as plain numbers in single precision: what a kernel that cannot call a library evaluates.
+/// A light as plain numbers in single precision: what a kernel that cannot call a library
+/// evaluates.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightData {

@@ -111,8 +111,8 @@ pub unsafe extern "C" fn tem00_light_irradiance(
     answer!(light: borrow, point: read_point => irradiance: light.ask(|light| light.irradiance(point)))
 }
 
-/// Computes the energy-flow vector at `point`, in W/m²: a surface whose normal n lies on the lit side
-/// receives the irradiance max(0, -flux . n).
+/// Computes the energy-flow vector at `point`, in W/m²: a surface whose normal n lies on the lit
+/// side receives the irradiance max(0, -flux . n).
 ///
 /// `point` and `flux` hold x, y, z.
 ///
@@ -131,8 +131,9 @@ pub unsafe extern "C" fn tem00_light_flux(
 
 /// Computes the light at `point` as one direction, that of the mean energy flow: a delta light.
 ///
-/// A surface of normal n reflects f |n . wi| V times `e_perp`. Where it is dark, beyond the cut-off and behind
-/// the aperture, all of `event` is 0 and no shadow ray is needed. `point` holds x, y, z in metres.
+/// A surface of normal n reflects f |n . wi| V times `e_perp`. Where it is dark, beyond the cut-off
+/// and behind the aperture, all of `event` is 0 and no shadow ray is needed. `point` holds x, y, z
+/// in metres.
 ///
 /// # Safety
 ///
@@ -169,8 +170,8 @@ pub unsafe extern "C" fn tem00_light_next_event_f32(
 
 /// Draws a direction from the light that arrives at `point`, with two random numbers `u` in [0, 1).
 ///
-/// The estimate of the reflected radiance is f |n . wi| V times `value`, which has been divided by the
-/// density. Where it is dark, all of `event` is 0. `point` holds x, y, z in metres.
+/// The estimate of the reflected radiance is f |n . wi| V times `value`, which has been divided by
+/// the density. Where it is dark, all of `event` is 0. `point` holds x, y, z in metres.
 ///
 /// # Safety
 ///
@@ -209,7 +210,8 @@ pub unsafe extern "C" fn tem00_light_next_event_pdf(
 
 /// Draws a ray that leaves the aperture, with four random numbers `u` in [0, 1).
 ///
-/// Every ray stands for the same power, so straight rays reproduce the irradiance at every distance.
+/// Every ray stands for the same power, so straight rays reproduce the irradiance at every
+/// distance.
 ///
 /// # Safety
 ///

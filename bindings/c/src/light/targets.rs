@@ -48,8 +48,8 @@ pub unsafe extern "C" fn tem00_light_describe(light: *const Light, info: *mut Li
     }))
 }
 
-/// Finds the light that a ray from `point` along `wi` meets, for a direction that a material has drawn:
-/// the other technique beside `tem00_light_next_event_sampled`.
+/// Finds the light that a ray from `point` along `wi` meets, for a direction that a material has
+/// drawn: the other technique beside `tem00_light_next_event_sampled`.
 ///
 /// A direction of the density q, per steradian, has the weight q / (q + `pdf`) of the balance
 /// heuristic. Only what is nearer than `distance` hides the light. Where the ray meets none, all of
@@ -71,8 +71,8 @@ pub unsafe extern "C" fn tem00_light_hit(
     })
 }
 
-/// Computes a bound of the power, in watts, that reaches the box from `min` to `max`, for a hierarchy
-/// of lights: 0 if the box is behind the aperture, beyond the cut-off or empty.
+/// Computes a bound of the power, in watts, that reaches the box from `min` to `max`, for a
+/// hierarchy of lights: 0 if the box is behind the aperture, beyond the cut-off or empty.
 ///
 /// `min` and `max` hold x, y, z in metres.
 ///

@@ -30,8 +30,8 @@ pub struct CameraDescription {
     pub resolution: [usize; 2],
     /// Image point on the axis of the lens, from the middle of the image, in pixels with y down.
     pub principal_offset: [f64; 2],
-    /// Angle by which the sensor is tilted, right-handed about a line in it, and the azimuth of that
-    /// line, from the right of the image towards its top; both in radians.
+    /// Angle by which the sensor is tilted, right-handed about a line in it, and the azimuth of
+    /// that line, from the right of the image towards its top; both in radians.
     pub tilt: [f64; 2],
     /// Coefficients k1, k2 and k3 of the radial distortion, with the signs of `OpenCV`.
     pub distortion: [f64; 3],

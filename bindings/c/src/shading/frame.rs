@@ -13,8 +13,9 @@ use crate::{
 pub struct SpeckleShift {
     /// Displacement of the speckle in the image, in pixels with y down.
     pub displacement: [f64; 2],
-    /// Displacement of the pupil over the speckle, in pupil diameters. A motion along the axis counts
-    /// by the displacement that leaves the same correlation. Infinite where the speckle is new.
+    /// Displacement of the pupil over the speckle, in pupil diameters. A motion along the axis
+    /// counts by the displacement that leaves the same correlation. Infinite where the speckle is
+    /// new.
     pub pupil_shift: f64,
     /// Correlation of intensity with the speckle in the reference state, in [0, 1], where it is
     /// looked up at the displacement.

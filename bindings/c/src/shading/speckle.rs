@@ -150,8 +150,8 @@ impl From<PreparedSpeckle> for Speckle {
 /// state: chooses sizes, slices and seeds for the motions and the memory. `tem00_speckle_describe`
 /// says what it chose.
 ///
-/// The light must be a spot or a line; its wavelength counts as that in vacuum. Speckle does not need
-/// camera and light any more once it is created. On failure `*speckle` is null.
+/// The light must be a spot or a line; its wavelength counts as that in vacuum. Speckle does not
+/// need camera and light any more once it is created. On failure `*speckle` is null.
 ///
 /// # Safety
 ///

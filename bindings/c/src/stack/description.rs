@@ -29,8 +29,8 @@ pub struct StackDescription {
     pub width: usize,
     /// Height of the pattern, in samples.
     pub height: usize,
-    /// Diameter of the pupil along the width, in lattice points: the speckles after which the pattern
-    /// repeats, from 8 to half the width. 0 if `speckle_size` is to say it.
+    /// Diameter of the pupil along the width, in lattice points: the speckles after which the
+    /// pattern repeats, from 8 to half the width. 0 if `speckle_size` is to say it.
     pub diameter: usize,
     /// Speckle size in samples, at least 2 and at most an eighth of the smaller side; read if
     /// `diameter` is 0, else it is width / diameter.
@@ -45,8 +45,8 @@ pub struct StackDescription {
     pub length: usize,
     /// Bytes that the slices may take; `UINT64_MAX` for all the machine has.
     pub memory_limit: u64,
-    /// Number of threads that generate it, at most 1024; 0 for all the cores of the machine. The stack is
-    /// the same, to the last bit, for any number.
+    /// Number of threads that generate it, at most 1024; 0 for all the cores of the machine. The
+    /// stack is the same, to the last bit, for any number.
     pub threads: u32,
 }
 
@@ -56,8 +56,8 @@ pub struct StackDescription {
 pub struct StackNeeds {
     /// Width and height of the image, in pixels.
     pub image: [f64; 2],
-    /// Width and height of all that is looked up in any frame, in pixels: the image, and what motion
-    /// brings in.
+    /// Width and height of all that is looked up in any frame, in pixels: the image, and what
+    /// motion brings in.
     pub region: [f64; 2],
     /// Speckle size on the sensor, in pixels.
     pub speckle_size: f64,
@@ -165,7 +165,8 @@ pub(super) fn path_numbers(path: tem00_speckle::SlicePath) -> (SlicePath, usize,
     }
 }
 
-/// Generates a stack, 8 bytes for each sample of each slice, on the threads that its description asks for.
+/// Generates a stack, 8 bytes for each sample of each slice, on the threads that its description
+/// asks for.
 ///
 /// On failure `*stack` is null.
 ///

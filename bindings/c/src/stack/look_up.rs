@@ -86,10 +86,11 @@ pub unsafe extern "C" fn tem00_stack_intensity(
         intensity: stack.0.intensity_at(x, y, u))
 }
 
-/// Looks up the amplitude whose squared magnitude is the intensity, for light whose fields add: `amplitude` holds its
-/// real and imaginary part.
+/// Looks up the amplitude whose squared magnitude is the intensity, for light whose fields add:
+/// `amplitude` holds its real and imaginary part.
 ///
-/// It is the field in the frame of the pupil of the slice at u or before it: stacks along one path have one frame.
+/// It is the field in the frame of the pupil of the slice at u or before it: stacks along one path
+/// have one frame.
 ///
 /// # Safety
 ///
@@ -137,7 +138,8 @@ pub unsafe extern "C" fn tem00_stack_intensity_batch(
     })
 }
 
-/// As `tem00_stack_intensity_batch`, in single precision: the intensities at these coordinates, rounded.
+/// As `tem00_stack_intensity_batch`, in single precision: the intensities at these coordinates,
+/// rounded.
 ///
 /// A place that is rounded to single precision moves by up to 3e-8 of its distance from 0: take off
 /// whole periods before.
@@ -165,8 +167,8 @@ pub unsafe extern "C" fn tem00_stack_intensity_batch_f32(
     })
 }
 
-/// Computes the means of the intensity over boxes about `count` points, in single precision: those of
-/// `tem00_stack_average` at these coordinates, rounded.
+/// Computes the means of the intensity over boxes about `count` points, in single precision: those
+/// of `tem00_stack_average` at these coordinates, rounded.
 ///
 /// `size` holds the width and the height of the boxes, in samples.
 ///
@@ -224,8 +226,8 @@ unsafe fn places<'a, T: Copy + Into<f64>>(
     Ok((read, answers))
 }
 
-/// Computes the mean of the intensity over a box about `centre`, at `u`: what a pixel sees whose whole
-/// area takes part.
+/// Computes the mean of the intensity over a box about `centre`, at `u`: what a pixel sees whose
+/// whole area takes part.
 ///
 /// `centre` holds x, y and `size` the width and the height of the box, all in samples; `u` is in
 /// slices.
@@ -245,8 +247,8 @@ pub unsafe extern "C" fn tem00_stack_average(
         average: stack.0.average_over(centre, size, u))
 }
 
-/// Computes the coordinate u, in slices, at which the intensity has a given `correlation` to that at
-/// u = 0: 0 for 1 or more, and the first slice of no correlation for 0 or less.
+/// Computes the coordinate u, in slices, at which the intensity has a given `correlation` to that
+/// at u = 0: 0 for 1 or more, and the first slice of no correlation for 0 or less.
 ///
 /// # Safety
 ///
@@ -260,8 +262,8 @@ pub unsafe extern "C" fn tem00_stack_coordinate_of(
     answer!(stack: borrow, correlation: check_number => u: stack.0.coordinate_of(correlation))
 }
 
-/// Computes the correlation of the intensities at u = 0 and u = `distance`, in slices: the inverse of
-/// `tem00_stack_coordinate_of`.
+/// Computes the correlation of the intensities at u = 0 and u = `distance`, in slices: the inverse
+/// of `tem00_stack_coordinate_of`.
 ///
 /// # Safety
 ///
@@ -276,7 +278,8 @@ pub unsafe extern "C" fn tem00_stack_correlation_at(
         correlation: stack.0.correlation_at(distance))
 }
 
-/// Computes the correlation of the intensities at two coordinates u and v, on slices or between, exactly.
+/// Computes the correlation of the intensities at two coordinates u and v, on slices or between,
+/// exactly.
 ///
 /// # Safety
 ///
@@ -292,8 +295,8 @@ pub unsafe extern "C" fn tem00_stack_correlation_between(
         correlation: stack.0.correlation_between(u, v))
 }
 
-/// Gives the coefficients of a slice, for upload to a GPU: width * height complex numbers row by row,
-/// each a real and an imaginary part.
+/// Gives the coefficients of a slice, for upload to a GPU: width * height complex numbers row by
+/// row, each a real and an imaginary part.
 ///
 /// They are the samples of the amplitude, or for the cubic spline its prefiltered coefficients, and
 /// belong to the stack.

@@ -14,8 +14,9 @@ const GROUP: usize = 64;
 
 /// Evaluates `body` for each group of `INPUTS` numbers of `inputs`, on the card.
 ///
-/// `body` is WGSL that reads `input(0)`, `input(1)`, … and calls `output(0, value)`, `output(1, value)`, …, both `f32`; `source` holds
-/// the functions that it calls. Integers travel by `bitcast`.
+/// `body` is WGSL that reads `input(0)`, `input(1)`, … and calls `output(0, value)`,
+/// `output(1, value)`, …, both `f32`; `source` holds the functions that it calls. Integers travel
+/// by `bitcast`.
 pub(crate) fn evaluate<const INPUTS: usize, const OUTPUTS: usize>(
     gpu: &Gpu,
     source: &str,

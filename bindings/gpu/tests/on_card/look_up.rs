@@ -8,7 +8,8 @@ use tem00_gpu::{Gpu, GpuStack};
 use tem00_numerics::Grid;
 use tem00_speckle::{Complex, Pupil, PupilField, SlicePath, SpeckleStack, Transmission};
 
-/// Points about the pattern and the path, some on slices and samples, whose coordinates `f32` holds.
+/// Points about the pattern and the path, some on slices and samples, whose coordinates `f32`
+/// holds.
 fn points(stack: &SpeckleStack, count: usize) -> Vec<[f32; 3]> {
     let mut generator = ChaCha8Rng::seed_from_u64(5);
     let [width, height] = stack.size();

@@ -111,7 +111,8 @@ impl Random {
         Laser::new(description).unwrap()
     }
 
-    /// A scene in which the pupil moves by some tenths of its diameter, and points by some tenths of the axial length.
+    /// A scene in which the pupil moves by some tenths of its diameter, and points by some tenths
+    /// of the axial length.
     fn scene(&mut self, number: u32) -> Scene {
         let eye = self.place();
         let f_number = [2.8, 5.6, 16.0][number as usize % 3];
@@ -217,7 +218,8 @@ fn displacements_and_correlations_are_those_of_the_law() {
         HOST,
     ]
     .concat();
-    // Points that have kept a part: all, and those that moved across and along at once. And new ones.
+    // Points that have kept a part: all, and those that moved across and along at once. And new
+    // ones.
     let mut partial = [0; 3];
     for scene in scenes(30) {
         let prepared = scene.speckle().prepare().unwrap();
@@ -258,8 +260,8 @@ fn displacements_and_correlations_are_those_of_the_law() {
             let is_left = shift.axial.abs() < 1.0 && shift.pupil.is_finite();
             let across = if is_left { shift.across.length() } else { 1.0 };
             let expected = CorrelationLaw::AtPeak.correlation(across, shift.axial);
-            // What moves in the pupil is off by 4 ε of all motions: more near a waist, and by its slant where a surface is
-            // not seen from above. The slope of γ is 8/π at most.
+            // What moves in the pupil is off by 4 ε of all motions: more near a waist, and by its
+            // slant where a surface is not seen from above. The slope of γ is 8/π at most.
             let origin = scene.motion.surface.inverse().point(point);
             let moved = (point - origin).length() + 0.1 * diameter * (1.0 + across);
             let cosine = normal.dot((eye - point).normalize()).abs();
@@ -313,7 +315,8 @@ fn factors_are_those_of_the_library() {
         let found = factors::on_card(&gpu, &stack, &rows, &hits.collect::<Vec<_>>()).unwrap();
         let prepared = scene.speckle().prepare().unwrap();
         let frame = prepared.frame(&scene.motion).unwrap();
-        // The rms change of the amplitude by ε of the principal distance: half a wave over a speckle at the rim.
+        // The rms change of the amplitude by ε of the principal distance: half a wave over a
+        // speckle at the rim.
         let step = EPSILON * f64::from(rows[3][3]) * core::f64::consts::FRAC_PI_2
             / kernel.field().speckle_size();
         for (&(point, normal), factor) in scene.hits.iter().zip(found) {
@@ -323,7 +326,8 @@ fn factors_are_those_of_the_library() {
             count += 1.0;
         }
     }
-    // Coordinates are off by ε in rms, and by 4 ε at worst where the amplitude changes five times as fast.
+    // Coordinates are off by ε in rms, and by 4 ε at worst where the amplitude changes five times
+    // as fast.
     let rms = f64::sqrt(squares / count);
     assert!(rms < 1.0 && worst < 20.0, "{rms} in rms, {worst} at worst");
 }

@@ -74,7 +74,8 @@ fn patterns_behind_every_pupil_agree() {
                 .and_then(|field| field.with_pupil(pupil.clone()))
                 .expect("a field")
                 .with_phasors(phasors);
-            // On the lattice and between, far along it, before its origin and where words begin anew.
+            // On the lattice and between, far along it, before its origin and where words begin
+            // anew.
             for (offset, defocus) in [
                 ([0.0; 2], 0.0),
                 ([0.31, -0.77], 0.0),

@@ -4,8 +4,8 @@
 //! cargo run --release --manifest-path bindings/integrations/rpt/Cargo.toml
 //! ```
 //!
-//! Prints `measured | theory` from rpt's own pictures and fails if they disagree. Writes a picture with
-//! a ball, and a point light, which has no speckle, to `out/rpt_spot.png`.
+//! Prints `measured | theory` from rpt's own pictures and fails if they disagree. Writes a picture
+//! with a ball, and a point light, which has no speckle, to `out/rpt_spot.png`.
 
 use std::{error::Error, f64::consts::PI, fs};
 
@@ -35,7 +35,8 @@ impl Shape for Lamp {
         false
     }
 
-    /// rpt multiplies by cos/distance² and divides by this density: e_perp is left, times the speckle.
+    /// rpt multiplies by cos/distance² and divides by this density: e_perp is left, times the
+    /// speckle.
     fn sample(&self, target: &glm::DVec3, _: &mut StdRng) -> (glm::DVec3, glm::DVec3, f64) {
         let point = DVec3::from_array((*target).into());
         let Some(event) = self.laser.next_event(point) else {

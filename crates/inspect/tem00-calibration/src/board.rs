@@ -8,8 +8,9 @@ const MOST: usize = 50;
 
 /// A checkerboard, by its inner corners: where four squares meet.
 ///
-/// The board has one square more than inner corners along each side. Its own frame has its origin at the
-/// lower left inner corner, x to the right and y up on the board, z out of it towards the camera.
+/// The board has one square more than inner corners along each side. Its own frame has its origin
+/// at the lower left inner corner, x to the right and y up on the board, z out of it towards the
+/// camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Checkerboard {
     corners: [usize; 2],
@@ -17,12 +18,13 @@ pub struct Checkerboard {
 }
 
 impl Checkerboard {
-    /// Creates a board from its numbers of inner corners along the rows and along the columns, and from
-    /// the side of a square, in metres.
+    /// Creates a board from its numbers of inner corners along the rows and along the columns, and
+    /// from the side of a square, in metres.
     ///
     /// # Errors
     ///
-    /// Returns an error if a number is below 3 or above 50, or if the side is not positive and finite.
+    /// Returns an error if a number is below 3 or above 50, or if the side is not positive and
+    /// finite.
     pub fn new(corners: [usize; 2], square: f64) -> Result<Self, TriangulationError> {
         check::positive("square_size", square, "m")?;
         for number in corners {
@@ -47,7 +49,8 @@ impl Checkerboard {
         self.square
     }
 
-    /// Returns the inner corners in the frame of the board, in metres: row by row from the upper left.
+    /// Returns the inner corners in the frame of the board, in metres: row by row from the upper
+    /// left.
     pub fn points(&self) -> Vec<DVec3> {
         let [columns, rows] = self.corners;
         let point = |row, column| self.corner_at(column as f64, (rows - 1 - row) as f64);

@@ -8,11 +8,12 @@ use tem00_triangulation::{LaserPlane, TriangulationError, Triangulator};
 
 /// A calibrated set-up: its camera and its laser plane, and how well they are known.
 ///
-/// A calibration is [exact](Self::exact), as a simulation knows its own scene, or estimated from images
-/// of a checkerboard and of the laser line on it, with the covariance of its [`PARAMETERS`](crate::PARAMETERS).
+/// A calibration is [exact](Self::exact), as a simulation knows its own scene, or estimated from
+/// images of a checkerboard and of the laser line on it, with the covariance of its
+/// [`PARAMETERS`](crate::PARAMETERS).
 ///
-/// The errors of a calibration are common to all points that are measured with it: they do not average
-/// out, but a difference of heights near each other hardly feels them, see
+/// The errors of a calibration are common to all points that are measured with it: they do not
+/// average out, but a difference of heights near each other hardly feels them, see
 /// [`step_uncertainty`](Self::step_uncertainty).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
@@ -28,7 +29,8 @@ struct Uncertainty {
     perturbations: Perturbations,
 }
 
-/// Residuals of images of a checkerboard and of the line on it, against the calibration that they gave.
+/// Residuals of images of a checkerboard and of the line on it, against the calibration that they
+/// gave.
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +39,8 @@ pub struct CalibrationQuality {
     pub boards: usize,
     /// The number of corners in the images of all boards.
     pub corners: usize,
-    /// The root mean square of the distances of the corners from where they are expected, in pixels.
+    /// The root mean square of the distances of the corners from where they are expected, in
+    /// pixels.
     pub rms_reprojection: f64,
     /// The number of points of the line from which the plane follows.
     pub line_points: usize,
@@ -61,8 +64,8 @@ impl Calibration {
     ///
     /// # Errors
     ///
-    /// Returns an error if a camera that differs by a hundred-thousandth of what is estimated is not
-    /// possible: the calibration stands at the edge of its range.
+    /// Returns an error if a camera that differs by a hundred-thousandth of what is estimated is
+    /// not possible: the calibration stands at the edge of its range.
     pub fn with_covariance(
         self,
         covariance: CalibrationCovariance,
@@ -112,8 +115,8 @@ impl Calibration {
         self.quality.as_ref()
     }
 
-    /// Returns the covariance, in m², that the calibration gives to the point seen at an image point, or
-    /// `None` where there is no point. It is zero for an exact calibration.
+    /// Returns the covariance, in m², that the calibration gives to the point seen at an image
+    /// point, or `None` where there is no point. It is zero for an exact calibration.
     pub fn point_covariance(&self, pixel: DVec2) -> Option<DMat3> {
         let Some(known) = &self.uncertainty else {
             return self.triangulator.point(pixel).map(|_| DMat3::ZERO);
@@ -125,11 +128,11 @@ impl Calibration {
         ))
     }
 
-    /// Returns the standard uncertainty that the calibration leaves to the height of a point of the laser
-    /// plane, in metres, or `None` if the camera does not see the point.
+    /// Returns the standard uncertainty that the calibration leaves to the height of a point of the
+    /// laser plane, in metres, or `None` if the camera does not see the point.
     ///
-    /// Heights are along `up`, a direction of any length. They are counted from the world's origin, which
-    /// is the first board's for an estimated calibration.
+    /// Heights are along `up`, a direction of any length. They are counted from the world's origin,
+    /// which is the first board's for an estimated calibration.
     pub fn height_uncertainty(&self, point: DVec3, up: DVec3) -> Option<f64> {
         let Some(known) = &self.uncertainty else {
             return self.camera().project(point).map(|_| 0.0);
@@ -138,8 +141,9 @@ impl Calibration {
             .map(|sensitivities| known.along(sensitivities, up))
     }
 
-    /// Returns the standard uncertainty that the calibration leaves to the difference of the heights of
-    /// two points of the laser plane, in metres, or `None` if the camera does not see one of them.
+    /// Returns the standard uncertainty that the calibration leaves to the difference of the
+    /// heights of two points of the laser plane, in metres, or `None` if the camera does not see
+    /// one of them.
     ///
     /// What moves both alike drops out.
     pub fn step_uncertainty(&self, points: [DVec3; 2], up: DVec3) -> Option<f64> {

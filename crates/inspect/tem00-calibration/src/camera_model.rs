@@ -8,17 +8,17 @@ pub struct CameraModel {
     pub pixel_pitch: f64,
     /// The numbers of pixel columns and rows.
     pub resolution: [usize; 2],
-    /// The focal length, in metres, of the data sheet; `None` if it is not known. What is estimated is
-    /// the image distance; the focal length decides where the image is sharp.
+    /// The focal length, in metres, of the data sheet; `None` if it is not known. What is estimated
+    /// is the image distance; the focal length decides where the image is sharp.
     pub focal_length: Option<f64>,
     /// The f-number, which decides blur and speckle and is not estimated.
     pub f_number: f64,
-    /// True if the sensor is tilted (Scheimpflug): then its tilt is sought, and the axis of the lens
-    /// is taken to meet the middle of the image. Otherwise the principal point is sought.
+    /// True if the sensor is tilted (Scheimpflug): then its tilt is sought, and the axis of the
+    /// lens is taken to meet the middle of the image. Otherwise the principal point is sought.
     ///
-    /// Without distortion both describe the same images: a pinhole before a tilted sensor is one before
-    /// an upright sensor, with the principal point where the perpendicular meets it. Therefore they are
-    /// not sought together.
+    /// Without distortion both describe the same images: a pinhole before a tilted sensor is one
+    /// before an upright sensor, with the principal point where the perpendicular meets it.
+    /// Therefore they are not sought together.
     pub tilted: bool,
     /// The number of coefficients of radial distortion that are sought, from 0 to 3.
     pub radial: usize,
@@ -38,8 +38,8 @@ impl CameraModel {
         )?)
     }
 
-    /// Returns the distance at which the image is sharp: by the lens equation if the focal length is
-    /// known and shorter than the image distance, else where the boards stood.
+    /// Returns the distance at which the image is sharp: by the lens equation if the focal length
+    /// is known and shorter than the image distance, else where the boards stood.
     pub(super) fn focus_distance(&self, image_distance: f64, mean_depth: f64) -> f64 {
         let by_lens = self
             .focal_length

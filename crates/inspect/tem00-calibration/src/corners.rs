@@ -4,14 +4,15 @@ use tem00_numerics::{Grid, Refusal};
 use crate::{Checkerboard, flat_field::flattened, lattice::ordered, ring::corner_candidates};
 use tem00_triangulation::TriangulationError;
 
-/// The standard deviation of the Gaussian that smooths a corner at first, in sides of a square: the next
-/// edges are more than five of them away.
+/// The standard deviation of the Gaussian that smooths a corner at first, in sides of a square: the
+/// next edges are more than five of them away.
 const SMOOTHING: f64 = 0.18;
 
 /// That of the last one. What uneven light and curved edges do to a position grows with its square.
 const LAST_SMOOTHING: f64 = 0.06;
 
-/// The minimum standard deviation of the last one, in pixels: steps between pixels hardly show in it.
+/// The minimum standard deviation of the last one, in pixels: steps between pixels hardly show in
+/// it.
 const MIN_SMOOTHING: f64 = 2.0;
 
 /// Reach of its window, in standard deviations.
@@ -29,14 +30,15 @@ const MIN_SIZE: usize = 16;
 /// Maximum number of times that the image is halved if its corners are too blurred for the ring.
 const HALVINGS: u32 = 3;
 
-/// Finds the inner corners of a checkerboard in an image, in pixels: row by row from the upper left, to a
-/// small fraction of a pixel.
+/// Finds the inner corners of a checkerboard in an image, in pixels: row by row from the upper
+/// left, to a small fraction of a pixel.
 ///
-/// Corners are found by the bright and dark quarters around them, in the image and in coarser ones, and put
-/// in order by their neighbours. Their positions are the saddles of the image that a Gaussian smooths, first over
-/// about a third of a square, then over a third of that: by the symmetry of a corner neither blur nor contrast moves
-/// them. Uneven light would: it is estimated from the bright squares and divided out. What is left of it
-/// moves a position, and so does a lens that bends the edges:
+/// Corners are found by the bright and dark quarters around them, in the image and in coarser ones,
+/// and put in order by their neighbours. Their positions are the saddles of the image that a
+/// Gaussian smooths, first over about a third of a square, then over a third of that: by the
+/// symmetry of a corner neither blur nor contrast moves them. Uneven light would: it is estimated
+/// from the bright squares and divided out. What is left of it moves a position, and so does a lens
+/// that bends the edges:
 ///
 /// ```text
 /// σ_x = √(π/8) σ_I / ΔI      by noise: σ_I of a pixel, ΔI bright less dark
@@ -44,8 +46,8 @@ const HALVINGS: u32 = 3;
 /// δ   = 2 σ² k₁ r / d²       by distortion, at the distance r from the axis, d the image distance in pixels
 /// ```
 ///
-/// The first, per axis, follows from the slope of the noise and the curvature ΔI / (π σ²) of a smoothed
-/// corner; it does not depend on the smoothing σ. The others do, by its square.
+/// The first, per axis, follows from the slope of the noise and the curvature ΔI / (π σ²) of a
+/// smoothed corner; it does not depend on the smoothing σ. The others do, by its square.
 ///
 /// # Validity
 ///
@@ -58,8 +60,8 @@ const HALVINGS: u32 = 3;
 ///
 /// # References
 ///
-/// - L. Lucchese and S. K. Mitra, *Using Saddle Points for Subpixel Feature Detection in Camera Calibration
-///   Targets*, 2002.
+/// - L. Lucchese and S. K. Mitra, *Using Saddle Points for Subpixel Feature Detection in Camera
+///   Calibration Targets*, 2002.
 pub fn find_corners(
     image: &Grid<f32>,
     board: &Checkerboard,
@@ -144,8 +146,8 @@ fn refined(
     Ok(refined)
 }
 
-/// Returns the position near `start` at which the image, smoothed by a Gaussian of the standard deviation
-/// `sigma`, has a saddle, or `None` if there is none within two of them.
+/// Returns the position near `start` at which the image, smoothed by a Gaussian of the standard
+/// deviation `sigma`, has a saddle, or `None` if there is none within two of them.
 ///
 /// ```text
 /// q ← q − H⁻¹ g      g, H: gradient and second derivatives of G ∗ I at q
@@ -167,7 +169,8 @@ fn saddle(image: &Grid<f32>, start: DVec2, sigma: f64) -> Option<DVec2> {
     Some(position)
 }
 
-/// Returns gradient and second derivatives of the smoothed image at a position, but for a common factor.
+/// Returns gradient and second derivatives of the smoothed image at a position, but for a common
+/// factor.
 ///
 /// Beyond the edges of the image its mean goes on.
 fn derivatives(image: &Grid<f32>, position: DVec2, sigma: f64) -> (DVec2, DMat2) {
@@ -187,7 +190,8 @@ fn derivatives(image: &Grid<f32>, position: DVec2, sigma: f64) -> (DVec2, DMat2)
     (gradient, second * (1.0 / sigma))
 }
 
-/// Returns the pixels about a position: their offsets in units of `sigma`, their weights and values.
+/// Returns the pixels about a position: their offsets in units of `sigma`, their weights and
+/// values.
 fn pixels(
     image: &Grid<f32>,
     position: DVec2,
@@ -223,7 +227,8 @@ mod tests {
         Checkerboard::new([5, 4], 1.0).unwrap()
     }
 
-    /// Returns the position of a corner in the image: squares of 20 pixels, turned and in perspective.
+    /// Returns the position of a corner in the image: squares of 20 pixels, turned and in
+    /// perspective.
     fn position(board: DVec2) -> DVec2 {
         let flat = 20.0 * DVec2::from_angle(0.2).rotate(board);
         let nearer = 1.0 + 0.001 * flat.x - 0.0015 * flat.y;
@@ -274,8 +279,9 @@ mod tests {
 
     #[test]
     fn corners_are_found_to_a_fraction_of_a_pixel() {
-        // 8 × 8 points locate an edge to a uniform 1/8 pixel, 0.036 of standard deviation; over the 2 √π σ = 7
-        // pixels of a smoothing by 2 pixels 0.014 per axis, and three times that for the worst of 20.
+        // 8 × 8 points locate an edge to a uniform 1/8 pixel, 0.036 of standard deviation; over the
+        // 2 √π σ = 7 pixels of a smoothing by 2 pixels 0.014 per axis, and three times that for the
+        // worst of 20.
         let error = greatest_error(&image(0.0, 0.0));
         assert!(error < 0.042, "{error}");
         // √(π/8) · 2/180 = 0.007 pixel per axis; four and a half of them more for the worst of 20.
@@ -316,8 +322,8 @@ mod tests {
         let shifts = shifts
             .map(|((found, corner), sign)| sign * (*found - middle - 20.0 * turned.rotate(corner)));
         let mean = shifts.sum::<DVec2>() / 9.0;
-        // π σ² g Ī/ΔI with a σ of 2 pixels. Points of 1/16 pixel alias by 0.007 per corner, a third of that
-        // in the mean.
+        // π σ² g Ī/ΔI with a σ of 2 pixels. Points of 1/16 pixel alias by 0.007 per corner, a third
+        // of that in the mean.
         let expected = PI * 4.0 * slope * 110.0 / 180.0;
         assert_absolute(mean.length(), expected, 0.005);
     }

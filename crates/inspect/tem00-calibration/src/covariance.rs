@@ -11,10 +11,10 @@ pub(super) const COUNT: usize = PARAMETERS.len();
 /// Uncertain parameter of a calibration, in the order of the covariance.
 ///
 /// The camera's axes are those of its image: to the right, down, and along the view. A tilt is the
-/// vector of [`SensorTilt`](tem00_camera::SensorTilt): its angle along the right of the image and along
-/// its top. The board is turned and shifted in the axes of the camera about its own origin, where the
-/// origin of heights is. The normal of the laser plane changes by a vector across itself, and the plane is
-/// shifted along its normal.
+/// vector of [`SensorTilt`](tem00_camera::SensorTilt): its angle along the right of the image and
+/// along its top. The board is turned and shifted in the axes of the camera about its own origin,
+/// where the origin of heights is. The normal of the laser plane changes by a vector across itself,
+/// and the plane is shifted along its normal.
 pub const PARAMETERS: [Parameter; 18] = [
     Parameter::new("image distance", "m"),
     Parameter::new("principal point x", "pixel"),
@@ -59,13 +59,13 @@ pub struct CalibrationCovariance {
 }
 
 impl CalibrationCovariance {
-    /// Creates a covariance from its rows, in the units of the [`PARAMETERS`]. Parameters that are known
-    /// have rows and columns of zeros. `origin` is the origin of the first board, in metres.
+    /// Creates a covariance from its rows, in the units of the [`PARAMETERS`]. Parameters that are
+    /// known have rows and columns of zeros. `origin` is the origin of the first board, in metres.
     ///
     /// # Errors
     ///
-    /// Returns an error if a number is not finite, or if no quantities have this covariance: it is not
-    /// symmetric, or has a variance that is negative beyond rounding.
+    /// Returns an error if a number is not finite, or if no quantities have this covariance: it is
+    /// not symmetric, or has a variance that is negative beyond rounding.
     pub fn new(
         origin: DVec3,
         rows: &[[f64; PARAMETERS.len()]; PARAMETERS.len()],
@@ -136,6 +136,6 @@ impl CalibrationCovariance {
     }
 }
 
-/// Tolerance for rounding in the test that correlations are a possible set: they come out of sums of many products
-/// and an inversion.
+/// Tolerance for rounding in the test that correlations are a possible set: they come out of sums
+/// of many products and an inversion.
 const ROUNDING: f64 = 1e-6;

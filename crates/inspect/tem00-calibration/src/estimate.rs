@@ -25,14 +25,15 @@ pub struct BoardView {
     /// The inner corners, row by row from the upper left, as
     /// [`Checkerboard::points`] has them.
     pub corners: Vec<DVec2>,
-    /// The laser line on the board in the same pose. Points beyond the board are left out. It may be
-    /// empty.
+    /// The laser line on the board in the same pose. Points beyond the board are left out. It may
+    /// be empty.
     pub line: Vec<DVec2>,
 }
 
 impl BoardView {
-    /// Finds a board in its image; `line` are the points of each column of the image of the same board under the
-    /// laser, if there is one, of which the one with the highest peak is taken, if it is valid.
+    /// Finds a board in its image; `line` are the points of each column of the image of the same
+    /// board under the laser, if there is one, of which the one with the highest peak is taken, if
+    /// it is valid.
     ///
     /// # Errors
     ///
@@ -58,20 +59,20 @@ impl BoardView {
 
 /// Estimates camera and laser plane from views of a checkerboard.
 ///
-/// The camera and the poses of the boards are those with the smallest sum of squared distances of the
-/// corners from where they are expected. The laser plane is the one with the smallest sum of squared
-/// distances from the points where the sights to the line meet the boards. The scatter of both
-/// tells the covariance of all parameters: of the corners through the poses into the plane, and of the
-/// line, whose neighbouring points are correlated.
+/// The camera and the poses of the boards are those with the smallest sum of squared distances of
+/// the corners from where they are expected. The laser plane is the one with the smallest sum of
+/// squared distances from the points where the sights to the line meet the boards. The scatter of
+/// both tells the covariance of all parameters: of the corners through the poses into the plane,
+/// and of the line, whose neighbouring points are correlated.
 ///
 /// The world is the frame of the first board: heights are counted from it.
 ///
 /// # Validity
 ///
-/// The covariance is that of random errors in the images, to first order, as large as the residuals say. A board
-/// that is not flat, a wrong square or a lens with other than radial distortion is not part of it, nor is what
-/// uneven light and bent edges do to corners, see [`find_corners`]: those errors go together over a board, and
-/// the residuals hardly show them.
+/// The covariance is that of random errors in the images, to first order, as large as the residuals
+/// say. A board that is not flat, a wrong square or a lens with other than radial distortion is not
+/// part of it, nor is what uneven light and bent edges do to corners, see [`find_corners`]: those
+/// errors go together over a board, and the residuals hardly show them.
 ///
 /// # Errors
 ///
@@ -213,8 +214,8 @@ const OUTSIDE: TriangulationError = TriangulationError::NotDetermined {
 };
 
 impl Checkerboard {
-    /// Returns true if a point, in the axes of the camera, lies on the squares of a board in a pose. The
-    /// outer half of the outermost squares does not count.
+    /// Returns true if a point, in the axes of the camera, lies on the squares of a board in a
+    /// pose. The outer half of the outermost squares does not count.
     fn contains(&self, pose: &Pose, point: DVec3) -> bool {
         let on_board = pose.rotation.transpose() * (point - pose.translation) / self.square();
         let within = |x: f64, corners: usize| x > -0.5 && x < corners as f64 - 0.5;
@@ -279,8 +280,8 @@ fn to_board(pose: &Pose) -> Result<RigidMotion, TriangulationError> {
     RigidMotion::new(rotation, -(rotation * pose.translation)).map_err(|_| OUTSIDE)
 }
 
-/// Returns the covariance of the [`PARAMETERS`]: that of the fit of the corners, carried into the plane,
-/// and that of the line.
+/// Returns the covariance of the [`PARAMETERS`]: that of the fit of the corners, carried into the
+/// plane, and that of the line.
 fn covariance(
     bundle: &Bundle<'_>,
     solution: &Solution<State>,

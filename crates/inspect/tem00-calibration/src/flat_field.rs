@@ -8,10 +8,12 @@ const LEAST: f64 = 0.1;
 /// Minimum number of bright squares per coefficient of the illumination.
 const SQUARES_PER_COEFFICIENT: usize = 2;
 
-/// Returns the image divided by the illumination of a board in it, whose ordered corners are about known.
+/// Returns the image divided by the illumination of a board in it, whose ordered corners are about
+/// known.
 ///
-/// The illumination is a polynomial in the position, of the second or first degree as there are bright squares
-/// to fit it to; the mean on the board stays. Without enough of them the image stays as it is.
+/// The illumination is a polynomial in the position, of the second or first degree as there are
+/// bright squares to fit it to; the mean on the board stays. Without enough of them the image stays
+/// as it is.
 ///
 /// A slope of the illumination would move the saddles of the corners:
 ///
@@ -108,7 +110,8 @@ mod tests {
         let flat = flattened(&image, [5, 4], &corners);
         let bright = flat[(50, 50)].into();
         for (x, y) in [(10, 10), (90, 90), (30, 70)] {
-            // Six bright squares fit the three terms of a plane; the product leaves 0.002 · 50² / 4 of 100.
+            // Six bright squares fit the three terms of a plane; the product leaves 0.002 · 50² / 4
+            // of 100.
             assert_relative(flat[(x, y)].into(), bright, 0.05);
         }
     }

@@ -1,11 +1,11 @@
 use glam::{DMat3, DVec2, DVec3};
 use nalgebra::{DMatrix, SymmetricEigen};
 
-/// Returns the projective map of the plane that takes `from` to `to` best, or `None` if the points leave
-/// it open.
+/// Returns the projective map of the plane that takes `from` to `to` best, or `None` if the points
+/// leave it open.
 ///
-/// The direct linear transform on points that are first moved to their mean and scaled to a mean distance
-/// of √2 from it.
+/// The direct linear transform on points that are first moved to their mean and scaled to a mean
+/// distance of √2 from it.
 ///
 /// # References
 ///
@@ -62,7 +62,8 @@ mod tests {
         let to: Vec<_> = from.iter().map(|&p| mapped(map, p)).collect();
         let found = homography(&from, &to).unwrap();
         for (from, to) in from.iter().zip(to) {
-            // The eigenvector of a squared matrix: roots of rounding, 1e-8, of a spread of 100 pixels.
+            // The eigenvector of a squared matrix: roots of rounding, 1e-8, of a spread of 100
+            // pixels.
             assert!(mapped(found, *from).distance(to) < 1e-5, "{from}");
         }
         assert!(homography(&from[..3], &from[..3]).is_none(), "three points");

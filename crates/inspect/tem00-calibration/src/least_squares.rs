@@ -30,12 +30,13 @@ pub(super) struct Solution<S> {
     pub covariance: DMatrix<f64>,
 }
 
-/// Finds the state of least squares near `start`, with the variance of a residual from their scatter.
+/// Finds the state of least squares near `start`, with the variance of a residual from their
+/// scatter.
 ///
 /// # Errors
 ///
-/// Returns an error if the start is not possible, if the search does not end, or if the residuals leave
-/// a direction of the state open.
+/// Returns an error if the start is not possible, if the search does not end, or if the residuals
+/// leave a direction of the state open.
 pub(super) fn minimise<R: Residuals>(
     problem: &R,
     start: R::State,

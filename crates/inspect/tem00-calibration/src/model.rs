@@ -55,7 +55,8 @@ pub(super) struct Bundle<'a> {
 const FOCUS: f64 = 1.0;
 
 impl CameraModel {
-    /// Returns the camera in its own axes, sharp at `focus_distance`, or `None` if it is not possible.
+    /// Returns the camera in its own axes, sharp at `focus_distance`, or `None` if it is not
+    /// possible.
     pub(super) fn camera(
         &self,
         intrinsics: &[f64; INTRINSICS],

@@ -8,16 +8,18 @@ use tem00_triangulation::{TriangulationError, Triangulator};
 /// The number of parameters within the camera, which come first.
 pub(super) const INTRINSICS: usize = 8;
 
-/// The fraction of the standard uncertainty of a parameter by which it is changed to see what that does.
+/// The fraction of the standard uncertainty of a parameter by which it is changed to see what that
+/// does.
 ///
-/// The error of the central difference is in the order of its square, and rounding that of 1e−16 by it.
+/// The error of the central difference is in the order of its square, and rounding that of 1e−16 by
+/// it.
 const SHARE: f64 = 1e-3;
 
 /// The cameras that differ from a calibrated one in a single parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Perturbations {
-    /// For each parameter of the camera that is uncertain: its position, the cameras with less and more of
-    /// it, and the difference between them.
+    /// For each parameter of the camera that is uncertain: its position, the cameras with less and
+    /// more of it, and the difference between them.
     cameras: Vec<(usize, [Camera; 2], f64)>,
 }
 

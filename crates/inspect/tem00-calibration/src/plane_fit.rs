@@ -6,7 +6,8 @@ use tem00_triangulation::TriangulationError;
 /// Largest distance of a point from the plane, in robust standard deviations.
 const OUTLIER: f64 = 4.0;
 
-/// The minimum ratio of the spread of the points across the line, and of their scatter off the plane.
+/// The minimum ratio of the spread of the points across the line, and of their scatter off the
+/// plane.
 const MIN_SPREAD: f64 = 10.0;
 
 /// A plane through points, by the smallest sum of squared distances.
@@ -63,8 +64,8 @@ impl FittedPlane {
         }
     }
 
-    /// Returns the covariance of the change of the normal and of the offset along it, for points with
-    /// this variance of their distances, in m².
+    /// Returns the covariance of the change of the normal and of the offset along it, for points
+    /// with this variance of their distances, in m².
     pub(super) fn covariance(&self, points: &[DVec3], variance: f64) -> Option<[[f64; 4]; 4]> {
         let (u, v) = self.normal.any_orthonormal_pair();
         let normal_matrix = points
@@ -97,7 +98,8 @@ const OPEN: TriangulationError = TriangulationError::NotDetermined {
     advice: "take the line on boards at different heights",
 };
 
-/// Fits a plane and leaves out points far from it, twice. Returns the plane and whether each point counts.
+/// Fits a plane and leaves out points far from it, twice. Returns the plane and whether each point
+/// counts.
 ///
 /// # Errors
 ///
@@ -133,11 +135,11 @@ fn robust_deviation(mut distances: Vec<f64>) -> f64 {
     *median / 0.674_489_750_196_081_7
 }
 
-/// Returns by how much the variance of a mean of neighbouring distances exceeds that of independent ones:
-/// 1 plus twice the sum of their correlations, up to the first that is not positive.
+/// Returns by how much the variance of a mean of neighbouring distances exceeds that of independent
+/// ones: 1 plus twice the sum of their correlations, up to the first that is not positive.
 ///
-/// Each run is the points of one line in order. What a straight line explains of a run is taken out first:
-/// it belongs to the pose of its board.
+/// Each run is the points of one line in order. What a straight line explains of a run is taken out
+/// first: it belongs to the pose of its board.
 pub(super) fn correlation_factor(runs: &[Vec<f64>]) -> f64 {
     let runs: Vec<_> = runs
         .iter()
@@ -215,18 +217,21 @@ mod tests {
         let plane = FittedPlane::through(&points()).unwrap();
         let covariance = plane.covariance(&points(), 4e-12).unwrap();
         assert_relative(covariance[3][3], 4e-14, 1e-9);
-        // A slope over x: σ² / Σ x², with Σ x² = 100 · 8.25 mm². The normal tilts by it, not along itself.
+        // A slope over x: σ² / Σ x², with Σ x² = 100 · 8.25 mm². The normal tilts by it, not along
+        // itself.
         assert_relative(covariance[0][0], 4e-12 / 825e-6, 1e-9);
         assert_absolute(covariance[1][1], 0.0, 1e-20);
     }
 
     #[test]
     fn doubled_values_count_half() {
-        // A fixed sequence without order: the fractions of multiples of an irrational number's square.
+        // A fixed sequence without order: the fractions of multiples of an irrational number's
+        // square.
         let value = |i: u32| (f64::from(i * i) * 0.618_033_988_749_894_9).fract() - 0.5;
         let single: Vec<_> = (0..400).map(value).collect();
         let double: Vec<_> = (0..800).map(|i| value(i / 2)).collect();
-        // Pairs of equal values correlate by 1/2 with the next; the estimate scatters by a few 1/√400.
+        // Pairs of equal values correlate by 1/2 with the next; the estimate scatters by a few
+        // 1/√400.
         assert_absolute(correlation_factor(&[single]), 1.0, 0.3);
         assert_absolute(correlation_factor(&[double]), 2.0, 0.4);
         assert_eq!(correlation_factor(&[]).to_bits(), 1.0_f64.to_bits());

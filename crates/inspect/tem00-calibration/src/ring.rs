@@ -1,7 +1,8 @@
 use glam::DVec2;
 use tem00_numerics::Grid;
 
-/// The ring of pixels, at a distance of about 5, on which a corner of squares shows: sixteen directions.
+/// The ring of pixels, at a distance of about 5, on which a corner of squares shows: sixteen
+/// directions.
 const RING: [(i32, i32); 16] = [
     (5, 0),
     (5, 2),
@@ -30,14 +31,15 @@ const MAX_CANDIDATES: usize = 3;
 /// The minimum response of a corner, as a fraction of that of a typical one.
 const MIN_RESPONSE: f64 = 0.2;
 
-/// Returns the positions that look like corners where four squares meet, the clearest first: local maxima of
-/// a response to rings that are bright, dark, bright and dark.
+/// Returns the positions that look like corners where four squares meet, the clearest first: local
+/// maxima of a response to rings that are bright, dark, bright and dark.
 ///
 /// `number` corners are expected; what responds much less than these do is left out.
 ///
 /// # References
 ///
-/// - S. Bennett and J. Lasenby, *`ChESS` – Quick and Robust Detection of Chess-board Features*, 2014.
+/// - S. Bennett and J. Lasenby, *`ChESS` – Quick and Robust Detection of Chess-board
+///   Features*, 2014.
 pub(super) fn corner_candidates(image: &Grid<f32>, number: usize) -> Vec<DVec2> {
     let responses = Grid::from_fn(image.width(), image.height(), |x, y| response(image, x, y));
     let mut peaks = peaks(&responses);
@@ -75,8 +77,8 @@ fn response(image: &Grid<f32>, x: usize, y: usize) -> f64 {
     crosses.sum::<f64>() - edges.sum::<f64>() - 16.0 * mean.abs()
 }
 
-/// Returns the positive values that no other within the reach of a ring exceeds, with the middles of
-/// their pixels.
+/// Returns the positive values that no other within the reach of a ring exceeds, with the middles
+/// of their pixels.
 fn peaks(responses: &Grid<f64>) -> Vec<(f64, DVec2)> {
     let mut peaks = Vec::new();
     for y in REACH..responses.height().saturating_sub(REACH) {

@@ -67,8 +67,8 @@ impl Default for BoardSettings {
 ///
 /// # Errors
 ///
-/// Returns a problem, placed in the file, if a value is not possible, or if the keys of a board stand in
-/// an exact calibration.
+/// Returns a problem, placed in the file, if a value is not possible, or if the keys of a board
+/// stand in an exact calibration.
 pub fn read_calibration(document: &Document<'_>) -> Result<CalibrationSettings, Problem> {
     let Some(section) = document.table("calibration", KEYS)? else {
         return Ok(CalibrationSettings::default());

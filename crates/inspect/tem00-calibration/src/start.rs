@@ -8,20 +8,21 @@ use crate::{
 };
 use tem00_triangulation::TriangulationError;
 
-/// Returns states to start from, none of which needs to be near: a pinhole without distortion by two
-/// conditions on the map of each board to its image, once with the principal point and once in the
-/// middle, and the focal length of the data sheet.
+/// Returns states to start from, none of which needs to be near: a pinhole without distortion by
+/// two conditions on the map of each board to its image, once with the principal point and once in
+/// the middle, and the focal length of the data sheet.
 ///
 /// ```text
 /// h₁ᵀ B h₂ = 0,  h₁ᵀ B h₁ = h₂ᵀ B h₂      B = (1 0 −u; 0 1 −v; −u −v u² + v² + f²)
 /// ```
 ///
-/// `h` are the columns of the map, `(u, v)` the principal point and `f` the image distance in pixels. The
-/// pixels are square, so that B has three unknowns instead of five.
+/// `h` are the columns of the map, `(u, v)` the principal point and `f` the image distance in
+/// pixels. The pixels are square, so that B has three unknowns instead of five.
 ///
 /// # References
 ///
-/// - Z. Zhang, *A Flexible New Technique for Camera Calibration*, 2000, eq. (3), (4) and appendix C.
+/// - Z. Zhang, *A Flexible New Technique for Camera Calibration*, 2000, eq. (3), (4) and appendix
+///   C.
 pub(super) fn starts(
     model: &CameraModel,
     board: &[DVec3],
@@ -156,8 +157,8 @@ fn nearest_rotation(matrix: DMat3) -> Option<DMat3> {
     (rotation.determinant() > 0.0).then_some(rotation)
 }
 
-/// Returns a pinhole with a principal point off the middle as one whose axis meets the middle of a tilted
-/// sensor: it makes the same images.
+/// Returns a pinhole with a principal point off the middle as one whose axis meets the middle of a
+/// tilted sensor: it makes the same images.
 ///
 /// ```text
 /// tan τ = |d| / c      d from the middle to the principal point, c the image distance

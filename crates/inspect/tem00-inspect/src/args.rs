@@ -79,7 +79,8 @@ mod tests {
         Cli::command().debug_assert();
     }
 
-    /// Summaries of options begin with a noun or a verb, and use the terms that a reader searches for.
+    /// Summaries of options begin with a noun or a verb, and use the terms that a reader searches
+    /// for.
     #[test]
     fn help_is_written_in_standard_terms() {
         const CLAUSES: &str = "What How Whether Which Where Why Who";

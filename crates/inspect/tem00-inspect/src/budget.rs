@@ -29,8 +29,8 @@ use crate::{
 ///
 /// # Errors
 ///
-/// Returns a failure if the input is not valid, if a file cannot be written, if the user ends it, or, with
-/// all files written, if the set-up measures nothing.
+/// Returns a failure if the input is not valid, if a file cannot be written, if the user ends it,
+/// or, with all files written, if the set-up measures nothing.
 pub(crate) fn run(args: &BudgetArgs, out: &mut impl Write) -> Result<(), Failure> {
     let day = date::today()?;
     let (setup, (read, uncertainty, data)) = args.common.read(SETUP_HELP, |document, setup| {
@@ -81,7 +81,8 @@ fn draw(findings: &Findings<'_>, folder: &Path) -> Result<Vec<String>, Failure> 
     }
 }
 
-/// Writes the certificate into the folder, if the set-up asks for one and there is an uncertainty, and returns its path.
+/// Writes the certificate into the folder, if the set-up asks for one and there is an uncertainty,
+/// and returns its path.
 fn certify(
     data: Option<&CertificateData>,
     findings: &Findings<'_>,

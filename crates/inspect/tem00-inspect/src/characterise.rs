@@ -17,8 +17,8 @@ use crate::args::{CharacteriseArgs, SETUP_HELP};
 ///
 /// # Errors
 ///
-/// Returns a failure if the input is not valid, if a file cannot be written, if the user ends it, or if the set-up
-/// measures nothing.
+/// Returns a failure if the input is not valid, if a file cannot be written, if the user ends it,
+/// or if the set-up measures nothing.
 pub(crate) fn run(args: &CharacteriseArgs, out: &mut impl Write) -> Result<(), Failure> {
     let (setup, text) = args
         .common

@@ -21,8 +21,9 @@ const PART: f64 = 0.1;
 ///
 /// # Errors
 ///
-/// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or if no set-up
-/// keeps every constraint; all files but `best.toml` are written then, if any set-up is possible.
+/// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or if
+/// no set-up keeps every constraint; all files but `best.toml` are written then, if any set-up is
+/// possible.
 pub(crate) fn run(args: &DesignArgs, out: &mut impl Write) -> Result<(), Failure> {
     let (_, (search, uncertainty, text)) = args.common.read(HELP, |document, setup| {
         let search = read_design(document, setup.description())?;

@@ -26,8 +26,8 @@ use tem00_triangulation::TriangulationError;
 
 use crate::args::{Cli, Command};
 
-/// Runs the program with the arguments of a process, the first of which is its own name, and returns
-/// the exit code.
+/// Runs the program with the arguments of a process, the first of which is its own name, and
+/// returns the exit code.
 ///
 /// Takes over Ctrl-C and the termination signals of the process: a second one ends it at once.
 pub fn run(arguments: &[OsString]) -> u8 {

@@ -35,8 +35,8 @@ use self::{
 ///
 /// # Errors
 ///
-/// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or, with all
-/// files written, if no image has a valid point.
+/// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or,
+/// with all files written, if no image has a valid point.
 pub(crate) fn run(args: &LinesArgs, out: &mut impl Write) -> Result<(), Failure> {
     let detector = detector(args)?;
     let calibration = args
@@ -97,8 +97,8 @@ fn detector(args: &LinesArgs) -> Result<LineDetector, Failure> {
     LineDetector::new(settings).map_err(|error| refused(error.to_string()))
 }
 
-/// Finds the lines of one image and writes its files, whose names begin with `target`; returns what was
-/// found, and what the user should know of it.
+/// Finds the lines of one image and writes its files, whose names begin with `target`; returns what
+/// was found, and what the user should know of it.
 fn image(
     path: &Path,
     target: &Path,
@@ -191,8 +191,8 @@ fn with_ending(target: &Path, ending: &str) -> PathBuf {
 struct Names(HashMap<String, usize>);
 
 impl Names {
-    /// Returns the name of an image without its ending; if several images have the same, the second gets
-    /// `_2`, and so on.
+    /// Returns the name of an image without its ending; if several images have the same, the second
+    /// gets `_2`, and so on.
     fn unused(&mut self, path: &Path) -> String {
         let name = output::name(path, "image");
         let mut candidate = name.clone();

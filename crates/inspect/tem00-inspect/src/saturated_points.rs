@@ -5,7 +5,8 @@ use tem00_triangulation::Validity;
 /// The fraction of points on saturated pixels that is told of where it is exceeded.
 const TOLD: f64 = 0.05;
 
-/// The fraction above which the others are no result: what is left is the dark part of what was to be measured.
+/// The fraction above which the others are no result: what is left is the dark part of what was to
+/// be measured.
 const TOO_MANY: f64 = 0.5;
 
 /// Numbers of points of lines.

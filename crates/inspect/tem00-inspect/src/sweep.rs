@@ -30,8 +30,9 @@ const PAUSE: Duration = Duration::from_millis(200);
 ///
 /// # Errors
 ///
-/// Returns a failure if the grid is not valid, if a task fails for another reason than its values, if a file
-/// cannot be written, if the user ends it, if rows are missing for the table, or if all tasks are refused.
+/// Returns a failure if the grid is not valid, if a task fails for another reason than its values,
+/// if a file cannot be written, if the user ends it, if rows are missing for the table, or if all
+/// tasks are refused.
 pub(crate) fn run(args: &SweepArgs, out: &mut impl Write) -> Result<(), Failure> {
     let grid = Grid::read(&args.grid).map_err(|error| {
         wrong_or(&args.grid, Kind::Grid, || {
@@ -75,8 +76,8 @@ fn tasks(args: &SweepArgs, grid: &Grid) -> Result<RangeInclusive<usize>, Failure
 ///
 /// # Errors
 ///
-/// Returns the first failure that is no outcome of a task. Where something was missing that a task needs, the others
-/// are done first.
+/// Returns the first failure that is no outcome of a task. Where something was missing that a task
+/// needs, the others are done first.
 fn do_tasks(sweep: &Sweep<'_>, tasks: RangeInclusive<usize>) -> Result<(), Failure> {
     let progress = Progress::of(tasks.clone().count() as u64, "tasks");
     // What the commands say is in their files.

@@ -30,8 +30,8 @@ const HELP: &str = "a scene needs a camera, a laser with [laser.line], a surface
 ///
 /// # Errors
 ///
-/// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or, with all
-/// files written, if no point is valid.
+/// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or,
+/// with all files written, if no point is valid.
 pub(crate) fn run(args: &TriangulateArgs, out: &mut impl Write) -> Result<(), Failure> {
     let (scene, notes) = MeasurementScene::read(&args.common.scene, args.common.files.reading())
         .map_err(|error| {

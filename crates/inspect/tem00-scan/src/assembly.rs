@@ -96,9 +96,9 @@ impl ScannedPart<'_> {
         &self.profiles
     }
 
-    /// Returns how many profiles of independent speckle the first profile with valid points is worth: 1
-    /// without averaging over frames, and as many as frames if each has speckle of its own; `None` if no
-    /// profile has any.
+    /// Returns how many profiles of independent speckle the first profile with valid points is
+    /// worth: 1 without averaging over frames, and as many as frames if each has speckle of its
+    /// own; `None` if no profile has any.
     pub fn effective_frames(&self) -> Option<f64> {
         let frames = self.measurement.settings().average.frames;
         if frames > 1 {
@@ -109,14 +109,14 @@ impl ScannedPart<'_> {
         points.any(MeasuredPoint::is_valid).then_some(1.0)
     }
 
-    /// Returns what becomes of the speckle of the line from one frame to the next: of the first frame for
-    /// which the law has a value, or `None` without speckle and without such a frame.
+    /// Returns what becomes of the speckle of the line from one frame to the next: of the first
+    /// frame for which the law has a value, or `None` without speckle and without such a frame.
     pub const fn speckle_change(&self) -> Option<&SpeckleChange> {
         self.speckle_change.as_ref()
     }
 
-    /// Returns the heights on a grid: of squares of the part if the scan has a pitch, otherwise of columns
-    /// and profiles.
+    /// Returns the heights on a grid: of squares of the part if the scan has a pitch, otherwise of
+    /// columns and profiles.
     ///
     /// # Errors
     ///

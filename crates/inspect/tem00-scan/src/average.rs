@@ -9,15 +9,15 @@ use crate::{
 
 /// Correlation, by speckle, of the line's position in two columns of two frames.
 pub trait SpeckleCorrelation {
-    /// Returns the correlation of the positions in columns that lie `columns` apart, the second in the
-    /// frame `later` frames after the first.
+    /// Returns the correlation of the positions in columns that lie `columns` apart, the second in
+    /// the frame `later` frames after the first.
     fn between(&self, columns: i64, later: u32) -> f64;
 }
 
 /// Averages the profiles of consecutive frames, and neighbouring columns of them, into one.
 ///
-/// Each mean takes the valid points of its columns and frames, of several in a column the brightest, and
-/// carries the uncertainty of a mean of correlated numbers:
+/// Each mean takes the valid points of its columns and frames, of several in a column the
+/// brightest, and carries the uncertainty of a mean of correlated numbers:
 ///
 /// ```text
 /// speckle          Σ u_a u_b ρ_ab / n²      ρ the correlation of the speckle between columns and frames,
@@ -26,9 +26,9 @@ pub trait SpeckleCorrelation {
 /// PRNU, DSNU       the same pixels in every frame: only columns average
 /// ```
 ///
-/// A pattern that has moved across the line by about its width moves it the other way: the law has ρ < 0 for
-/// such frames, and a mean over them is better than one over as many independent patterns. Nothing is counted on
-/// that, for it needs a motion known to a part of the line's width.
+/// A pattern that has moved across the line by about its width moves it the other way: the law has
+/// ρ < 0 for such frames, and a mean over them is better than one over as many independent
+/// patterns. Nothing is counted on that, for it needs a motion known to a part of the line's width.
 ///
 /// With one frame and one column all points are returned as they are.
 pub fn averaged_profile(
@@ -65,8 +65,8 @@ pub fn brightest_points(frame: &MeasuredFrame) -> impl Iterator<Item = &Measured
 
 /// Returns the mean of points, each with the frame it was seen in, or `None` without any.
 ///
-/// It carries the uncertainty of a mean of correlated numbers, as [`averaged_profile`] says; what else it
-/// has is the mean, too, or that of the middle one of the points.
+/// It carries the uncertainty of a mean of correlated numbers, as [`averaged_profile`] says; what
+/// else it has is the mean, too, or that of the middle one of the points.
 pub fn mean_point(
     members: &[(u32, &MeasuredPoint)],
     speckle: &impl SpeckleCorrelation,

@@ -23,7 +23,8 @@ const TILTS: [f64; 3] = [0.436, 0.327, 0.218];
 /// The golden ratio less one.
 const GOLDEN: f64 = 0.618_033_988_749_895;
 
-/// The turn of the axis of tilt from board to board, in radians: the golden angle, which never repeats.
+/// The turn of the axis of tilt from board to board, in radians: the golden angle, which never
+/// repeats.
 const TURN: f64 = 2.399_963_229_728_653;
 
 /// Greatest distance of the line from the middle of a board, as a fraction of its height.
@@ -51,13 +52,13 @@ pub struct BoardPlan {
 impl BoardPlan {
     /// Plans the poses of a board before the camera of a scene, in the light of its first laser.
     ///
-    /// The boards stand about the middle of the image, at different depths, so that their lines span the
-    /// laser plane; all but the first are tilted by up to 25° about different axes.
+    /// The boards stand about the middle of the image, at different depths, so that their lines
+    /// span the laser plane; all but the first are tilted by up to 25° about different axes.
     ///
     /// # Errors
     ///
-    /// Returns an error if the scene has no laser, if its plane is not seen in the middle of the image, or
-    /// if a board with the squares asked for is not whole in the image.
+    /// Returns an error if the scene has no laser, if its plane is not seen in the middle of the
+    /// image, or if a board with the squares asked for is not whole in the image.
     pub fn new(scene: &Scene, settings: &BoardSettings) -> Result<Self, ScanError> {
         let laser = scene.lasers.first().ok_or(TriangulationError::TooFew {
             what: "lasers",
@@ -93,8 +94,8 @@ impl BoardPlan {
         &self.poses
     }
 
-    /// Returns the scene of a board under a point light at the camera, and that of the board under the
-    /// laser.
+    /// Returns the scene of a board under a point light at the camera, and that of the board under
+    /// the laser.
     ///
     /// # Errors
     ///
@@ -120,7 +121,8 @@ impl BoardPlan {
     }
 }
 
-/// The squares of one parity as a surface; the bright ones have a margin of a square about the board.
+/// The squares of one parity as a surface; the bright ones have a margin of a square about the
+/// board.
 fn surface(board: &Checkerboard, pose: &RigidMotion, parity: usize) -> Result<Surface, ScanError> {
     let [columns, rows] = board.corners().map(|corners| corners + 3);
     let is_margin = |i: usize, j: usize| i == 0 || j == 0 || i + 1 == columns || j + 1 == rows;
@@ -207,8 +209,8 @@ impl Stage {
     fn pose(&self, board: &Checkerboard, number: usize) -> Result<RigidMotion, Refusal> {
         let step = number as f64;
         let angle = TURN * step;
-        // The first board is not tilted and stands in the middle. The depths of the others, from −1 to 1, go
-        // by the multiples of an irrational number.
+        // The first board is not tilted and stands in the middle. The depths of the others, from −1
+        // to 1, go by the multiples of an irrational number.
         let (tilt, depth) = match number {
             0 => (0.0, 0.0),
             _ => (TILTS[number % 3], 2.0 * (GOLDEN * step).fract() - 1.0),

@@ -58,9 +58,9 @@ pub struct MeasuredPoint {
 pub struct IndirectLight {
     /// Its part of the light in the window about the line, from 0 to 1.
     pub fraction: f64,
-    /// What it moves the line by, in pixels down: an error that no repetition shows, whose size counts as a standard
-    /// uncertainty. It is the distance, without noise, from the nearest line in the column that other light makes; half of the
-    /// window of the detector if there is none.
+    /// What it moves the line by, in pixels down: an error that no repetition shows, whose size
+    /// counts as a standard uncertainty. It is the distance, without noise, from the nearest line
+    /// in the column that other light makes; half of the window of the detector if there is none.
     pub shift: f64,
     /// Whether the line is of such light alone: no other is within half of the window.
     pub alone: bool,
@@ -72,26 +72,27 @@ impl MeasuredPoint {
         DVec3::from_array(DVec3::AXES.map(|axis| self.uncertainty_along(axis)))
     }
 
-    /// Returns the standard uncertainty along a direction of length 1, in metres: that of the position of the
-    /// line and that of the calibration together.
+    /// Returns the standard uncertainty along a direction of length 1, in metres: that of the
+    /// position of the line and that of the calibration together.
     pub fn uncertainty_along(&self, direction: DVec3) -> f64 {
         self.line_uncertainty_along(direction)
             .hypot(self.calibration_uncertainty_along(direction))
     }
 
-    /// Returns the standard uncertainty of the position of the line, in pixels, by noise and indirect light.
+    /// Returns the standard uncertainty of the position of the line, in pixels, by noise and
+    /// indirect light.
     pub fn position_uncertainty(&self) -> f64 {
         self.noise.total().sqrt().hypot(self.indirect.shift)
     }
 
-    /// Returns the standard uncertainty along a direction of length 1 that comes from the position of the
-    /// line, in metres.
+    /// Returns the standard uncertainty along a direction of length 1 that comes from the position
+    /// of the line, in metres.
     pub fn line_uncertainty_along(&self, direction: DVec3) -> f64 {
         self.position_uncertainty() * self.per_pixel.dot(direction).abs()
     }
 
-    /// Returns the standard uncertainty along a direction of length 1 that comes from the calibration, in
-    /// metres. It is the same error for all points: it does not average out.
+    /// Returns the standard uncertainty along a direction of length 1 that comes from the
+    /// calibration, in metres. It is the same error for all points: it does not average out.
     pub fn calibration_uncertainty_along(&self, direction: DVec3) -> f64 {
         // A variance of rounding errors may turn out negative.
         direction.dot(self.calibration * direction).max(0.0).sqrt()
@@ -109,7 +110,8 @@ pub(super) struct FrameContext<'a> {
     pub(super) sensor: &'a Sensor,
     pub(super) detector: &'a LineDetector,
     pub(super) calibration: &'a Calibration,
-    /// The covariance that is added to that of the calibration, in m², in the coordinates of the part.
+    /// The covariance that is added to that of the calibration, in m², in the coordinates of the
+    /// part.
     pub(super) further: DMat3,
     /// `None` without speckle.
     pub(super) speckle: Option<&'a ImageSpeckle>,
@@ -173,8 +175,8 @@ impl FrameContext<'_> {
         profile.iter().filter_map(measured).collect()
     }
 
-    /// Returns how speckle correlates the position of the line in neighbouring columns, as the pattern
-    /// has changed: for columns from −n to n apart.
+    /// Returns how speckle correlates the position of the line in neighbouring columns, as the
+    /// pattern has changed: for columns from −n to n apart.
     ///
     /// The middle one of the valid points stands for all. A slope of the line makes the correlation
     /// shorter than this; it is left out.
@@ -243,8 +245,8 @@ struct NoiseFreeFrame {
     usual_width: f64,
 }
 
-/// The width, in pixels and in usual widths, below both of which an edge must have cut the line: two
-/// pixels of equal light are 2.7 wide, and slopes of the part seldom halve a line.
+/// The width, in pixels and in usual widths, below both of which an edge must have cut the line:
+/// two pixels of equal light are 2.7 wide, and slopes of the part seldom halve a line.
 const SLIVER: (f64, f64) = (3.0, 0.5);
 
 impl NoiseFreeFrame {
@@ -326,8 +328,8 @@ impl NoiseFreeFrame {
     /// Tells whether an edge of the part cuts the line at a point, or there would be none without
     /// noise.
     ///
-    /// First order would say that such a position is known very well, as little light moves little; it is the
-    /// position of the edge, and not of the line.
+    /// First order would say that such a position is known very well, as little light moves little;
+    /// it is the position of the edge, and not of the line.
     fn is_sliver(&self, seen: &ProfilePoint, reach: f64) -> bool {
         let (pixels, usual) = SLIVER;
         let narrow = pixels.min(usual * self.usual_width);
@@ -335,8 +337,8 @@ impl NoiseFreeFrame {
             .is_none_or(|line| line.width < narrow)
     }
 
-    /// The light in the column of a point, and how its position depends on it: as without speckle where
-    /// there would be a line, too.
+    /// The light in the column of a point, and how its position depends on it: as without speckle
+    /// where there would be a line, too.
     fn column(&self, context: &FrameContext<'_>, seen: &ProfilePoint) -> Column {
         let take = |grid: &Grid<f32>| -> Vec<f32> {
             (0..grid.height()).map(|y| grid[(seen.column, y)]).collect()

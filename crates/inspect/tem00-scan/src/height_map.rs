@@ -82,19 +82,19 @@ impl HeightMap {
         map
     }
 
-    /// Sorts points into square cells of a side of `pitch` metres along the first two axes; heights are
-    /// along the third. All are of length 1 and square to each other.
+    /// Sorts points into square cells of a side of `pitch` metres along the first two axes; heights
+    /// are along the third. All are of length 1 and square to each other.
     ///
-    /// The points with the smallest lengths lie in the middle of the first cells, so that of profiles
-    /// that are one pitch apart each lies in the middle of a row of its own.
+    /// The points with the smallest lengths lie in the middle of the first cells, so that of
+    /// profiles that are one pitch apart each lies in the middle of a row of its own.
     ///
-    /// A cell holds the means of its points, and the root mean square of their uncertainties: points
-    /// of one cell share their speckle, so that their mean is hardly better than one.
+    /// A cell holds the means of its points, and the root mean square of their uncertainties:
+    /// points of one cell share their speckle, so that their mean is hardly better than one.
     ///
     /// # Errors
     ///
-    /// Returns an error if there are no valid points, if the pitch is not positive and finite, or if the map
-    /// would have more than 2²⁴ cells.
+    /// Returns an error if there are no valid points, if the pitch is not positive and finite, or
+    /// if the map would have more than 2²⁴ cells.
     pub fn of_points(
         profiles: &[Vec<MeasuredPoint>],
         [across, along, height]: [DVec3; 3],
@@ -158,8 +158,8 @@ pub(super) fn check_pitch(pitch: f64) -> Result<(), TriangulationError> {
     Ok(check::positive("pitch", pitch, "m").map(drop)?)
 }
 
-/// The lower corner of a grid that begins half a cell below all positions, in metres, and its number
-/// of cells.
+/// The lower corner of a grid that begins half a cell below all positions, in metres, and its
+/// number of cells.
 fn extent(
     positions: impl Iterator<Item = [f64; 2]>,
     pitch: f64,

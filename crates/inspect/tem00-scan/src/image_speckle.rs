@@ -14,17 +14,18 @@ pub(super) struct ImageSpeckle {
     middle: SensorSpeckle,
     /// The covariances in the middle of the image.
     table: SpeckleTable,
-    /// Those of one column at the corners of `CELLS`² cells of the image, unless they are the same all over it.
+    /// Those of one column at the corners of `CELLS`² cells of the image, unless they are the same
+    /// all over it.
     columns: Option<Grid<SpeckleTable>>,
 }
 
-/// Cells along each side of the image, between whose corners covariances are interpolated: with a sensor tilted by 7° within
-/// 10⁻⁵ of the variance.
+/// Cells along each side of the image, between whose corners covariances are interpolated: with a
+/// sensor tilted by 7° within 10⁻⁵ of the variance.
 const CELLS: usize = 4;
 
 impl ImageSpeckle {
-    /// Takes the light of a wavelength, in metres, to have a variance of the speckle factor, in pixels with
-    /// a sensitive part.
+    /// Takes the light of a wavelength, in metres, to have a variance of the speckle factor, in
+    /// pixels with a sensitive part.
     ///
     /// # Errors
     ///

@@ -3,8 +3,9 @@
 //! # Main types
 //!
 //! A [`MeasurementScene`] is read from a scene file with the sections `[sensor]`, `[detector]`,
-//! `[calibration]` and `[scan]`. A [`Measurement`] of it gives a [`MeasuredFrame`] per frame, a [`Scan`]
-//! puts them together, and a [`HeightMap`] lays them out. [`calibrate_scene`] renders and evaluates boards.
+//! `[calibration]` and `[scan]`. A [`Measurement`] of it gives a [`MeasuredFrame`] per frame, a
+//! [`Scan`] puts them together, and a [`HeightMap`] lays them out. [`calibrate_scene`] renders and
+//! evaluates boards.
 //!
 //! # Conventions
 //!

@@ -39,18 +39,18 @@ pub struct Measurement {
 }
 
 impl Measurement {
-    /// Prepares to measure a scene, with the camera and the laser plane known exactly; for a calibration
-    /// that is estimated see [`with_calibration`](Self::with_calibration).
+    /// Prepares to measure a scene, with the camera and the laser plane known exactly; for a
+    /// calibration that is estimated see [`with_calibration`](Self::with_calibration).
     ///
-    /// The render integrates over the sensitive part of each pixel. The first laser draws the line that is
-    /// triangulated; others only add their light.
+    /// The render integrates over the sensitive part of each pixel. The first laser draws the line
+    /// that is triangulated; others only add their light.
     ///
     /// # Errors
     ///
-    /// Returns an error if the first laser is missing or draws no line, if the line runs up and down in the
-    /// image, if the scene asks for a part of the image, another filter than the pixel or light followed
-    /// from the lasers, if a sensor, a detector or the settings of the scan are not possible, or if parts
-    /// move in a way that no scan does.
+    /// Returns an error if the first laser is missing or draws no line, if the line runs up and
+    /// down in the image, if the scene asks for a part of the image, another filter than the pixel
+    /// or light followed from the lasers, if a sensor, a detector or the settings of the scan are
+    /// not possible, or if parts move in a way that no scan does.
     pub fn new(measured: MeasurementScene) -> Result<Self, ScanError> {
         let MeasurementScene {
             mut scene,
@@ -133,8 +133,8 @@ impl Measurement {
         self.speckle.middle()
     }
 
-    /// Returns the directions across the line of sight's column, along the scan and of height: along the
-    /// line to the right in the image, onwards, and up.
+    /// Returns the directions across the line of sight's column, along the scan and of height:
+    /// along the line to the right in the image, onwards, and up.
     pub fn axes(&self) -> [DVec3; 3] {
         let height = self.scan.height;
         let line =
@@ -148,8 +148,8 @@ impl Measurement {
 
     /// Renders a frame, exposes the sensor, finds the line and places its points.
     ///
-    /// Without a `speckle` model the light carries no speckle. The noise of the sensor is drawn from the
-    /// seed of the scene and the number of the frame. `progress` and `cancel` are those of
+    /// Without a `speckle` model the light carries no speckle. The noise of the sensor is drawn
+    /// from the seed of the scene and the number of the frame. `progress` and `cancel` are those of
     /// [`render_frame`]; the result has the same bits for any number of threads.
     ///
     /// # Errors
@@ -186,8 +186,9 @@ impl Measurement {
         context.measure(exposure, frame, seed)
     }
 
-    /// Measures what a frame showed once more, where nothing has moved since: the light is the same, the noise of the
-    /// sensor is drawn anew, from the seed of the scene and the `number` of the repetition.
+    /// Measures what a frame showed once more, where nothing has moved since: the light is the
+    /// same, the noise of the sensor is drawn anew, from the seed of the scene and the `number` of
+    /// the repetition.
     ///
     /// # Errors
     ///
@@ -204,8 +205,8 @@ impl Measurement {
         Ok(repeated)
     }
 
-    /// Returns how speckle correlates the positions of the line between a frame and those that follow, up
-    /// to `frames` of them together, by the law of its motion and decorrelation.
+    /// Returns how speckle correlates the positions of the line between a frame and those that
+    /// follow, up to `frames` of them together, by the law of its motion and decorrelation.
     pub fn frame_correlation(&self, first: &MeasuredFrame, frames: u32) -> FrameCorrelation {
         let context = self.context(first.frame, first.reference_point.is_some());
         let table = |later: u32| match self.speckle_change(first, later) {
@@ -217,8 +218,8 @@ impl Measurement {
     }
 
     /// Returns what has become of the speckle of the line a number of frames later, by the law that
-    /// frames are rendered with; `None` without speckle and where that law has no value, so that each
-    /// frame has speckle of its own.
+    /// frames are rendered with; `None` without speckle and where that law has no value, so that
+    /// each frame has speckle of its own.
     ///
     /// The point in the middle of the profile stands for all.
     pub fn speckle_change(&self, first: &MeasuredFrame, later: u32) -> Option<SpeckleChange> {
@@ -246,7 +247,8 @@ impl Measurement {
         DMat3::from_cols(height.x * height, height.y * height, height.z * height)
     }
 
-    /// The middle point of the profile in the world, with the normal that the render has seen there.
+    /// The middle point of the profile in the world, with the normal that the render has seen
+    /// there.
     fn reference_point(
         &self,
         measured: &MeasuredFrame,
@@ -333,8 +335,8 @@ fn variance(speckle: &SurfaceSpeckle) -> f64 {
     0.5 * (1.0 + speckle.polarisation * speckle.polarisation) / f64::from(speckle.patterns)
 }
 
-/// The grey value at which a pixel may be saturated, four standard deviations of its noise in the dark
-/// below a full well.
+/// The grey value at which a pixel may be saturated, four standard deviations of its noise in the
+/// dark below a full well.
 fn saturation(sensor: &SensorDescription) -> f64 {
     let noise = 4.0 * sensor.dark_noise.hypot(sensor.dsnu);
     let full = sensor.black_level + sensor.gain * (sensor.full_well - noise);

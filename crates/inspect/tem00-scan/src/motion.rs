@@ -4,8 +4,8 @@ use crate::ScanError;
 
 /// The moving object in a scan: the part under the line, or the sensor head over the part.
 ///
-/// The head is the camera with its laser. Points that it measures are brought to where the part stands in
-/// its description, so that the profiles of all frames fit together.
+/// The head is the camera with its laser. Points that it measures are brought to where the part
+/// stands in its description, so that the profiles of all frames fit together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScanMotion {
     part: Trajectory,
@@ -19,8 +19,8 @@ impl ScanMotion {
     ///
     /// # Errors
     ///
-    /// Returns an error if no surface has the name, if surfaces move differently and none is named, or
-    /// if camera and laser do not move as one head.
+    /// Returns an error if no surface has the name, if surfaces move differently and none is named,
+    /// or if camera and laser do not move as one head.
     pub fn of_scene(scene: &Scene, surface: Option<&str>) -> Result<Self, ScanError> {
         let surfaces = match surface {
             Some(name) => named(scene, name)?,
@@ -37,13 +37,14 @@ impl ScanMotion {
         })
     }
 
-    /// Returns the indices of the surfaces that belong to the part; all of a scene where none moves.
+    /// Returns the indices of the surfaces that belong to the part; all of a scene where none
+    /// moves.
     pub fn surfaces(&self) -> &[usize] {
         &self.surfaces
     }
 
-    /// Returns the motion that takes what the head sees in a frame, in the coordinates of the head as the
-    /// scene describes it, to the part as the scene describes it.
+    /// Returns the motion that takes what the head sees in a frame, in the coordinates of the head
+    /// as the scene describes it, to the part as the scene describes it.
     pub fn to_part(&self, frame: u32) -> RigidMotion {
         let world = self.head.pose_at(frame);
         world.then(&self.part.pose_at(frame).inverse())

@@ -9,10 +9,10 @@ const PROPERTIES: [&str; 5] = ["sigma_x", "sigma_y", "sigma_z", "sigma", "intens
 
 /// Writes the valid points of profiles as a binary PLY file.
 ///
-/// Each vertex has its coordinates `x`, `y`, `z` in metres (`double`), the standard uncertainties of these,
-/// `sigma_x`, `sigma_y`, `sigma_z`, the standard uncertainty along the trace of the line of sight in the laser
-/// plane, `sigma`, all in metres, the grey values of the line, summed, `intensity`, and the `frame` as the index
-/// of its profile.
+/// Each vertex has its coordinates `x`, `y`, `z` in metres (`double`), the standard uncertainties
+/// of these, `sigma_x`, `sigma_y`, `sigma_z`, the standard uncertainty along the trace of the line
+/// of sight in the laser plane, `sigma`, all in metres, the grey values of the line, summed,
+/// `intensity`, and the `frame` as the index of its profile.
 ///
 /// # Errors
 ///
@@ -40,8 +40,8 @@ pub fn write_ply(profiles: &[Vec<MeasuredPoint>], out: &mut impl Write) -> io::R
 
 /// Writes the valid points of profiles as a binary PCD file, version 0.7.
 ///
-/// The fields are those of [`write_ply`], but coordinates are single: they are rounded by up to 6e-8 of their
-/// value. The Point Cloud Library reads no others.
+/// The fields are those of [`write_ply`], but coordinates are single: they are rounded by up to
+/// 6e-8 of their value. The Point Cloud Library reads no others.
 ///
 /// # Errors
 ///

@@ -12,9 +12,9 @@ use crate::airy_pattern::airy_pattern;
 /// c(Δ) = C² |2 J₁(π|M Δ|) / π|M Δ||²      M = (D/λ) ∂t/∂x
 /// ```
 ///
-/// with the tangents t of the chief rays, at the image points x. On a plain sensor speckle is as wide
-/// everywhere and in all directions; a tilt of the sensor and a lens that distorts stretch it as they
-/// stretch the image.
+/// with the tangents t of the chief rays, at the image points x. On a plain sensor speckle is as
+/// wide everywhere and in all directions; a tilt of the sensor and a lens that distorts stretch it
+/// as they stretch the image.
 ///
 /// # Validity
 ///
@@ -25,8 +25,8 @@ use crate::airy_pattern::airy_pattern;
 /// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007: the autocovariance of speckle in an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorSpeckle {
-    /// M, how many speckles a pixel to the right (first column) and a pixel down (second) are, along the
-    /// axes of the camera.
+    /// M, how many speckles a pixel to the right (first column) and a pixel down (second) are,
+    /// along the axes of the camera.
     pub speckles_per_pixel: DMat2,
     /// The side of the sensitive part of a pixel, in pixels.
     pub sensitive_side: f64,
@@ -55,7 +55,8 @@ impl SensorSpeckle {
         self.variance * sum
     }
 
-    /// The distances, in pixels, at which the integral along an axis takes its values, with the weights.
+    /// The distances, in pixels, at which the integral along an axis takes its values, with the
+    /// weights.
     fn nodes(&self, axis: usize, displacement: f64) -> Vec<(f64, f64)> {
         // Each panel is at most half a speckle wide, to either side of the kink of the triangle.
         let panels = (2.0 * self.sensitive_side / self.size()[axis])

@@ -9,10 +9,11 @@ use crate::height_map::check_pitch;
 pub struct ScanSettings {
     /// The name of the surface whose motion the points are freed from; `None` for those that move.
     pub surface: Option<String>,
-    /// The direction in which heights are counted, of length 1: in the world, as the part stands in its
-    /// description.
+    /// The direction in which heights are counted, of length 1: in the world, as the part stands in
+    /// its description.
     pub height: DVec3,
-    /// The side of a square cell of the height map, in metres; `None` for a map of columns by profiles.
+    /// The side of a square cell of the height map, in metres; `None` for a map of columns by
+    /// profiles.
     pub pitch: Option<f64>,
     /// The numbers of profiles and points that are averaged.
     pub average: Averaging,

@@ -54,7 +54,8 @@ fn laser(setup: &Setup) -> Result<Laser, ScanError> {
             m_squared: 1.0,
             fan: FanGeometry {
                 fan_angle: 2.0 * half_fan,
-                // A lens that receives a round beam fans it out from a point where it would be this wide.
+                // A lens that receives a round beam fans it out from a point where it would be this
+                // wide.
                 apex_offset: description.line_beam()?.radius_at(focus_distance) / half_fan.tan(),
                 focus_distance,
                 focus_curve: FocusCurve::default(),

@@ -34,10 +34,10 @@ const MIN_ROWS: usize = 16;
 
 /// A set-up in front of which artefacts are rendered.
 ///
-/// The artefacts are of the set-up's surface, under its line; camera and laser plane are known exactly. A profile is one
-/// frame, its columns averaged as the set-up says. The tracer renders the light on an artefact as a lens without blur sees it,
-/// in parts of pixels; a [`LineImage`] makes of it what the lens does, with diffraction, defocus and speckle as waves have
-/// them.
+/// The artefacts are of the set-up's surface, under its line; camera and laser plane are known
+/// exactly. A profile is one frame, its columns averaged as the set-up says. The tracer renders the
+/// light on an artefact as a lens without blur sees it, in parts of pixels; a [`LineImage`] makes
+/// of it what the lens does, with diffraction, defocus and speckle as waves have them.
 ///
 /// # Validity
 ///
@@ -62,8 +62,8 @@ impl fmt::Debug for SetupSensor<'_> {
 }
 
 impl<'a> SetupSensor<'a> {
-    /// Creates a sensor that renders so many samples per pixel. `progress` is told the name of the artefact after each
-    /// profile.
+    /// Creates a sensor that renders so many samples per pixel. `progress` is told the name of the
+    /// artefact after each profile.
     pub const fn new(
         setup: &'a Setup,
         samples_per_pixel: u32,
@@ -132,7 +132,8 @@ impl<'a> SetupSensor<'a> {
         })
     }
 
-    /// Returns the light that falls on the sensor in a frame of a scene, with the middle of the artefact's heights at `height`.
+    /// Returns the light that falls on the sensor in a frame of a scene, with the middle of the
+    /// artefact's heights at `height`.
     fn exposure(
         &self,
         measurement: &Measurement,
@@ -163,7 +164,8 @@ impl<'a> SetupSensor<'a> {
         })
     }
 
-    /// Returns the camera with the part of the image in which the line on an artefact may be, at any of its places.
+    /// Returns the camera with the part of the image in which the line on an artefact may be, at
+    /// any of its places.
     fn camera(&self, artefact: &Artefact, places: &[DVec3]) -> Result<Camera, ScanError> {
         let whole_image = self.setup.camera();
         let column = self.setup.field_width() / whole_image.width() as f64;

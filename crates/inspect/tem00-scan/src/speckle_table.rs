@@ -36,8 +36,8 @@ const REACH: f64 = 12.0;
 const MOST: usize = 256;
 
 impl SpeckleTable {
-    /// Integrates the covariances for the displacements that differ from `offset`, in pixels to the right
-    /// and down, by whole pixels.
+    /// Integrates the covariances for the displacements that differ from `offset`, in pixels to the
+    /// right and down, by whole pixels.
     pub(super) fn new(speckle: &SensorSpeckle, offset: [f64; 2]) -> Self {
         Self::within(speckle, offset, speckle.size().map(pixels_within_reach))
     }

@@ -31,7 +31,8 @@ fn setup(scheimpflug: bool, plane: &str) -> Setup {
     parse_setup(&text).expect("a set-up")
 }
 
-/// The line as rendered in the middle columns: the electrons of a column, the position and the full width.
+/// The line as rendered in the middle columns: the electrons of a column, the position and the full
+/// width.
 fn rendered(setup: &Setup, height: f64) -> [f64; 3] {
     const COLUMNS: usize = 24;
     let line = setup.line_at(height).expect("the line is seen");
@@ -95,20 +96,20 @@ fn a_setup_predicts_what_is_rendered_of_it() {
         let line = setup.line_at(height).expect("the line is seen");
         let [electrons, position, width] = rendered(&setup, height);
         let case = format!("Scheimpflug {scheimpflug}, height {height}{plane}");
-        // 256 independent samples in each of 24 · 20 pixels of the line: the rms of their spread, 1 or less, by
-        // √123000 is 0.3 %. Lattices leave less. The fan spreads from an apex behind the laser, where it is as
-        // wide as the beam; at 6 mm its line is 3 % shorter.
+        // 256 independent samples in each of 24 · 20 pixels of the line: the rms of their spread, 1
+        // or less, by √123000 is 0.3 %. Lattices leave less. The fan spreads from an apex behind
+        // the laser, where it is as wide as the beam; at 6 mm its line is 3 % shorter.
         let beam_radius = 0.2e-3_f64 * 1.0_f64.hypot(0.2 * 650e-9 / (PI * 0.2e-3 * 0.2e-3));
         let apex_offset = beam_radius * 0.2 / 25e-3;
         let shorter = 1.0 + (apex_offset - height) / 0.2;
         let ratio = electrons * shorter / line.column_electrons;
         assert!((ratio - 1.0).abs() < 0.003, "{case}: {ratio}");
-        // The same samples leave W/4 · 0.3 % of the position. Perspective and, out of focus, the disc across
-        // the tilted plate shift the centroid of a line of 0.4 mm by some (W/L) W.
+        // The same samples leave W/4 · 0.3 % of the position. Perspective and, out of focus, the
+        // disc across the tilted plate shift the centroid of a line of 0.4 mm by some (W/L) W.
         let shift = position - line.position;
         assert!(shift.abs() < 0.1, "{case}: {shift} pixels");
-        // The tracer knows no diffraction, a pixel widens σ² by 1/12, and 1 % is chance. The waist of the
-        // laser's line is at the height 0, 3 % wider it is at no height here.
+        // The tracer knows no diffraction, a pixel widens σ² by 1/12, and 1 % is chance. The waist
+        // of the laser's line is at the height 0, 3 % wider it is at no height here.
         let pixel = 4.0 / 12.0_f64.sqrt();
         let expected = line.projected_thickness.hypot(line.blur).hypot(pixel);
         assert_relative(width, expected, 0.02);

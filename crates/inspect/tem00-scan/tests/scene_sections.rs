@@ -1,4 +1,5 @@
-//! `docs/scene_file.md` and its JSON schema have the keys of the sections that measure, and no others.
+//! `docs/scene_file.md` and its JSON schema have the keys of the sections that measure, and no
+//! others.
 
 #![expect(clippy::expect_used, reason = "a test fails by panicking")]
 

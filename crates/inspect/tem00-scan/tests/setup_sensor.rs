@@ -67,7 +67,8 @@ fn a_flat_is_measured_where_it_stands() {
             assert_relative(points.len() as f64, columns, 0.03);
             // Speckle of some three pixels correlates as many neighbours.
             let error = deviation / (columns / 4.0).sqrt();
-            // Diffraction spreads either end over some speckles, of which the last lit column is one.
+            // Diffraction spreads either end over some speckles, of which the last lit column is
+            // one.
             let off = DVec3::new(mean.x, mean.y + place.y, mean.z).abs();
             let bounds = DVec3::new(2.0 * field.column, 4.0 * error, 4.0 * error);
             assert!(off.cmplt(bounds).all(), "{plane}, {place}: {off}");
@@ -101,7 +102,8 @@ fn artefacts_are_measured_as_they_are_shaped() {
         // Both on one side: the rows beside a line do not reach the heights on the other.
         let places = [DVec3::new(0.0, -1.6e-3, 3e-3), DVec3::new(0.0, 2e-3, 2e-3)];
         for points in profiles_of(&artefact, &setup, &places) {
-            // Walls, ends and grains of speckle take some columns; the shapes differ by 0.2 mm and more.
+            // Walls, ends and grains of speckle take some columns; the shapes differ by 0.2 mm and
+            // more.
             let is_there = |point: &&SurfacePoint| {
                 let DVec3 { x, y, z } = point.position;
                 let height = artefact.height(x, y);
@@ -123,7 +125,8 @@ fn a_field_is_that_of_lens_line_and_means() {
         description.average.columns = columns;
         let setup = Setup::new(description).expect("a set-up");
         let field = SetupSensor::new(&setup, 1, 0, &|_| (), &AtomicBool::new(false)).field();
-        // 320 pixels of 3.45 µm by the magnification f / (L − f) = 1/7; the line of 0.3 mm moves by itself over 0.3 mm / tan 35°.
+        // 320 pixels of 3.45 µm by the magnification f / (L − f) = 1/7; the line of 0.3 mm moves by
+        // itself over 0.3 mm / tan 35°.
         let column = 7.728e-3 / 320.0 * f64::from(columns);
         let found = [
             field.width,
@@ -163,8 +166,8 @@ fn a_repetition_changes_the_noise_of_the_sensor_alone() {
         (0.5 * squares.sum::<f64>() / a.len() as f64).sqrt()
     };
     let budget = Budget::new(&setup).expect("it measures");
-    // Noise goes with the inverse of a column's power, as shot noise, or of its square. The power is a sum of 1/K² equal
-    // grains.
+    // Noise goes with the inverse of a column's power, as shot noise, or of its square. The power
+    // is a sum of 1/K² equal grains.
     let (line, speckle) = (setup.line(), setup.line().speckle_size[1]);
     let radius = 0.5 * line.projected_thickness / speckle;
     let grains = imaged_line_power_contrast(radius, 1.0 / speckle).powi(-2);

@@ -42,8 +42,8 @@ pub struct Characteristics {
     pub grooves: [Option<GrooveResult>; 2],
 }
 
-/// Lets a sensor measure a level flat at several heights, flats that are tilted, a sphere, and grooves of falling width
-/// along both axes.
+/// Lets a sensor measure a level flat at several heights, flats that are tilted, a sphere, and
+/// grooves of falling width along both axes.
 ///
 /// # Errors
 ///

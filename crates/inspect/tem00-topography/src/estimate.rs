@@ -23,8 +23,8 @@ pub struct Extreme {
 /// The groups that repetitions are put into.
 const MAX_GROUPS: usize = 16;
 
-/// Returns the statistic of all repetitions, and its standard uncertainty by leaving out one group of them after the
-/// other. The statistic is called with the numbers of the repetitions that count.
+/// Returns the statistic of all repetitions, and its standard uncertainty by leaving out one group
+/// of them after the other. The statistic is called with the numbers of the repetitions that count.
 pub(crate) fn jackknife(
     repetitions: usize,
     statistic: impl Fn(&[usize]) -> Option<f64>,
@@ -68,15 +68,16 @@ fn normal(t: f64) -> f64 {
     0.5 * libm::erfc(-t * core::f64::consts::FRAC_1_SQRT_2)
 }
 
-/// Returns the expected maximum of the amounts of independent standard normal numbers, E = ∫ 1 − (2Φ(t) − 1)ⁿ dt.
+/// Returns the expected maximum of the amounts of independent standard normal numbers, E = ∫ 1 −
+/// (2Φ(t) − 1)ⁿ dt.
 pub(crate) fn expected_maximum(count: usize) -> f64 {
     let n = count as f64;
     let above = |t: f64| 1.0 - libm::pow(2.0 * normal(t) - 1.0, n);
     integrate(above, [0.0, FAR], 0.5)
 }
 
-/// Returns the expected range of independent standard normal numbers, E = ∫ 1 − Φ(t)ⁿ − (1 − Φ(t))ⁿ dt (L. H. C. Tippett,
-/// Biometrika 17, 364, 1925).
+/// Returns the expected range of independent standard normal numbers, E = ∫ 1 − Φ(t)ⁿ − (1 − Φ(t))ⁿ
+/// dt (L. H. C. Tippett, Biometrika 17, 364, 1925).
 pub(crate) fn expected_range(count: usize) -> f64 {
     let n = count as f64;
     let between = |t: f64| 1.0 - libm::pow(normal(t), n) - libm::pow(normal(-t), n);

@@ -20,17 +20,17 @@ const STEEPEST: f64 = 0.364;
 /// Results of a flat: level, and tilted along and across the profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlatResult {
-    /// The flatness deviation, in metres: the range of the mean heights at 64 places along the profile, less the line of
-    /// least squares through them.
+    /// The flatness deviation, in metres: the range of the mean heights at 64 places along the
+    /// profile, less the line of least squares through them.
     pub flatness: Extreme,
-    /// The measurement noise, in metres: the standard deviation of a height, each repetition on another piece of the flat.
-    /// Speckle belongs to it.
+    /// The measurement noise, in metres: the standard deviation of a height, each repetition on
+    /// another piece of the flat. Speckle belongs to it.
     pub measurement_noise: Estimate,
-    /// The instrument noise, in metres: the standard deviation of a height where nothing moves, from the differences of
-    /// pairs by √2. Speckle stays the same and does not show.
+    /// The instrument noise, in metres: the standard deviation of a height where nothing moves,
+    /// from the differences of pairs by √2. Speckle stays the same and does not show.
     pub instrument_noise: Estimate,
-    /// The flat form, in metres, level and tilted along x and y: the distance of the planes, parallel to that of least
-    /// squares, that enclose 95 % of the points.
+    /// The flat form, in metres, level and tilted along x and y: the distance of the planes,
+    /// parallel to that of least squares, that enclose 95 % of the points.
     pub form: [Estimate; 3],
     /// The slopes of the tilted flats, along x and y.
     pub slopes: [f64; 2],

@@ -17,7 +17,8 @@ const THICKNESSES: [f64; 2] = [4.0, 8.0];
 const PART: f64 = 0.9;
 /// The most copies of a comb side by side.
 const MAX_COPIES: usize = 8;
-/// The columns that grooves across the scan are averaged over, as a part of the profile, and the groups they form.
+/// The columns that grooves across the scan are averaged over, as a part of the profile, and the
+/// groups they form.
 const LENGTH: f64 = 0.25;
 const GROUPS: usize = 16;
 /// The response at the resolution.
@@ -47,14 +48,15 @@ pub struct GrooveResult {
     pub depth: f64,
     /// The responses, from the widest groove to the narrowest.
     pub responses: Vec<GrooveResponse>,
-    /// The topographic spatial resolution, in metres: the width of groove that is measured with half of its depth, between
-    /// neighbouring widths by its logarithm; `None` if no width of the comb is wider and none narrower.
+    /// The topographic spatial resolution, in metres: the width of groove that is measured with
+    /// half of its depth, between neighbouring widths by its logarithm; `None` if no width of the
+    /// comb is wider and none narrower.
     pub resolution: Option<Estimate>,
-    /// The topography fidelity limit, in metres: the width down to which the depths of all grooves are right within a tenth;
-    /// `None` as the resolution.
+    /// The topography fidelity limit, in metres: the width down to which the depths of all grooves
+    /// are right within a tenth; `None` as the resolution.
     pub fidelity_limit: Option<Estimate>,
-    /// The mapping deviation along the axis, in metres: the largest error of the place of a wide groove, half-way
-    /// between the places at which the profile is half as deep as the groove.
+    /// The mapping deviation along the axis, in metres: the largest error of the place of a wide
+    /// groove, half-way between the places at which the profile is half as deep as the groove.
     pub mapping: Option<Extreme>,
 }
 
@@ -225,7 +227,8 @@ impl Comb {
         (!heights.is_empty()).then(|| mean(&heights))
     }
 
-    /// Puts the responses, as a function of the width's number and of the repetitions that count, together.
+    /// Puts the responses, as a function of the width's number and of the repetitions that count,
+    /// together.
     fn result(
         &self,
         field: &Field,
@@ -259,8 +262,8 @@ impl Comb {
     }
 }
 
-/// The width at which a function of the response first turns negative, from the widest on: by the parabola, over the
-/// logarithm of the width, through the widths on both sides and a third one.
+/// The width at which a function of the response first turns negative, from the widest on: by the
+/// parabola, over the logarithm of the width, through the widths on both sides and a third one.
 fn crossing(curve: &[(f64, f64)], margin: impl Fn(f64) -> f64) -> Option<f64> {
     let margins: Vec<f64> = curve.iter().map(|point| margin(point.1)).collect();
     let below = margins.iter().position(|&margin| margin < 0.0)?;

@@ -2,19 +2,24 @@
 //!
 //! # Conventions
 //!
-//! - Lengths in metres. x runs along the profile, y along the scan, z upwards. Points are in the coordinates of the artefact.
-//! - Uncertainties are standard uncertainties of what was measured, from the spread between repetitions (delete-a-group
-//!   jackknife; J. W. Tukey, Ann. Math. Stat. 29, 614, 1958); the artefacts are known exactly.
+//! - Lengths in metres. x runs along the profile, y along the scan, z upwards. Points are in the
+//!   coordinates of the artefact.
+//! - Uncertainties are standard uncertainties of what was measured, from the spread between
+//!   repetitions (delete-a-group jackknife; J. W. Tukey, Ann. Math. Stat. 29, 614, 1958); the
+//!   artefacts are known exactly.
 //!
 //! # Main items
 //!
-//! - [`characterise`] lets a [`ProfileSensor`] measure each [`Artefact`] and returns [`Characteristics`].
-//! - [`Response`], [`FlatResult`], [`SphereResult`] and [`GrooveResult`] are what each artefact says, with the definitions.
+//! - [`characterise`] lets a [`ProfileSensor`] measure each [`Artefact`] and returns
+//!   [`Characteristics`].
+//! - [`Response`], [`FlatResult`], [`SphereResult`] and [`GrooveResult`] are what each artefact
+//!   says, with the definitions.
 //!
 //! # Scope and non-goals
 //!
-//! Sensors of profiles that are moved along y with an exact stage: its errors are not the sensor's. Where the text of a
-//! standard leaves a choice, the definition of this crate is stated at the result.
+//! Sensors of profiles that are moved along y with an exact stage: its errors are not the sensor's.
+//! Where the text of a standard leaves a choice, the definition of this crate is stated at the
+//! result.
 
 mod artefact;
 mod characteristics;

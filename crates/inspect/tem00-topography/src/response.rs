@@ -20,9 +20,11 @@ pub struct Response {
     pub heights: Vec<f64>,
     /// The mean measured heights less these, in metres.
     pub deviations: Vec<f64>,
-    /// The amplification coefficient: the slope of the line of least squares of measured over true heights.
+    /// The amplification coefficient: the slope of the line of least squares of measured over true
+    /// heights.
     pub amplification: Estimate,
-    /// The linearity deviation: the largest distance of a mean measured height from that line, in metres.
+    /// The linearity deviation: the largest distance of a mean measured height from that line, in
+    /// metres.
     pub linearity: Extreme,
 }
 

@@ -34,14 +34,16 @@ pub trait ProfileSensor {
     /// Returns what the sensor reaches.
     fn field(&self) -> Field;
 
-    /// Measures the section y = 0 through an artefact at each of its places: where the origin of the artefact stands, in metres.
+    /// Measures the section y = 0 through an artefact at each of its places: where the origin of
+    /// the artefact stands, in metres.
     ///
-    /// Where a place is the same as that before, nothing moves: a repetition has the same speckle and new noise. Points
-    /// that the sensor does not trust are left out.
+    /// Where a place is the same as that before, nothing moves: a repetition has the same speckle
+    /// and new noise. Points that the sensor does not trust are left out.
     ///
     /// # Errors
     ///
-    /// Returns an error if the sensor cannot measure; an artefact that it does not see has no points.
+    /// Returns an error if the sensor cannot measure; an artefact that it does not see has no
+    /// points.
     fn measure(
         &mut self,
         artefact: &Artefact,

@@ -165,7 +165,8 @@ fn heights_come_back() {
     let truth = bend * 1.35e-3_f64.powi(2) * 28.0 / 3.0;
     is_extreme(response.linearity, truth, 0.25);
     let flat = found.flat.expect("seen");
-    // At 64 places over 0.9 of the profile: from the first, (0.9 · 63/64)², to the middle, (0.9 / 64)².
+    // At 64 places over 0.9 of the profile: from the first, (0.9 · 63/64)², to the middle, (0.9 /
+    // 64)².
     let truth = sag * 0.81 * (63.0_f64.powi(2) - 1.0) / 64.0_f64.powi(2);
     is_extreme(flat.flatness, truth, 0.25);
 }
@@ -182,8 +183,8 @@ fn noise_and_form_come_back() {
     let together = noise[0].hypot(noise[1]);
     is(flat.measurement_noise, together, 0.0);
     is(flat.instrument_noise, noise[1], 0.0);
-    // 95 % of normal numbers lie within ± 1.95996 σ; across a tilted plane heights count less, and the
-    // interval that is the shortest of 14 000 points is 1 % shorter.
+    // 95 % of normal numbers lie within ± 1.95996 σ; across a tilted plane heights count less, and
+    // the interval that is the shortest of 14 000 points is 1 % shorter.
     let slopes = [[0.0, 0.0], [flat.slopes[0], 0.0], [0.0, flat.slopes[1]]];
     for (form, [x, y]) in flat.form.into_iter().zip(slopes) {
         let truth = 2.0 * 1.959_96 * together / x.hypot(y).hypot(1.0);
@@ -209,8 +210,9 @@ fn grooves_come_back() {
     });
     for (result, (blur, shift)) in found.grooves.into_iter().zip(blur.into_iter().zip(shift)) {
         let result = result.expect("seen");
-        // The middle of a groove of width w is seen erf(w / √8 s) deep: half at 1.34898 s, nine tenths at 3.28971 s.
-        // The parabola between widths leaves 0.3 % and 1 %, the point nearest to the middle as much.
+        // The middle of a groove of width w is seen erf(w / √8 s) deep: half at 1.34898 s, nine
+        // tenths at 3.28971 s. The parabola between widths leaves 0.3 % and 1 %, the point nearest
+        // to the middle as much.
         let resolution = result.resolution.expect("crossed");
         is(resolution, 1.348_98 * blur, 0.01);
         let limit = result.fidelity_limit.expect("crossed");
@@ -267,7 +269,8 @@ fn what_is_not_seen_has_no_number_and_profiles_are_counted_before() {
 
 #[test]
 fn a_comb_that_does_not_fit_is_not_measured() {
-    // Twelve widths from 16 columns on, each smaller by √2, and 16 columns of land beside each, over nine tenths.
+    // Twelve widths from 16 columns on, each smaller by √2, and 16 columns of land beside each,
+    // over nine tenths.
     let widths = 16.0 * (1.0 - 1.0 / 64.0) / (1.0 - 0.5_f64.sqrt());
     let shortest = (widths + 12.0 * 16.0) * FIELD.column / 0.9;
     assert_relative(FIELD.shortest_for_grooves(), shortest, 1e-12);

@@ -16,34 +16,37 @@ pub use self::{
 
 /// The uncertainty budget of a height, after the GUM.
 ///
-/// To first order the position of a line moves with the grey values of its column, δy = Σ gᵢ δIᵢ, whatever
-/// the detector; the sensitivities gᵢ are those of the noise-free column. Each source adds a variance
-/// ([`PositionNoise`](crate::PositionNoise)), which the geometry turns into one of height. They are means over
-/// the position of the line within a pixel.
+/// To first order the position of a line moves with the grey values of its column, δy = Σ gᵢ δIᵢ,
+/// whatever the detector; the sensitivities gᵢ are those of the noise-free column. Each source adds
+/// a variance ([`PositionNoise`](crate::PositionNoise)), which the geometry turns into one of
+/// height. They are means over the position of the line within a pixel.
 ///
 /// # Averages
 ///
-/// Over N columns and M frames shot noise and dark noise fall with √(N M), and so does quantisation as
-/// long as the noise exceeds 0.3 grey values, below which all frames round alike (and pixels that are
-/// equally dark, too: then rounding moves a line by less than said). PRNU and DSNU fall
+/// Over N columns and M frames shot noise and dark noise fall with √(N M), and so does quantisation
+/// as long as the noise exceeds 0.3 grey values, below which all frames round alike (and pixels
+/// that are equally dark, too: then rounding moves a line by less than said). PRNU and DSNU fall
 /// with √N: pixels stay what they are from frame to frame. Speckle of neighbouring columns goes
-/// together as far as a speckle reaches; over frames it falls with √M only if each has speckle of its
-/// own. Detector bias and calibration do not average out.
+/// together as far as a speckle reaches; over frames it falls with √M only if each has speckle of
+/// its own. Detector bias and calibration do not average out.
 ///
 /// # Validity
 ///
-/// First order in the fluctuations. Against images that were summed wave by wave the speckle of a centre of gravity is within 5 %
-/// for lines of at least [`LEAST_SPECKLES`](Self::LEAST_SPECKLES) in full width, in and out of focus, in single columns and means of a few; of sixteen it is 3 to 6 % too large. It is too small for
-/// thinner lines, by 14 % at 1.2 speckles and a fifth at 0.8; about a third too large for detectors that look at three
-/// pixels, and half for Steger's, which also looks at neighbouring columns. [`simulate`], whose light interferes
-/// as waves do, tells how far, and whether all columns have a line that can be trusted. Pixels count as linear, also where bright
-/// grains of speckle exceed the sensor's range; see [`Setup::light_level`].
+/// First order in the fluctuations. Against images that were summed wave by wave the speckle of a
+/// centre of gravity is within 5 % for lines of at least [`LEAST_SPECKLES`](Self::LEAST_SPECKLES)
+/// in full width, in and out of focus, in single columns and means of a few; of sixteen it is 3 to
+/// 6 % too large. It is too small for thinner lines, by 14 % at 1.2 speckles and a fifth at 0.8;
+/// about a third too large for detectors that look at three pixels, and half for Steger's, which
+/// also looks at neighbouring columns. [`simulate`], whose light interferes as waves do, tells how
+/// far, and whether all columns have a line that can be trusted. Pixels count as linear, also where
+/// bright grains of speckle exceed the sensor's range; see [`Setup::light_level`].
 ///
 /// The [front page](crate) has an example.
 ///
 /// # References
 ///
-/// - JCGM 100:2008, *Guide to the expression of uncertainty in measurement*, ch. 4 to 6 and annex G.
+/// - JCGM 100:2008, *Guide to the expression of uncertainty in measurement*, ch. 4 to 6 and annex
+///   G.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Budget {
     height: f64,
@@ -54,8 +57,8 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// The full width of a line, in speckles, below which its budget does not hold: a column then has few grains, so that
-    /// its position is far from linear in their light.
+    /// The full width of a line, in speckles, below which its budget does not hold: a column then
+    /// has few grains, so that its position is far from linear in their light.
     pub const LEAST_SPECKLES: f64 = 2.0;
 
     /// Returns the budget of a height at the reference plane.
@@ -63,7 +66,8 @@ impl Budget {
     /// # Errors
     ///
     /// Returns [`TriangulationError::NothingMeasured`] if the line
-    /// [saturates](LightLevel::Saturated) the sensor, or if the detector finds none even without noise.
+    /// [saturates](LightLevel::Saturated) the sensor, or if the detector finds none even without
+    /// noise.
     pub fn new(setup: &Setup) -> Result<Self, TriangulationError> {
         Self::at_height(setup, 0.0)
     }
@@ -111,8 +115,8 @@ impl Budget {
         self.height
     }
 
-    /// Returns the full width of the line in the image between the points of 1/e², out of focus but without diffraction, in
-    /// speckles.
+    /// Returns the full width of the line in the image between the points of 1/e², out of focus but
+    /// without diffraction, in speckles.
     pub const fn speckles(&self) -> f64 {
         self.speckles
     }
@@ -175,17 +179,19 @@ impl Budget {
         &self.terms[index]
     }
 
-    /// Returns the standard uncertainty by speckle after the closed form for a line that a lens images
-    /// as waves do, weighed over all of its width, in metres.
+    /// Returns the standard uncertainty by speckle after the closed form for a line that a lens
+    /// images as waves do, weighed over all of its width, in metres.
     ///
-    /// See [`defocused_line_centroid_deviation`](tem00_statistics::laws::defocused_line_centroid_deviation); columns that are averaged make
-    /// the rows higher. The budget's own term is this law, as the detector with its window weighs the light.
+    /// See
+    /// [`defocused_line_centroid_deviation`](tem00_statistics::laws::defocused_line_centroid_deviation);
+    /// columns that are averaged make the rows higher. The budget's own term is this law, as the
+    /// detector with its window weighs the light.
     pub const fn line_law(&self) -> f64 {
         self.line_law
     }
 
-    /// Returns the standard uncertainty by speckle of a spot instead of a line after Dorsch, Häusler and
-    /// Herrmann, in metres: the classical reference. It knows no averages.
+    /// Returns the standard uncertainty by speckle of a spot instead of a line after Dorsch,
+    /// Häusler and Herrmann, in metres: the classical reference. It knows no averages.
     pub const fn dorsch(&self) -> f64 {
         self.dorsch
     }

@@ -77,8 +77,8 @@ pub struct DesignQuestion {
 ///
 /// # Validity
 ///
-/// Uncertainties are those of the first-order budget on the reference plane; within the depth of field
-/// they grow by the widening of line and image there, √2 at most each.
+/// Uncertainties are those of the first-order budget on the reference plane; within the depth of
+/// field they grow by the widening of line and image there, √2 at most each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignSearch {
     question: DesignQuestion,
@@ -93,8 +93,8 @@ impl DesignSearch {
     ///
     /// # Errors
     ///
-    /// Returns an error if nothing is varied, if something is varied twice, if a bound is not positive
-    /// and finite, or if there are more combinations than are allowed.
+    /// Returns an error if nothing is varied, if something is varied twice, if a bound is not
+    /// positive and finite, or if there are more combinations than are allowed.
     pub fn new(question: DesignQuestion) -> Result<Self, TriangulationError> {
         let DesignQuestion {
             sweeps,
@@ -148,13 +148,13 @@ impl DesignSearch {
 
     /// Tries all combinations, on all threads of the current pool.
     ///
-    /// `progress` is told, from any thread, the number of set-ups done since its last call. The outcome
-    /// is the same, bit by bit, for any number of threads.
+    /// `progress` is told, from any thread, the number of set-ups done since its last call. The
+    /// outcome is the same, bit by bit, for any number of threads.
     ///
     /// # Errors
     ///
-    /// Returns [`TriangulationError::Cancelled`] if `cancel` was set before the end. A set-up that is
-    /// not possible is part of the outcome.
+    /// Returns [`TriangulationError::Cancelled`] if `cancel` was set before the end. A set-up that
+    /// is not possible is part of the outcome.
     pub fn run(
         &self,
         progress: impl Fn(u64) + Sync,

@@ -18,21 +18,22 @@ pub struct Dorsch {
 }
 
 impl Dorsch {
-    /// Returns the standard deviation of a distance that is read off the centroid of one laser spot, in
-    /// metres.
+    /// Returns the standard deviation of a distance that is read off the centroid of one laser
+    /// spot, in metres.
     ///
     /// ```text
     /// δz = C λ / (2π sin u sin θ)
     /// ```
     ///
-    /// However bright the spot and however good the sensor, speckle leaves this. A *line* that is read
-    /// in single rows is another matter: its noise grows with the root of its width, is the same as that
-    /// of a spot at a half-width of some 1.3 speckles and larger beyond.
+    /// However bright the spot and however good the sensor, speckle leaves this. A *line* that is
+    /// read in single rows is another matter: its noise grows with the root of its width, is the
+    /// same as that of a spot at a half-width of some 1.3 speckles and larger beyond.
     ///
     /// # Validity
     ///
     /// A uniformly lit round spot, much wider than a speckle, and a rough surface. For a camera
-    /// without a tilt of its own, `sin u = D / 2L` with the diameter D of its pupil at the distance L.
+    /// without a tilt of its own, `sin u = D / 2L` with the diameter D of its pupil at the distance
+    /// L.
     ///
     /// # Errors
     ///
@@ -100,8 +101,8 @@ mod tests {
 
     #[test]
     fn it_is_the_noise_of_a_wide_disc_of_speckle() {
-        // The first order of a disc of 1e6 speckles, whose blurred edge costs ln(a)/a, on the surface:
-        // h = λ / (2 sin u), and a height moves the spot by sin θ.
+        // The first order of a disc of 1e6 speckles, whose blurred edge costs ln(a)/a, on the
+        // surface: h = λ / (2 sin u), and a height moves the spot by sin θ.
         let speckle_size = SENSOR.wavelength / (2.0 * SENSOR.aperture_angle.sin());
         let position = speckle_size * tem00_statistics::laws::disc_spot_centroid_deviation(1e6);
         let height = SENSOR.contrast * position / SENSOR.triangulation_angle.sin();

@@ -12,19 +12,20 @@ pub use self::{plane::LaserPlane, profile::ProfilePoint};
 /// P = O + s d        s = n·(Q − O) / (n·d)
 /// ```
 ///
-/// `O` is the centre of the pupil, `d` the direction of the chief ray of the image point, `Q` a point of
-/// the plane and `n` its normal. Tilted sensors and distorting lenses are the camera's own.
+/// `O` is the centre of the pupil, `d` the direction of the chief ray of the image point, `Q` a
+/// point of the plane and `n` its normal. Tilted sensors and distorting lenses are the camera's
+/// own.
 ///
 /// # Validity
 ///
-/// The plane is thin and flat, and the image point of the line is that of its chief ray. What moves the
-/// centre of a line of finite width, be it speckle or a change of reflectance, is not part of the
-/// geometry.
+/// The plane is thin and flat, and the image point of the line is that of its chief ray. What moves
+/// the centre of a line of finite width, be it speckle or a change of reflectance, is not part of
+/// the geometry.
 ///
 /// # Examples
 ///
-/// A camera that looks at a vertical laser plane at 30° from it sees half a millimetre per millimetre of
-/// height, times the magnification:
+/// A camera that looks at a vertical laser plane at 30° from it sees half a millimetre per
+/// millimetre of height, times the magnification:
 ///
 /// ```
 /// use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
@@ -64,8 +65,8 @@ pub struct Triangulator {
 pub struct UncertainPoint {
     /// The point, in metres.
     pub position: DVec3,
-    /// The standard uncertainties of its coordinates, in metres. They are fully correlated: the point
-    /// lies somewhere on a short piece of the line of sight's trace in the laser plane.
+    /// The standard uncertainties of its coordinates, in metres. They are fully correlated: the
+    /// point lies somewhere on a short piece of the line of sight's trace in the laser plane.
     pub uncertainty: DVec3,
     /// The standard uncertainty along that trace, in metres: the root of the sum of their squares.
     pub along: f64,
@@ -89,16 +90,16 @@ impl Triangulator {
         &self.plane
     }
 
-    /// Returns the point of the laser plane, in metres, that is seen at an image point, or `None` if the
-    /// line of sight does not meet the plane in front of the camera.
+    /// Returns the point of the laser plane, in metres, that is seen at an image point, or `None`
+    /// if the line of sight does not meet the plane in front of the camera.
     pub fn point(&self, pixel: DVec2) -> Option<DVec3> {
         let ray = self.camera.ray(pixel);
         let distance = self.distance_along(ray.direction);
         (distance > 0.0 && distance.is_finite()).then(|| ray.origin + distance * ray.direction)
     }
 
-    /// Returns the derivative of the point of the laser plane by the image point, in metres per pixel to the
-    /// right and per pixel *down*, or `None` where there is no point.
+    /// Returns the derivative of the point of the laser plane by the image point, in metres per
+    /// pixel to the right and per pixel *down*, or `None` where there is no point.
     ///
     /// ```text
     /// ∂P = s (∂d − d n·∂d / n·d)
@@ -114,11 +115,11 @@ impl Triangulator {
         (distance > 0.0 && finite).then_some(moved)
     }
 
-    /// Returns the point that is seen at an image point whose position along the column has the standard
-    /// uncertainty `along_column`, in pixels, or `None` where there is no point.
+    /// Returns the point that is seen at an image point whose position along the column has the
+    /// standard uncertainty `along_column`, in pixels, or `None` where there is no point.
     ///
-    /// To first order. Of all that makes a point uncertain only the position of the line is looked at; for
-    /// camera and plane see the calibration.
+    /// To first order. Of all that makes a point uncertain only the position of the line is looked
+    /// at; for camera and plane see the calibration.
     pub fn point_with_uncertainty(
         &self,
         pixel: DVec2,
@@ -135,7 +136,8 @@ impl Triangulator {
         })
     }
 
-    /// Returns the distance of the plane along a direction from the pupil, in multiples of its length.
+    /// Returns the distance of the plane along a direction from the pupil, in multiples of its
+    /// length.
     fn distance_along(&self, direction: DVec3) -> f64 {
         let normal = self.plane.normal();
         (self.plane.point() - self.camera.position()).dot(normal) / direction.dot(normal)

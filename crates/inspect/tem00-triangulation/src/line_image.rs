@@ -26,7 +26,8 @@ const SAMPLES_PER_SPECKLE: f64 = 6.0;
 /// The maximum number of samples of a pattern.
 const MAXIMUM_SAMPLES: usize = 1 << 25;
 
-/// Dark distance between the images of a pattern that repeats, in speckle sizes; the disc of defocus is added.
+/// Dark distance between the images of a pattern that repeats, in speckle sizes; the disc of
+/// defocus is added.
 const DARK: f64 = 8.0;
 
 /// Parameters of a [`LineImage`]. Lengths are in pixels.
@@ -58,18 +59,19 @@ pub struct LineImageData {
 /// n(x, y) = N/a² ∫∫ |A|² dx dy                                 over the sensitive square, of the side a
 /// ```
 ///
-/// G is the Gaussian line about its position c(u) and n normal white noise. The lens blurs the line and
-/// lets its light interfere at once, so that lines of any width have the speckle of waves: for wide
-/// ones a pattern times the blurred line, for thin ones grains that are the image of the line itself.
-/// Out of focus the pupil has the phase π b ρ²/h, with ρ in its diameters and the disc of defocus b: grains of a line
-/// narrower than b grow across it.
+/// G is the Gaussian line about its position c(u) and n normal white noise. The lens blurs the line
+/// and lets its light interfere at once, so that lines of any width have the speckle of waves: for
+/// wide ones a pattern times the blurred line, for thin ones grains that are the image of the line
+/// itself. Out of focus the pupil has the phase π b ρ²/h, with ρ in its diameters and the disc of
+/// defocus b: grains of a line narrower than b grow across it.
 ///
 /// # Validity
 ///
-/// Fully developed speckle of a surface all of which is as far out of focus. Each pixel is a sum over whole samples, of which a
-/// speckle has six at least. Speckle that the tilt of the sensor stretches along the columns is
-/// matched by unequal numbers of samples along and across, which leaves at most 2 % of its size. The
-/// position of the line changes little over a speckle along the rows.
+/// Fully developed speckle of a surface all of which is as far out of focus. Each pixel is a sum
+/// over whole samples, of which a speckle has six at least. Speckle that the tilt of the sensor
+/// stretches along the columns is matched by unequal numbers of samples along and across, which
+/// leaves at most 2 % of its size. The position of the line changes little over a speckle along the
+/// rows.
 #[derive(Clone, Debug)]
 pub struct LineImage {
     data: LineImageData,
@@ -161,8 +163,8 @@ impl LineImage {
         &self.data
     }
 
-    /// Returns the mean numbers of electrons, without speckle. `centre` gives the position of the line
-    /// along the column at a position along the rows, both in pixels.
+    /// Returns the mean numbers of electrons, without speckle. `centre` gives the position of the
+    /// line along the column at a position along the rows, both in pixels.
     pub fn mean(&self, centre: impl Fn(f64) -> f64 + Sync) -> Grid<f32> {
         let data = &self.data;
         let [columns, rows] = data.size;
@@ -208,11 +210,12 @@ impl LineImage {
         })
     }
 
-    /// Returns the mean numbers of electrons that a surface of any shape frees behind the lens, with the speckle of a seed.
+    /// Returns the mean numbers of electrons that a surface of any shape frees behind the lens,
+    /// with the speckle of a seed.
     ///
-    /// `light` has the electrons of the image that a lens without blur would make, in some parts of each pixel
-    /// along both axes, of which a speckle needs [two](Self::parts_of_pixel). All of the surface counts as equally far out of
-    /// focus.
+    /// `light` has the electrons of the image that a lens without blur would make, in some parts of
+    /// each pixel along both axes, of which a speckle needs [two](Self::parts_of_pixel). All of the
+    /// surface counts as equally far out of focus.
     ///
     /// # Errors
     ///
@@ -240,8 +243,8 @@ impl LineImage {
         })
     }
 
-    /// Returns the number of parts of a pixel, along each axis, in which [`speckled_light`](Self::speckled_light) needs its light:
-    /// two in a speckle.
+    /// Returns the number of parts of a pixel, along each axis, in which
+    /// [`speckled_light`](Self::speckled_light) needs its light: two in a speckle.
     pub fn parts_of_pixel(&self) -> usize {
         let [along, across] = self.data.speckle_size;
         to_usize((2.0 / along.min(across)).ceil())
@@ -264,7 +267,8 @@ impl LineImage {
         }
     }
 
-    /// Adds the speckled part of an image, of the amplitudes that `pupil` makes for the number of a random stream and a tilt.
+    /// Adds the speckled part of an image, of the amplitudes that `pupil` makes for the number of a
+    /// random stream and a tilt.
     fn add_speckled(
         &self,
         mut image: Grid<f32>,
@@ -287,7 +291,8 @@ impl LineImage {
         Ok(image)
     }
 
-    /// Adds the mean of a pattern, of so many samples in a pixel, over the sensitive part of each pixel, times `scale`.
+    /// Adds the mean of a pattern, of so many samples in a pixel, over the sensitive part of each
+    /// pixel, times `scale`.
     fn add_pixels(
         &self,
         image: &mut Grid<f32>,

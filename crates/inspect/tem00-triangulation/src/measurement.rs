@@ -86,16 +86,17 @@ impl MeasurementInput {
 /// z = g(v + Σ eₖ; L, θ, f, p, v₀, y₀, τ) + e_c
 /// ```
 ///
-/// `v` is the row at which the set-up as it is described sees the height, known exactly; the `eₖ` are the errors of
-/// that position by the terms of the [`Budget`], of no mean; `e_c` is that of the calibration. `g` meets the
-/// line of sight with the laser plane. Distance, angle, focal length, pixel pitch and principal row, and the
-/// offset and tilt of the laser plane, change the scale of heights, or shift all of them; so does a change of
-/// temperature where it expands base or mount. Heights count from the point of the laser plane that the optical axis is
-/// to meet: where distance and angle change, the camera still looks at it.
+/// `v` is the row at which the set-up as it is described sees the height, known exactly; the `eₖ`
+/// are the errors of that position by the terms of the [`Budget`], of no mean; `e_c` is that of the
+/// calibration. `g` meets the line of sight with the laser plane. Distance, angle, focal length,
+/// pixel pitch and principal row, and the offset and tilt of the laser plane, change the scale of
+/// heights, or shift all of them; so does a change of temperature where it expands base or mount.
+/// Heights count from the point of the laser plane that the optical axis is to meet: where distance
+/// and angle change, the camera still looks at it.
 ///
-/// What a quantity does to the noise alone, such as the wavelength, it does to the standard uncertainties of the
-/// terms: they change in proportion to it, as their differences over ± one standard uncertainty say. To first order
-/// that changes no height.
+/// What a quantity does to the noise alone, such as the wavelength, it does to the standard
+/// uncertainties of the terms: they change in proportion to it, as their differences over ± one
+/// standard uncertainty say. To first order that changes no height.
 ///
 /// # Examples
 ///
@@ -147,7 +148,8 @@ pub struct Measurement {
     speckles: f64,
     sources: Vec<MeasurementInput>,
     inputs: Inputs,
-    /// For each term with a position, the relative change of its standard uncertainty by each quantity.
+    /// For each term with a position, the relative change of its standard uncertainty by each
+    /// quantity.
     slopes: Vec<Vec<f64>>,
 }
 
@@ -156,9 +158,9 @@ impl Measurement {
     ///
     /// # Errors
     ///
-    /// Returns an error if the height is outside of the measuring range, if nothing can be measured there,
-    /// if a quantity is not possible one standard uncertainty above or below its estimate, or if the
-    /// correlations are not possible.
+    /// Returns an error if the height is outside of the measuring range, if nothing can be measured
+    /// there, if a quantity is not possible one standard uncertainty above or below its estimate,
+    /// or if the correlations are not possible.
     pub fn new(setup: &Setup, uncertainty: &SetupUncertainty) -> Result<Self, TriangulationError> {
         let range = setup.measuring_range();
         let height = uncertainty.height.unwrap_or(range.high);
@@ -192,25 +194,26 @@ impl Measurement {
         self.height
     }
 
-    /// Returns the full width of the line at the height, in speckles; see [`Budget::LEAST_SPECKLES`].
+    /// Returns the full width of the line at the height, in speckles; see
+    /// [`Budget::LEAST_SPECKLES`].
     pub const fn speckles(&self) -> f64 {
         self.speckles
     }
 
-    /// Returns what the inputs are, in their order: first the quantities of the set-up, then the terms of the
-    /// budget that are not zero.
+    /// Returns what the inputs are, in their order: first the quantities of the set-up, then the
+    /// terms of the budget that are not zero.
     pub fn sources(&self) -> &[MeasurementInput] {
         &self.sources
     }
 
-    /// Returns the inputs: quantities in SI units; errors of the position of the line in pixels, that of the
-    /// calibration in metres.
+    /// Returns the inputs: quantities in SI units; errors of the position of the line in pixels,
+    /// that of the calibration in metres.
     pub const fn inputs(&self) -> &Inputs {
         &self.inputs
     }
 
-    /// Returns the height, in metres, that follows from values of the inputs, or NaN where the line of sight meets
-    /// no laser plane or there is no such camera.
+    /// Returns the height, in metres, that follows from values of the inputs, or NaN where the line
+    /// of sight meets no laser plane or there is no such camera.
     pub fn height_of(&self, values: &[f64]) -> f64 {
         let (mut row, mut calibration) = (self.row, 0.0);
         let (quantities, errors) = values.split_at(values.len() - self.slopes.len());
@@ -300,8 +303,8 @@ impl Measurement {
     }
 }
 
-/// Returns the height of a line at a row of the middle column, in metres, as camera and laser plane of a
-/// description give it.
+/// Returns the height of a line at a row of the middle column, in metres, as camera and laser plane
+/// of a description give it.
 fn height_at(description: &SetupDescription, row: f64) -> Option<f64> {
     let triangulator =
         Triangulator::new(camera(description).ok()?, description.laser_plane().ok()?);
@@ -310,7 +313,8 @@ fn height_at(description: &SetupDescription, row: f64) -> Option<f64> {
     Some(point.z)
 }
 
-/// Returns the error by a term: that of a detector is even over a period, all others are sums of many.
+/// Returns the error by a term: that of a detector is even over a period, all others are sums of
+/// many.
 fn error_of(term: &BudgetTerm) -> Result<Input, TriangulationError> {
     let distribution = match term.distribution {
         ErrorDistribution::Periodic => Distribution::Arcsine,
@@ -320,8 +324,8 @@ fn error_of(term: &BudgetTerm) -> Result<Input, TriangulationError> {
     Ok(input.with_degrees_of_freedom(term.degrees_of_freedom)?)
 }
 
-/// Returns the relative changes of the standard uncertainties of the terms by each quantity, from differences over
-/// one standard uncertainty on both sides.
+/// Returns the relative changes of the standard uncertainties of the terms by each quantity, from
+/// differences over one standard uncertainty on both sides.
 fn slopes(
     setup: &Setup,
     height: f64,

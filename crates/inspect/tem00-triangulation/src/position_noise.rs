@@ -19,8 +19,9 @@ use crate::SensorDescription;
 ///
 /// # Validity
 ///
-/// First order, and speckle as a pattern times the line as the lens blurs it, which is what a renderer makes. A camera sees light that
-/// interferes: a [`Budget`](crate::Budget) scales this speckle to its law.
+/// First order, and speckle as a pattern times the line as the lens blurs it, which is what a
+/// renderer makes. A camera sees light that interferes: a [`Budget`](crate::Budget) scales this
+/// speckle to its law.
 ///
 /// # References
 ///
@@ -79,8 +80,8 @@ impl<C: PixelCovariance> PixelCovariance for Option<C> {
 pub struct ColumnSpeckle<'a> {
     /// Its covariance for one polarised pattern.
     pub autocovariance: &'a PixelAutocovariance,
-    /// The variance of the speckle factor in a point: (1 + P²)/2 by the number of patterns, for light of
-    /// the degree of polarisation P.
+    /// The variance of the speckle factor in a point: (1 + P²)/2 by the number of patterns, for
+    /// light of the degree of polarisation P.
     pub variance: f64,
 }
 
@@ -123,7 +124,8 @@ impl PositionNoise {
         noise
     }
 
-    /// Returns the variance that is new in every frame and every column: shot noise, dark noise and quantisation.
+    /// Returns the variance that is new in every frame and every column: shot noise, dark noise and
+    /// quantisation.
     pub const fn temporal(&self) -> f64 {
         self.shot + self.dark + self.quantisation
     }
@@ -157,11 +159,12 @@ impl PositionNoise {
     }
 }
 
-/// Returns the covariance that speckle gives the positions of a line in two columns, in square pixels.
+/// Returns the covariance that speckle gives the positions of a line in two columns, in square
+/// pixels.
 ///
-/// `displacement` leads from the pattern in the first column to that in the second, in pixels to the
-/// right and down: for two columns of one image, their distance; for two frames, what the pattern has
-/// moved in between.
+/// `displacement` leads from the pattern in the first column to that in the second, in pixels to
+/// the right and down: for two columns of one image, their distance; for two frames, what the
+/// pattern has moved in between.
 ///
 /// # Panics
 ///

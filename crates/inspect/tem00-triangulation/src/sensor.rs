@@ -24,13 +24,13 @@ pub use photon_transfer::PhotonTransferPoint;
 ///
 /// # Validity
 ///
-/// The response is linear up to the full well. The grey values' rounding counts as noise of the variance
-/// 1/12 DN², which holds from a noise of about 0.3 DN on.
+/// The response is linear up to the full well. The grey values' rounding counts as noise of the
+/// variance 1/12 DN², which holds from a noise of about 0.3 DN on.
 ///
 /// # References
 ///
-/// - European Machine Vision Association, *EMVA Standard 1288, Release 4.0 Linear*, 2021: the camera
-///   model and the definitions of signal, noise, saturation and dynamic range.
+/// - European Machine Vision Association, *EMVA Standard 1288, Release 4.0 Linear*, 2021: the
+///   camera model and the definitions of signal, noise, saturation and dynamic range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensor {
     description: SensorDescription,
@@ -59,17 +59,17 @@ impl Sensor {
         self
     }
 
-    /// Returns half the side of the sensitive part of a pixel, in units of the pixel pitch: `√f / 2` for
-    /// the fill factor `f`.
+    /// Returns half the side of the sensitive part of a pixel, in units of the pixel pitch:
+    /// `√f / 2` for the fill factor `f`.
     ///
-    /// A renderer integrates over what a pixel sees with a box filter of this radius about the pixel's
-    /// centre; its mean irradiance there is what [`electrons`](Self::electrons) takes.
+    /// A renderer integrates over what a pixel sees with a box filter of this radius about the
+    /// pixel's centre; its mean irradiance there is what [`electrons`](Self::electrons) takes.
     pub fn sensitive_half_width(&self) -> f64 {
         0.5 * self.description.fill_factor.sqrt()
     }
 
-    /// Returns the mean number of photons that fall on a pixel during the exposure, for an irradiance on
-    /// the sensor in W/m² at a vacuum wavelength in metres.
+    /// Returns the mean number of photons that fall on a pixel during the exposure, for an
+    /// irradiance on the sensor in W/m² at a vacuum wavelength in metres.
     ///
     /// ```text
     /// μ_p = E A t λ / (h c)      A the whole area of the pixel
@@ -86,8 +86,8 @@ impl Sensor {
         self.description.quantum_efficiency * self.photons(irradiance, wavelength)
     }
 
-    /// Returns the mean numbers of electrons that light frees in all pixels, for their irradiance in W/m²
-    /// at a vacuum wavelength in metres.
+    /// Returns the mean numbers of electrons that light frees in all pixels, for their irradiance
+    /// in W/m² at a vacuum wavelength in metres.
     pub fn electron_image(&self, irradiance: &Grid<f32>, wavelength: f64) -> Grid<f32> {
         let per_irradiance = self.electrons(1.0, wavelength);
         irradiance.map(|&e| to_f32(per_irradiance * f64::from(e)))
@@ -99,5 +99,6 @@ impl Sensor {
     }
 }
 
-/// Planck's constant times the speed of light in vacuum, in J m: both are exact in the SI since 2019.
+/// Planck's constant times the speed of light in vacuum, in J m: both are exact in the SI
+/// since 2019.
 const PLANCK_TIMES_LIGHT: f64 = 6.626_070_15e-34 * 299_792_458.0;

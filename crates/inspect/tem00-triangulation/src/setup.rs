@@ -34,7 +34,8 @@ pub use self::{
 /// The speckle sizes, in pixels, whose patterns and covariances can be computed in reasonable time.
 pub(crate) const SPECKLE_SIZES: (f64, f64) = (1.0 / 16.0, 64.0);
 
-/// A laser-triangulation set-up: a laser line on a flat part, and a camera that looks from the side.
+/// A laser-triangulation set-up: a laser line on a flat part, and a camera that looks from the
+/// side.
 ///
 /// ```text
 ///            z
@@ -47,8 +48,9 @@ pub(crate) const SPECKLE_SIZES: (f64, f64) = (1.0 / 16.0, 64.0);
 /// ```
 ///
 /// x is to the right in the image. A height z moves the line *up* in the image, to first order by
-/// `m z sin θ`; all of the geometry is taken from the camera's projection, not from that. The plane of the laser may stand
-/// beside y = 0, or lean; see [`LaserLineData`]. With the tilt τ it is at the angle θ + τ to the optical axis.
+/// `m z sin θ`; all of the geometry is taken from the camera's projection, not from that. The plane
+/// of the laser may stand beside y = 0, or lean; see [`LaserLineData`]. With the tilt τ it is at
+/// the angle θ + τ to the optical axis.
 ///
 /// # Validity
 ///
@@ -67,16 +69,16 @@ pub struct Setup {
 impl Setup {
     /// Creates a set-up.
     ///
-    /// With [`auto_exposure`](SetupDescription::auto_exposure) the exposure time is the longest of two
-    /// digits with which bright grains of speckle, at three standard deviations above the mean of the
-    /// brightest pixel, fill at most 0.9 of what the sensor can hold; [`description`](Self::description)
-    /// has it.
+    /// With [`auto_exposure`](SetupDescription::auto_exposure) the exposure time is the longest of
+    /// two digits with which bright grains of speckle, at three standard deviations above the mean
+    /// of the brightest pixel, fill at most 0.9 of what the sensor can hold;
+    /// [`description`](Self::description) has it.
     ///
     /// # Errors
     ///
     /// Returns an error if a quantity is outside its range; if camera, sensor or detector are not
-    /// possible; if the line is narrower in the image than a tenth of a pixel or wider than a third of
-    /// the image; or if a speckle is smaller than 1/16 of a pixel or larger than 64 pixels.
+    /// possible; if the line is narrower in the image than a tenth of a pixel or wider than a third
+    /// of the image; or if a speckle is smaller than 1/16 of a pixel or larger than 64 pixels.
     pub fn new(mut description: SetupDescription) -> Result<Self, TriangulationError> {
         if description.auto_exposure {
             description.sensor.exposure_time = 1.0;
@@ -122,7 +124,8 @@ impl Setup {
         }
     }
 
-    /// Returns what a resolution cell of the camera holds of the reference plane, or `None` if its paths have no law.
+    /// Returns what a resolution cell of the camera holds of the reference plane, or `None` if its
+    /// paths have no law.
     pub(crate) fn resolution_cell(&self) -> Option<ResolutionCell> {
         let (camera, wavelength) = (self.camera(), self.description.laser.light.wavelength);
         let geometry = camera.imaging_geometry_at(
@@ -142,13 +145,14 @@ impl Setup {
         &self.sensor
     }
 
-    /// Returns the detector. It takes a pixel for saturated at the sensor's largest grey value, or that
-    /// of its full well if it is less.
+    /// Returns the detector. It takes a pixel for saturated at the sensor's largest grey value, or
+    /// that of its full well if it is less.
     pub const fn detector(&self) -> &LineDetector {
         &self.detector
     }
 
-    /// Returns the geometry that turns positions in the image into points: the camera and the plane of the laser.
+    /// Returns the geometry that turns positions in the image into points: the camera and the plane
+    /// of the laser.
     pub const fn triangulator(&self) -> &Triangulator {
         &self.triangulator
     }
@@ -164,8 +168,8 @@ impl Setup {
         ImagedLine::at(&self.description, self.camera(), height)
     }
 
-    /// Returns the height, in metres, of a line that is seen in the middle column at a position `y` along
-    /// it, in pixels, or `None` if the line of sight does not meet the laser plane.
+    /// Returns the height, in metres, of a line that is seen in the middle column at a position `y`
+    /// along it, in pixels, or `None` if the line of sight does not meet the laser plane.
     pub fn height_at(&self, y: f64) -> Option<f64> {
         let [width, _] = self.description.camera.resolution;
         let middle = 0.5 * width as f64;
@@ -183,8 +187,8 @@ impl Setup {
         focal_length / (distance - focal_length)
     }
 
-    /// Returns the width of the field, in metres: the length of the part of the reference line that is
-    /// in the image.
+    /// Returns the width of the field, in metres: the length of the part of the reference line that
+    /// is in the image.
     pub fn field_width(&self) -> f64 {
         let [width, _] = self.description.camera.resolution;
         width as f64 * self.description.sensor.pixel_pitch / self.magnification()
@@ -228,9 +232,9 @@ fn saturation(sensor: &Sensor) -> f64 {
 
 /// Returns the camera of a set-up.
 ///
-/// The plane in focus of a sensor tilted by τ is turned by τ′ the other way, `tan τ′ = (L/d) tan τ`;
-/// the laser plane, which leans by ε, is a right angle less θ + ε away from the plane across the axis, and what is
-/// higher in the image is nearer:
+/// The plane in focus of a sensor tilted by τ is turned by τ′ the other way,
+/// `tan τ′ = (L/d) tan τ`; the laser plane, which leans by ε, is a right angle less θ + ε away from
+/// the plane across the axis, and what is higher in the image is nearer:
 ///
 /// ```text
 /// tan τ = −m / tan(θ + ε)

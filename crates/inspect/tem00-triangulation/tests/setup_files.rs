@@ -1,5 +1,5 @@
-//! The set-up files of the repository and those of `docs/setup_file.md` are what the reader reads, and the page has the
-//! keys of the reader.
+//! The set-up files of the repository and those of `docs/setup_file.md` are what the reader reads,
+//! and the page has the keys of the reader.
 
 #![expect(clippy::expect_used, reason = "a test fails by panicking")]
 

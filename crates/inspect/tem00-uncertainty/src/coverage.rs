@@ -3,8 +3,8 @@ use tem00_numerics::check;
 
 use crate::UncertaintyError;
 
-/// From this many degrees of freedom on, the quantiles of Student's t are those of a normal distribution and
-/// a term in 1/ν, to 10⁻⁸.
+/// From this many degrees of freedom on, the quantiles of Student's t are those of a normal
+/// distribution and a term in 1/ν, to 10⁻⁸.
 const NEARLY_NORMAL: f64 = 1e5;
 
 /// Probability with which a coverage interval contains the value of the quantity.
@@ -44,8 +44,9 @@ impl CoverageProbability {
 /// ν_eff = u⁴ / Σ (uᵢ⁴ / νᵢ)
 /// ```
 ///
-/// Each contribution is its standard uncertainty, in the unit of the `combined` one, and its degrees of
-/// freedom, greater than 0 and possibly infinite. Those with finite ones are independent.
+/// Each contribution is its standard uncertainty, in the unit of the `combined` one, and its
+/// degrees of freedom, greater than 0 and possibly infinite. Those with finite ones are
+/// independent.
 ///
 /// # References
 ///
@@ -64,11 +65,11 @@ pub fn effective_degrees_of_freedom(combined: f64, contributions: &[(f64, f64)])
     }
 }
 
-/// Returns the factor k by which a standard uncertainty is multiplied for an interval that covers the
-/// value with a probability p: the (1 + p)/2 quantile of Student's t.
+/// Returns the factor k by which a standard uncertainty is multiplied for an interval that covers
+/// the value with a probability p: the (1 + p)/2 quantile of Student's t.
 ///
-/// `degrees_of_freedom` is at least 1 and may be infinite, where k is 1.960 for 95 %. Less, or NaN, counts
-/// as 1, which has the greatest k: 12.71 for 95 %.
+/// `degrees_of_freedom` is at least 1 and may be infinite, where k is 1.960 for 95 %. Less, or NaN,
+/// counts as 1, which has the greatest k: 12.71 for 95 %.
 ///
 /// # References
 ///

@@ -33,11 +33,11 @@ pub struct SobolIndex {
 /// Parts that one input has in the variance of a result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VarianceParts {
-    /// The first-order index S: the fraction by which the variance would fall on average if the input were
-    /// known exactly.
+    /// The first-order index S: the fraction by which the variance would fall on average if the
+    /// input were known exactly.
     pub first_order: SobolIndex,
-    /// The total index `S_T`: the fraction that would be left on average if all other inputs were known
-    /// exactly. What it exceeds S by is made together with other inputs.
+    /// The total index `S_T`: the fraction that would be left on average if all other inputs were
+    /// known exactly. What it exceeds S by is made together with other inputs.
     pub total: SobolIndex,
 }
 
@@ -47,13 +47,15 @@ pub struct VarianceParts {
 /// S   = V(E(Y | X)) / V(Y)        S_T = E(V(Y | all but X)) / V(Y)
 /// ```
 ///
-/// Two independent samples A and B of all inputs are drawn, and for each input a third, A with the values of that
-/// input from B. Unlike [`Contribution::variance_fraction`](crate::Contribution::variance_fraction) the parts
-/// need no linear model.
+/// Two independent samples A and B of all inputs are drawn, and for each input a third, A with the
+/// values of that input from B. Unlike
+/// [`Contribution::variance_fraction`](crate::Contribution::variance_fraction) the parts need no
+/// linear model.
 ///
 /// # Examples
 ///
-/// A product of two quantities around 0 has no first order at all; its variance is made by both together:
+/// A product of two quantities around 0 has no first order at all; its variance is made by both
+/// together:
 ///
 /// ```
 /// use tem00_uncertainty::{Decomposition, DecompositionOptions, Distribution, Input, Inputs};
@@ -70,8 +72,8 @@ pub struct VarianceParts {
 ///
 /// # References
 ///
-/// - A. Saltelli et al., *Variance based sensitivity analysis of model output*, Computer Physics Communications
-///   181, 2010, table 2 (b) and (f); the latter is of M. J. W. Jansen, 1999.
+/// - A. Saltelli et al., *Variance based sensitivity analysis of model output*, Computer Physics
+///   Communications 181, 2010, table 2 (b) and (f); the latter is of M. J. W. Jansen, 1999.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decomposition {
     inputs: Vec<VarianceParts>,
@@ -85,8 +87,9 @@ impl Decomposition {
     ///
     /// # Errors
     ///
-    /// Returns an error if inputs are correlated, if a t distribution has 2 degrees of freedom or fewer, if there are fewer
-    /// than 1000 samples, if a value of the model is not finite, or if all are the same.
+    /// Returns an error if inputs are correlated, if a t distribution has 2 degrees of freedom or
+    /// fewer, if there are fewer than 1000 samples, if a value of the model is not finite, or if
+    /// all are the same.
     pub fn new(
         inputs: &Inputs,
         model: impl Fn(&[f64]) -> f64 + Sync,
@@ -142,7 +145,8 @@ impl Sums {
         Self(core::array::from_fn(|i| self.0[i] + other.0[i]))
     }
 
-    /// Returns the ratio S = Σt / Σv and its standard error √Σ(t − S v)² / Σv; `None` without a variance.
+    /// Returns the ratio S = Σt / Σv and its standard error √Σ(t − S v)² / Σv; `None` without a
+    /// variance.
     fn index(&self) -> Option<SobolIndex> {
         let [part, variance, part_squared, variance_squared, product] = self.0;
         let value = part / variance;
@@ -162,7 +166,8 @@ fn total(sums: impl Iterator<Item = Sums>) -> Sums {
     sums.fold(Sums::default(), Sums::and)
 }
 
-/// Returns the sums of one block of samples: for each input, those of first order and those of the total.
+/// Returns the sums of one block of samples: for each input, those of first order and those of the
+/// total.
 fn sums(
     inputs: &Inputs,
     model: &impl Fn(&[f64]) -> f64,

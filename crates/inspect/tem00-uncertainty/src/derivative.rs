@@ -14,13 +14,13 @@ const RATIO: f64 = 1.4;
 
 /// Returns the derivative of a model by one input, at its estimates.
 ///
-/// Central differences over steps that shrink from `first_step` on are extrapolated to no step; of the
-/// tableau the element is taken that differs least from its neighbours.
+/// Central differences over steps that shrink from `first_step` on are extrapolated to no step; of
+/// the tableau the element is taken that differs least from its neighbours.
 ///
 /// # References
 ///
-/// - C. J. F. Ridders, *Accurate computation of F′(x) and F′(x) F″(x)*, Advances in Engineering Software 4,
-///   1982.
+/// - C. J. F. Ridders, *Accurate computation of F′(x) and F′(x) F″(x)*, Advances in Engineering
+///   Software 4, 1982.
 pub(crate) fn derivative(
     model: &impl Fn(&[f64]) -> f64,
     estimates: &[f64],

@@ -14,9 +14,11 @@ pub enum Distribution {
     Rectangular,
     /// Triangular (§ 6.4.5): the sum of two independent rectangular quantities of the same width.
     Triangular,
-    /// Arcsine, U-shaped (§ 6.4.6): a quantity that oscillates between known limits, at an unknown time.
+    /// Arcsine, U-shaped (§ 6.4.6): a quantity that oscillates between known limits, at an unknown
+    /// time.
     Arcsine,
-    /// Scaled and shifted t (§ 6.4.9): the mean of normal observations; it needs degrees of freedom.
+    /// Scaled and shifted t (§ 6.4.9): the mean of normal observations; it needs degrees of
+    /// freedom.
     StudentT,
 }
 
@@ -41,8 +43,8 @@ impl Distribution {
         }
     }
 
-    /// Returns the half-width in standard uncertainties: √3 of a rectangular, √6 of a triangular, √2 of an
-    /// arcsine distribution; `None` of one without limits.
+    /// Returns the half-width in standard uncertainties: √3 of a rectangular, √6 of a triangular,
+    /// √2 of an arcsine distribution; `None` of one without limits.
     pub fn half_width(self) -> Option<f64> {
         let square: Option<f64> = match self {
             Self::Normal | Self::StudentT => None,

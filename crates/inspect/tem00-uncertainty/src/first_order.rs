@@ -12,9 +12,9 @@ pub struct Contribution {
     pub sensitivity: f64,
     /// The standard uncertainty of the result by this input alone, |c| u(x).
     pub uncertainty: f64,
-    /// The fraction of the variance of the result: c u(x) Σ r c u over all inputs, divided by the variance.
-    /// The fractions of all inputs add up to 1; that of a correlated input may be negative. Without a
-    /// variance they are 0.
+    /// The fraction of the variance of the result: c u(x) Σ r c u over all inputs, divided by the
+    /// variance. The fractions of all inputs add up to 1; that of a correlated input may be
+    /// negative. Without a variance they are 0.
     pub variance_fraction: f64,
 }
 
@@ -24,19 +24,20 @@ pub struct Contribution {
 /// u_c² = Σᵢ Σⱼ cᵢ cⱼ u(xᵢ) u(xⱼ) r(xᵢ, xⱼ)      cᵢ = ∂f/∂xᵢ
 /// ```
 ///
-/// The derivatives are central differences over at most one standard uncertainty, extrapolated to no step. Of
-/// a t distribution u is the scale, as JCGM 100 has it.
+/// The derivatives are central differences over at most one standard uncertainty, extrapolated to
+/// no step. Of a t distribution u is the scale, as JCGM 100 has it.
 ///
 /// # Validity
 ///
-/// The model is close to linear over a few standard uncertainties, and one that is not normal does not
-/// dominate. [`Propagation::validate`](crate::Propagation::validate) tells.
+/// The model is close to linear over a few standard uncertainties, and one that is not normal does
+/// not dominate. [`Propagation::validate`](crate::Propagation::validate) tells.
 ///
 /// The [front page](crate) has an example.
 ///
 /// # References
 ///
-/// - JCGM 100:2008, *Guide to the expression of uncertainty in measurement*, eq. (10), (13) and (16); G.4.
+/// - JCGM 100:2008, *Guide to the expression of uncertainty in measurement*, eq. (10), (13) and
+///   (16); G.4.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FirstOrder {
     estimate: f64,
@@ -50,8 +51,9 @@ impl FirstOrder {
     ///
     /// # Errors
     ///
-    /// Returns an error if the model is not finite at the estimates or within one standard uncertainty of
-    /// them, or not so smooth within a twentieth of one that each contribution is known to 10⁻⁶ of the largest.
+    /// Returns an error if the model is not finite at the estimates or within one standard
+    /// uncertainty of them, or not so smooth within a twentieth of one that each contribution is
+    /// known to 10⁻⁶ of the largest.
     pub fn new(inputs: &Inputs, model: impl Fn(&[f64]) -> f64) -> Result<Self, UncertaintyError> {
         let estimates = inputs.estimates();
         let estimate = value(&model, &estimates)?;

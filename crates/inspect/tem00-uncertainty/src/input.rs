@@ -8,8 +8,9 @@ use crate::{Distribution, UncertaintyError};
 
 /// What is known of one input quantity.
 ///
-/// `u` is the standard uncertainty, the square root of the variance; of a scaled and shifted t it is the
-/// scale, s/√n of n observations, and the standard deviation is [larger](Self::standard_deviation).
+/// `u` is the standard uncertainty, the square root of the variance; of a scaled and shifted t it
+/// is the scale, s/√n of n observations, and the standard deviation is
+/// [larger](Self::standard_deviation).
 ///
 /// # References
 ///
@@ -24,8 +25,8 @@ pub struct Input {
 }
 
 impl Input {
-    /// Creates an input from its best estimate and its standard uncertainty, which is exactly known: its
-    /// degrees of freedom are infinite.
+    /// Creates an input from its best estimate and its standard uncertainty, which is exactly
+    /// known: its degrees of freedom are infinite.
     ///
     /// # Errors
     ///
@@ -45,8 +46,8 @@ impl Input {
 
     /// Returns the same input with the degrees of freedom of its standard uncertainty.
     ///
-    /// If they are finite, a normal input becomes a scaled and shifted t (JCGM 101, § 6.4.9). Those of other shapes count
-    /// in the law of propagation alone.
+    /// If they are finite, a normal input becomes a scaled and shifted t (JCGM 101, § 6.4.9). Those
+    /// of other shapes count in the law of propagation alone.
     ///
     /// # Errors
     ///
@@ -88,8 +89,8 @@ impl Input {
         self.degrees_of_freedom
     }
 
-    /// Returns the standard deviation of the distribution: `u`, or `u √(ν / (ν − 2))` of a t distribution
-    /// with ν degrees of freedom, infinite where they are 2 or fewer.
+    /// Returns the standard deviation of the distribution: `u`, or `u √(ν / (ν − 2))` of a t
+    /// distribution with ν degrees of freedom, infinite where they are 2 or fewer.
     pub fn standard_deviation(&self) -> f64 {
         let freedom = self.degrees_of_freedom;
         match self.distribution {

@@ -44,15 +44,16 @@ impl Inputs {
 
     /// Creates inputs of which some are correlated, and jointly normal.
     ///
-    /// The joint distribution is that of JCGM 101, § 6.4.8. It has none for other shapes, and
-    /// the formula of Welch and Satterthwaite holds for independent inputs: correlated inputs must be normal
-    /// with infinite degrees of freedom. Correlations of ±1 are possible.
+    /// The joint distribution is that of JCGM 101, § 6.4.8. It has none for other shapes, and the
+    /// formula of Welch and Satterthwaite holds for independent inputs: correlated inputs must be
+    /// normal with infinite degrees of freedom. Correlations of ±1 are possible.
     ///
     /// # Errors
     ///
-    /// Returns an error if there are no inputs, if a correlation is not between two different ones, is given
-    /// twice or is not from −1 to 1, if a correlated input is not normal, or if no quantities have all of
-    /// the correlations: if their matrix is not positive semi-definite, to 10⁻¹².
+    /// Returns an error if there are no inputs, if a correlation is not between two different ones,
+    /// is given twice or is not from −1 to 1, if a correlated input is not normal, or if no
+    /// quantities have all of the correlations: if their matrix is not positive semi-definite, to
+    /// 10⁻¹².
     pub fn correlated(
         inputs: Vec<Input>,
         correlations: &[Correlation],
@@ -112,7 +113,8 @@ impl Inputs {
         }
     }
 
-    /// Returns the error about the first input whose drawn value is not possible even if all others are as estimated.
+    /// Returns the error about the first input whose drawn value is not possible even if all others
+    /// are as estimated.
     pub fn impossible_draw(
         &self,
         drawn: &[f64],
@@ -188,7 +190,8 @@ impl Inputs {
     }
 }
 
-/// The largest pivot of a correlation matrix that is taken as 0: the column under it is at most 10⁻⁶.
+/// The largest pivot of a correlation matrix that is taken as 0: the column under it is at most
+/// 10⁻⁶.
 const ROUNDING: f64 = 1e-12;
 
 #[cfg(test)]

@@ -12,8 +12,9 @@ pub enum IntervalKind {
     /// The interval that the value is as probably below as above.
     #[default]
     Symmetric,
-    /// The shortest interval, which contains the mode of a distribution with one peak. Both of its ends scatter
-    /// together, with the cube root of the number of trials; its length scatters no more than that of others.
+    /// The shortest interval, which contains the mode of a distribution with one peak. Both of its
+    /// ends scatter together, with the cube root of the number of trials; its length scatters no
+    /// more than that of others.
     Shortest,
 }
 
@@ -34,8 +35,8 @@ impl CoverageInterval {
 
     /// Returns the interval of sorted values (JCGM 101, § 7.7).
     ///
-    /// Of M values q = pM, rounded, lie from the lower end to below the upper one. Fewer than 1/(1 − p) values
-    /// have their range as the interval.
+    /// Of M values q = pM, rounded, lie from the lower end to below the upper one. Fewer than 1/(1
+    /// − p) values have their range as the interval.
     ///
     /// # Panics
     ///
@@ -55,8 +56,8 @@ impl CoverageInterval {
     }
 }
 
-/// Returns where the shortest interval begins that has so many values behind its lower end; the first of
-/// several.
+/// Returns where the shortest interval begins that has so many values behind its lower end; the
+/// first of several.
 fn shortest(values: &[f64], between: usize) -> usize {
     let length = |first: &usize| values[first + between] - values[*first];
     let shorter = |a: usize, b: usize| if length(&b) < length(&a) { b } else { a };

@@ -2,7 +2,8 @@
 //!
 //! # Conventions
 //!
-//! - A model takes the values of all inputs, in their order and in any units, and returns one number.
+//! - A model takes the values of all inputs, in their order and in any units, and returns one
+//!   number.
 //! - Uncertainties are *standard* uncertainties: of bounded distributions the half-width is
 //!   [`Distribution::half_width`] times that, of a scaled and shifted t it is the scale.
 //! - Positions of inputs count from 0.
@@ -18,10 +19,10 @@
 //!
 //! # Scope and non-goals
 //!
-//! One result of a model that is a function of its inputs. Correlations are those of normal quantities,
-//! the only ones for which JCGM 101 states a joint distribution (§ 6.4.8). Models of several results
-//! (JCGM 102), models that are implicit, and second-order terms of the law of propagation are left out:
-//! trials need none.
+//! One result of a model that is a function of its inputs. Correlations are those of normal
+//! quantities, the only ones for which JCGM 101 states a joint distribution (§ 6.4.8). Models of
+//! several results (JCGM 102), models that are implicit, and second-order terms of the law of
+//! propagation are left out: trials need none.
 
 mod coverage;
 mod decomposition;

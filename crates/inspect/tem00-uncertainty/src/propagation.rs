@@ -14,8 +14,8 @@ pub struct PropagationOptions {
     pub interval: IntervalKind,
     /// The significant digits of the standard uncertainty that are to be stable, from 1 to 4.
     pub digits: u8,
-    /// A number, at least 1, by which the numerical tolerance of these digits is divided: 5 where the trials
-    /// validate a first order (JCGM 101, § 8.2).
+    /// A number, at least 1, by which the numerical tolerance of these digits is divided: 5 where
+    /// the trials validate a first order (JCGM 101, § 8.2).
     pub tolerance_divisor: f64,
     /// The maximum number of trials.
     pub max_trials: u64,
@@ -39,12 +39,13 @@ impl Default for PropagationOptions {
 
 /// The propagation of distributions by trials, as many as make its results stable.
 ///
-/// Blocks of M = max(⌈100/(1 − p)⌉, 10⁴) trials are drawn until twice the standard deviations of the averages
-/// of the estimate, the standard uncertainty and both ends of the coverage interval are at most the numerical
-/// tolerance δ = ½ 10^ℓ of the standard uncertainty c · 10^ℓ, whose c has as many digits as are asked for.
+/// Blocks of M = max(⌈100/(1 − p)⌉, 10⁴) trials are drawn until twice the standard deviations of
+/// the averages of the estimate, the standard uncertainty and both ends of the coverage interval
+/// are at most the numerical tolerance δ = ½ 10^ℓ of the standard uncertainty c · 10^ℓ, whose c has
+/// as many digits as are asked for.
 ///
-/// Each block has random numbers of its own, so that the result is the same for any number of threads; the
-/// feature `parallel` brings them.
+/// Each block has random numbers of its own, so that the result is the same for any number of
+/// threads; the feature `parallel` brings them.
 ///
 /// The [front page](crate) has an example.
 ///
@@ -86,9 +87,9 @@ impl Propagation {
     ///
     /// # Errors
     ///
-    /// Returns an error if an option is outside its range, if fewer trials are allowed than two blocks have,
-    /// if a t distribution has 2 degrees of freedom or fewer, or if a value of the model, or the variance of all, is not
-    /// finite.
+    /// Returns an error if an option is outside its range, if fewer trials are allowed than two
+    /// blocks have, if a t distribution has 2 degrees of freedom or fewer, or if a value of the
+    /// model, or the variance of all, is not finite.
     pub fn new(
         inputs: &Inputs,
         model: impl Fn(&[f64]) -> f64 + Sync,
@@ -184,8 +185,8 @@ impl Propagation {
         self.options.tolerance(self.uncertainty())
     }
 
-    /// Returns twice the largest standard deviation of the averages of estimate, standard uncertainty and
-    /// ends of the coverage interval.
+    /// Returns twice the largest standard deviation of the averages of estimate, standard
+    /// uncertainty and ends of the coverage interval.
     pub const fn largest_error(&self) -> f64 {
         self.largest_error
     }
@@ -197,7 +198,8 @@ impl Propagation {
 
     /// Compares the coverage interval of a first order with that of the trials.
     ///
-    /// The trials should be stable with a [`tolerance_divisor`](PropagationOptions::tolerance_divisor) of 5.
+    /// The trials should be stable with a
+    /// [`tolerance_divisor`](PropagationOptions::tolerance_divisor) of 5.
     pub fn validate(&self, first_order: &FirstOrder) -> Validation {
         let half = first_order.expanded(self.options.probability);
         let interval = self.interval();
@@ -233,8 +235,8 @@ impl PropagationOptions {
     }
 }
 
-/// Returns the largest of the standard deviations of the averages of what blocks found; infinite of a single
-/// block.
+/// Returns the largest of the standard deviations of the averages of what blocks found; infinite of
+/// a single block.
 fn largest_deviation_of_averages(summaries: &[[f64; 4]]) -> f64 {
     if summaries.len() < 2 {
         return f64::INFINITY;
@@ -246,8 +248,8 @@ fn largest_deviation_of_averages(summaries: &[[f64; 4]]) -> f64 {
     (0..4).map(deviation).fold(0.0, f64::max)
 }
 
-/// Returns the numerical tolerance δ = ½ 10^ℓ of a number c · 10^ℓ whose c has so many digits (JCGM 101,
-/// § 7.9.2); 0 of 0.
+/// Returns the numerical tolerance δ = ½ 10^ℓ of a number c · 10^ℓ whose c has so many digits (JCGM
+/// 101, § 7.9.2); 0 of 0.
 fn numerical_tolerance(number: f64, digits: u8) -> f64 {
     if number == 0.0 {
         return 0.0;

@@ -1,5 +1,5 @@
-//! The worked examples of JCGM 101:2008, § 9, to the digits that the document states, and to closed forms where
-//! there are some. All seeds are fixed.
+//! The worked examples of JCGM 101:2008, § 9, to the digits that the document states, and to closed
+//! forms where there are some. All seeds are fixed.
 
 #![expect(
     clippy::unwrap_used,
@@ -51,9 +51,10 @@ fn assert_interval(found: CoverageInterval, stated: [f64; 2], unit: f64, scatter
 
 /// Asserts that an interval has the stated length.
 ///
-/// Ends of shortest intervals scatter with the cube root of the number of trials, and together; the length does not:
-/// with the density f at both ends its standard error is √(p(1 − p)/M)/f. Of the 10⁶ trials of the document that is
-/// 0.0037 u of normal and 0.0044 u of exponential values; three of the latter are allowed, and the rounding.
+/// Ends of shortest intervals scatter with the cube root of the number of trials, and together; the
+/// length does not: with the density f at both ends its standard error is √(p(1 − p)/M)/f. Of the
+/// 10⁶ trials of the document that is 0.0037 u of normal and 0.0044 u of exponential values; three
+/// of the latter are allowed, and the rounding.
 fn assert_length(found: CoverageInterval, stated: [f64; 2], unit: f64, u: f64) {
     let length = stated[1] - stated[0];
     let scatter = 3.0 * 0.0044 * u;
@@ -69,7 +70,8 @@ fn interval(first_order: &FirstOrder) -> CoverageInterval {
     }
 }
 
-/// Returns the p quantile of the sum of rectangular quantities around 0, whose density is a convolution:
+/// Returns the p quantile of the sum of rectangular quantities around 0, whose density is a
+/// convolution:
 ///
 /// ```text
 /// F(x) = Σ Πsᵢ (x + Σ sᵢ aᵢ)₊ⁿ / (n! Π 2aᵢ)      over all signs sᵢ = ±1
@@ -113,8 +115,8 @@ fn the_additive_model_has_the_stated_intervals() {
     let normals = vec![normal(0.0, 1.0); 4];
     let one_wide = vec![unit, unit, unit, wide];
     let at = 2.0 * 1.959_964;
-    // Tables 2 to 4: inputs, standard uncertainty, upper ends by trials and by first order, the unit of their
-    // last digit, and the exact upper end.
+    // Tables 2 to 4: inputs, standard uncertainty, upper ends by trials and by first order, the
+    // unit of their last digit, and the exact upper end.
     for (inputs, [u, by_trials, by_first_order, digit, exact]) in [
         (normals, [2.00, 3.92, 3.92, 0.01, at]),
         (vec![unit; 4], [2.00, 3.88, 3.92, 0.01, quantile(root)]),
@@ -179,7 +181,8 @@ fn the_calibration_of_a_mass_has_the_stated_results() {
     let validation = trials.validate(&first_order);
     assert_stated("tolerance", validation.tolerance, 0.005, 0.0, 1e-15);
     assert!(!validation.is_valid(), "{validation:?}");
-    // V = u₁² + u₂² + m² V(ρ_a) E((1/ρ_W − 1/ρ_R)²), with E(1/ρ) = ln(b/a)/(b − a), E(1/ρ²) = 1/(ab).
+    // V = u₁² + u₂² + m² V(ρ_a) E((1/ρ_W − 1/ρ_R)²), with E(1/ρ) = ln(b/a)/(b − a), E(1/ρ²) =
+    // 1/(ab).
     let [mean, other] =
         [(7000.0_f64, 9000.0_f64), (7950.0, 8050.0)].map(|(a, b)| libm::log(b / a) / (b - a));
     let square = 1.0 / 63e6 + 1.0 / (7950.0 * 8050.0) - 2.0 * mean * other;
@@ -187,7 +190,8 @@ fn the_calibration_of_a_mass_has_the_stated_results() {
     assert_stated("u(y)", trials.uncertainty(), variance.sqrt(), 0.0, scatter);
 }
 
-/// § 9.4: the loss X₁² + X₂² in the comparison of power meters, in units of 10⁻⁶, and its shortest intervals.
+/// § 9.4: the loss X₁² + X₂² in the comparison of power meters, in units of 10⁻⁶, and its shortest
+/// intervals.
 #[test]
 fn the_comparison_loss_has_the_stated_results() {
     const UNIT: f64 = 1e-6;
@@ -270,7 +274,8 @@ fn the_gauge_block_has_the_stated_results() {
     assert_stated("y", trials.estimate(), 838.0, 1.0, scatter);
     assert_stated("u(y)", trials.uncertainty(), 36.0, 1.0, scatter);
     assert_interval(trials.interval(), [745.0, 932.0], 1.0, scatter);
-    // Variances of t distributions, and L² E(α²) V(δθ) + L² V(δα) E(θ²); a trapezoid has half²/3 + d²/9.
+    // Variances of t distributions, and L² E(α²) V(δθ) + L² V(δα) E(θ²); a trapezoid has half²/3 +
+    // d²/9.
     let of_lengths: f64 = inputs.as_slice()[..4]
         .iter()
         .map(|x| x.standard_deviation().powi(2))

@@ -46,8 +46,8 @@ impl PrintedFan {
         self.focus.irradiance_per_watt(x.hypot(point.y), from_waist)
     }
 
-    /// Returns the power, per watt of the laser, that the printed irradiance adds up to on the plane
-    /// at the distance `z`, in metres, from the emitter.
+    /// Returns the power, per watt of the laser, that the printed irradiance adds up to on the
+    /// plane at the distance `z`, in metres, from the emitter.
     ///
     /// ```text
     /// T z / w(z)

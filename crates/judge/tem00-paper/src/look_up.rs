@@ -55,8 +55,8 @@ impl BilinearStack {
     }
 
     /// Returns the intensity at (x, y) in samples and u in slices, as printed: bilinear in the
-    /// plane, linear between slices, x and y wrapped into [0, Q − 1] and u into [0, 2M − 1]. It is the mean, 1,
-    /// where a coordinate is not finite.
+    /// plane, linear between slices, x and y wrapped into [0, Q − 1] and u into [0, 2M − 1]. It is
+    /// the mean, 1, where a coordinate is not finite.
     pub fn intensity_at(&self, x: f64, y: f64, u: f64) -> f64 {
         if ![x, y, u].iter().all(|coordinate| coordinate.is_finite()) {
             return 1.0;
@@ -123,8 +123,8 @@ impl BilinearStack {
     }
 }
 
-/// The centre of the pupil of slice `index` on the circle of §6.4, rounded to lattice points so that
-/// all pupils hold the same points.
+/// The centre of the pupil of slice `index` on the circle of §6.4, rounded to lattice points so
+/// that all pupils hold the same points.
 #[expect(clippy::cast_possible_truncation, reason = "lattice points are small")]
 fn circle_centre(field: &PupilField, index: usize, half_period: usize) -> [i64; 2] {
     let angle = PI * index as f64 / half_period as f64;

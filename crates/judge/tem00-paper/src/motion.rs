@@ -137,8 +137,8 @@ pub fn relative_pupil_displacement(camera: DVec2, surface: DVec2) -> DVec2 {
 /// pattern for decorrelated.
 ///
 /// The formula of Li and Chiang leaves `(2/π)² = 0.405` there; the first zero lies at twice this
-/// length. `(1 + 1/m) F` is `L/D` for a thin lens only; in general that is `(1/m_p + 1/m) F`, with the
-/// pupil magnification `m_p`.
+/// length. `(1 + 1/m) F` is `L/D` for a thin lens only; in general that is `(1/m_p + 1/m) F`, with
+/// the pupil magnification `m_p`.
 pub fn axial_decorrelation_length(geometry: &ImagingGeometry) -> f64 {
     let object_side = 2.0 * (1.0 + 1.0 / geometry.magnification()) * geometry.f_number();
     geometry.wavelength() * object_side * object_side
@@ -150,8 +150,8 @@ pub fn axial_decorrelation_length(geometry: &ImagingGeometry) -> f64 {
 /// u = (|a_P| / D + d_z / d_z⁰) M
 /// ```
 ///
-/// `pupil_displacement` and `axial_displacement` are in metres. On a circular stack this is wrong in
-/// γ by up to 0.195 for motion in the plane (at `|a_P|` = 0.273 D) and by up to 0.790 for motion
+/// `pupil_displacement` and `axial_displacement` are in metres. On a circular stack this is wrong
+/// in γ by up to 0.195 for motion in the plane (at `|a_P|` = 0.273 D) and by up to 0.790 for motion
 /// along the axis (at `d_z` = 0.431 `d_z⁰`). As `d_z` has a sign, one motion can undo the
 /// decorrelation by the other, and as u is not limited to M, large motions bring the old pattern
 /// back.

@@ -19,15 +19,15 @@ pub struct PrintedEvent {
 /// Returns the radiance of eq. (3), `L = E / cos θ_s`, in the unit of `irradiance`; `None` unless
 /// the cosine is positive.
 ///
-/// E is the irradiance of a plane across the beam, eq. (2), and `θ_s` the angle between the normal of
-/// the surface and the light.
+/// E is the irradiance of a plane across the beam, eq. (2), and `θ_s` the angle between the normal
+/// of the surface and the light.
 ///
 /// # Validity
 ///
 /// L has the unit W/m², not W/(m² sr): it stands before a delta distribution over directions. The
 /// division makes a surface as bright as if it faced the beam whatever its tilt, so that it
-/// receives `P / cos θ_s`: 1.15, 2.00 and 3.86 times the power at 30°, 60° and 75°, without bound at
-/// grazing incidence. [`Emitter::next_event`] does not divide.
+/// receives `P / cos θ_s`: 1.15, 2.00 and 3.86 times the power at 30°, 60° and 75°, without bound
+/// at grazing incidence. [`Emitter::next_event`] does not divide.
 ///
 /// # Examples
 ///
@@ -50,8 +50,8 @@ pub fn radiance(irradiance: f64, cos_surface: f64) -> Option<f64> {
 /// # Validity
 ///
 /// It follows the streamline of energy, a hyperbola, exactly. The straight line between the two
-/// points is not the direction of the flow: with a waist between them, or at the receiver, it is off
-/// by up to the whole divergence. That matters to shadows, and hardly to reflection.
+/// points is not the direction of the flow: with a waist between them, or at the receiver, it is
+/// off by up to the whole divergence. That matters to shadows, and hardly to reflection.
 pub fn streamline_point(beam: &GaussianBeam, receiver: DVec3, aperture_z: f64) -> DVec3 {
     let ratio = beam.radius_at(aperture_z) / beam.radius_at(receiver.z);
     DVec3::new(receiver.x * ratio, receiver.y * ratio, aperture_z)

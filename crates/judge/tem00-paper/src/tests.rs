@@ -1,4 +1,5 @@
-//! The sampler of rays of section 4: a uniform point of the aperture disc, a uniform direction of the modified cone.
+//! The sampler of rays of section 4: a uniform point of the aperture disc, a uniform direction of
+//! the modified cone.
 
 use core::f64::consts::{PI, TAU};
 

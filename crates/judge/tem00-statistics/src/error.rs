@@ -90,8 +90,8 @@ impl StatisticsError {
 
     /// Returns the name of the argument that was refused, as constructors and functions call it.
     ///
-    /// The values of an image or a field are `samples`, those of a grid of lags `lags`, whatever the
-    /// function at hand calls them.
+    /// The values of an image or a field are `samples`, those of a grid of lags `lags`, whatever
+    /// the function at hand calls them.
     ///
     /// # Examples
     ///

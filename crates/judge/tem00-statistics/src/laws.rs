@@ -1,4 +1,5 @@
-//! Closed forms: the laws of the intensity, of contrast, of speckle in space, and of lines and spots under speckle.
+//! Closed forms: the laws of the intensity, of contrast, of speckle in space, and of lines and
+//! spots under speckle.
 
 pub use crate::{
     centroid::{

@@ -14,18 +14,19 @@
 //!
 //! # Rooms
 //!
-//! - [`laws`]: the intensity at one point and two, the contrast that pixels and exposures leave, speckle in space, and the
-//!   noise of laser lines and spots.
+//! - [`laws`]: the intensity at one point and two, the contrast that pixels and exposures leave,
+//!   speckle in space, and the noise of laser lines and spots.
 //! - [`estimate`]: moments, contrast, autocovariance, speckle size, singularities, uneven light.
-//! - [`test`](mod@test): Kolmogorov–Smirnov, χ², t, also for images that are rounded to few grey levels.
+//! - [`test`](mod@test): Kolmogorov–Smirnov, χ², t, also for images that are rounded to few grey
+//!   levels.
 //!
 //! What is asked for most stands here, too.
 //!
 //! # Scope and non-goals
 //!
-//! First- and second-order statistics of the intensity. What has a speckle size is behind a circular
-//! pupil, unless it says otherwise. No plotting, no general statistics: the distributions behind the
-//! tests come from `statrs`.
+//! First- and second-order statistics of the intensity. What has a speckle size is behind a
+//! circular pupil, unless it says otherwise. No plotting, no general statistics: the distributions
+//! behind the tests come from `statrs`.
 
 mod axis;
 mod centroid;

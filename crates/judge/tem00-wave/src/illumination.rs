@@ -175,9 +175,9 @@ impl Illumination {
     /// # Errors
     ///
     /// Returns an error if the wavelength is not between 0.1 nm and 1 m, the waist radius not
-    /// between the paraxial limit 2λ/π and 10 km, a component of the apex not finite or above 10 km,
-    /// a direction zero or not finite, the opening parallel to the direction, the half-angle not
-    /// between 0 and π/2, or the waist distance not finite or above 10 km in magnitude.
+    /// between the paraxial limit 2λ/π and 10 km, a component of the apex not finite or above 10
+    /// km, a direction zero or not finite, the opening parallel to the direction, the half-angle
+    /// not between 0 and π/2, or the waist distance not finite or above 10 km in magnitude.
     pub fn fan(fan: &FanDescription) -> Result<Self, WaveError> {
         let wavelength = checked_wavelength(fan.wavelength)?;
         checked_direction(fan.direction, "direction")?;

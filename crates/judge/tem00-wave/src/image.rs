@@ -27,14 +27,14 @@ use crate::{
 /// lands on a square lattice of the picture, on the axis and off it. A surface outside the plane of
 /// focus is blurred by itself: its waves arrive with another curvature.
 ///
-/// Column `x` and row `y` lie at `u₀ + ((x, y) − ⌊samples/2⌋) · step`, to the right and *upwards* in
-/// the upright picture. A source in focus whose field has the magnitude 1 in the pupil has an image
-/// of peak magnitude 1.
+/// Column `x` and row `y` lie at `u₀ + ((x, y) − ⌊samples/2⌋) · step`, to the right and *upwards*
+/// in the upright picture. A source in focus whose field has the magnitude 1 in the pupil has an
+/// image of peak magnitude 1.
 ///
 /// # Validity
 ///
-/// - The picture repeats with the period `samples · step`. The image of all the light, with its blur,
-///   must fit: what lies outside appears at the opposite side.
+/// - The picture repeats with the period `samples · step`. The image of all the light, with its
+///   blur, must fit: what lies outside appears at the opposite side.
 /// - Directions are linear in u about the window's centre. At a distance Δu from it and τ off the
 ///   axis, a point appears displaced by about `1.5 |τ| |Δu|² / pupil_to_image`.
 /// - Samples at the rim of the pupil count by the part of their cell inside it.

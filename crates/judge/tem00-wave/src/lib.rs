@@ -24,8 +24,8 @@
 //!
 //! # Scope and non-goals
 //!
-//! One scattering per light path, one polarisation, no shadowing, no diffraction by the edges of the
-//! scene, no aberrations. The brightness of a surface is on a scale of its own: there is no
+//! One scattering per light path, one polarisation, no shadowing, no diffraction by the edges of
+//! the scene, no aberrations. The brightness of a surface is on a scale of its own: there is no
 //! reflectance model.
 //!
 //! # References

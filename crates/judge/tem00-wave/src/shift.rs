@@ -25,13 +25,13 @@ pub struct Shift {
 /// # Validity
 ///
 /// The error on patterns that differ by a displacement alone is below 10⁻⁴ samples if a feature is
-/// wider than two samples and the common part many features wide. Partly decorrelated patterns have a
-/// statistical error on top. The answer for unrelated patterns is arbitrary.
+/// wider than two samples and the common part many features wide. Partly decorrelated patterns have
+/// a statistical error on top. The answer for unrelated patterns is arbitrary.
 ///
 /// Whatever is in the patterns counts: a bright patch on a dark ground is correlated with itself.
 /// The edge of a lit patch that does not move with the speckle pulls the displacement by some per
-/// cent and raises the correlation. Those of speckle alone are found in parts cut out from where the
-/// light is even.
+/// cent and raises the correlation. Those of speckle alone are found in parts cut out from where
+/// the light is even.
 ///
 /// A pattern that stretches has no one displacement. What is found is that in the middle of the
 /// common part, off by the stretch times the distance from there to the point in question. Moving

@@ -169,7 +169,8 @@ mod tests {
         let sources: Sources = (0..1000).map(source).collect();
         let point = DVec3::new(1e-3, 2e-3, 0.3);
         let bits = |wave: Complex<f64>| [wave.re, wave.im].map(f64::to_bits);
-        // Outside `vectorised` the loop has the instructions that every processor of the target has.
+        // Outside `vectorised` the loop has the instructions that every processor of the target
+        // has.
         let plain = sources.sum_at(point, 650e-9);
         assert_eq!(bits(sources.wave_at(point, 650e-9)), bits(plain));
     }

@@ -15,10 +15,11 @@ use crate::{
 ///
 /// # Validity
 ///
-/// A resolution cell of the camera should hold many scatterers: [`Amplitudes`] says what too few do.
-/// A lattice with the spacing `d` repeats its speckle after λ/d in the sine of the angle, at the
-/// distance L after λL/d. That must be more than the pupil and all motion of the speckle across it;
-/// the random offsets of [`Arrangement::Stratified`](crate::Arrangement::Stratified) break the repetition.
+/// A resolution cell of the camera should hold many scatterers: [`Amplitudes`] says what too few
+/// do. A lattice with the spacing `d` repeats its speckle after λ/d in the sine of the angle, at
+/// the distance L after λL/d. That must be more than the pupil and all motion of the speckle across
+/// it; the random offsets of [`Arrangement::Stratified`](crate::Arrangement::Stratified) break the
+/// repetition.
 ///
 /// # Examples
 ///
@@ -51,8 +52,8 @@ impl RoughSurface {
     /// Its mean brightness does not depend on the number of scatterers: a surface of area A under
     /// the irradiance E scatters `E A` per steradian in every direction.
     ///
-    /// A scatterer takes 40 bytes, and about as many again while it is lit; heights take up to 128 bytes
-    /// more as they are made.
+    /// A scatterer takes 40 bytes, and about as many again while it is lit; heights take up to 128
+    /// bytes more as they are made.
     ///
     /// # Errors
     ///

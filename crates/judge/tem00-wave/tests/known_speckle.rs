@@ -186,8 +186,8 @@ fn the_image_of_a_surface_moves_with_it() {
         .map(|surface| window.image(&surface.lit_by(&collimated())).intensity());
     let shift = displacement_between(&before, &after).expect("a maximum");
     let expected = DVec2::new(60e-6, -30e-6) * MAGNIFICATION / 3e-6;
-    // The speckle on the lens moves by 67 µm of 5 mm, which leaves a correlation of ρ = 0.98. Of
-    // K = 1000 speckles of h = 2.6 samples, the displacement scatters by √(1 − ρ²) / (ρ k √K) = 0.01
+    // The speckle on the lens moves by 67 µm of 5 mm, which leaves a correlation of ρ = 0.98. Of K
+    // = 1000 speckles of h = 2.6 samples, the displacement scatters by √(1 − ρ²) / (ρ k √K) = 0.01
     // with the rms wave number k = π/(2h). Four of them, for the length of two components.
     assert!(
         (shift.offset - expected).length() < 0.04,

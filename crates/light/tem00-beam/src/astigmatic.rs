@@ -21,8 +21,8 @@ use crate::{GaussianBeam, LocatedBeam, Refusal};
 ///
 /// # Validity
 ///
-/// Both axes are paraxial. Not here: a beam whose ellipse turns on its way, as behind a cylinder lens
-/// that is aligned with neither axis.
+/// Both axes are paraxial. Not here: a beam whose ellipse turns on its way, as behind a cylinder
+/// lens that is aligned with neither axis.
 ///
 /// # Examples
 ///
@@ -158,8 +158,8 @@ impl AstigmaticBeam {
         self.axes.map(|axis| axis.curvature_at(z))
     }
 
-    /// Returns the Gouy phase, in radians, at the distance `z` from the reference plane: the mean of
-    /// the phases of the two axes, each 0 at its own waist.
+    /// Returns the Gouy phase, in radians, at the distance `z` from the reference plane: the mean
+    /// of the phases of the two axes, each 0 at its own waist.
     pub fn gouy_phase_at(&self, z: f64) -> f64 {
         let phase = |axis: LocatedBeam| axis.beam().gouy_phase_at(z - axis.waist_distance());
         let [x, y] = self.axes.map(phase);
@@ -179,9 +179,9 @@ impl AstigmaticBeam {
     /// the beam is circular.
     ///
     /// Where the two waists are apart, one of them lies between the line foci: the circle of least
-    /// confusion of a focused beam. Diffraction-limited axes of different waists are equally wide in
-    /// two planes; with M² there may be fewer. A beam that is circular everywhere has no plane to
-    /// name, and planes beyond 1e30 m are not named either.
+    /// confusion of a focused beam. Diffraction-limited axes of different waists are equally wide
+    /// in two planes; with M² there may be fewer. A beam that is circular everywhere has no plane
+    /// to name, and planes beyond 1e30 m are not named either.
     ///
     /// # Examples
     ///

@@ -1,8 +1,8 @@
 //! The closed forms of irradiance and next event, as source text for kernels and for C.
 //!
 //! A kernel on a GPU and a just-in-time compiled renderer cannot call this crate. They copy a
-//! prepared [`SpotLight`](crate::SpotLight) or [`LineLight`](crate::LineLight) in `f32` and evaluate it
-//! themselves: the structs have the same layout on both sides.
+//! prepared [`SpotLight`](crate::SpotLight) or [`LineLight`](crate::LineLight) in `f32` and
+//! evaluate it themselves: the structs have the same layout on both sides.
 //!
 //! # Examples
 //!

@@ -96,9 +96,9 @@ impl GaussianBeam {
     /// w₀ = λ / (π δ)
     /// ```
     ///
-    /// Where a data sheet gives the divergence *and* an M², ask for the divergence `δ / M²` and then
-    /// for the M², which brings it back to `δ`: [`with_m_squared`](Self::with_m_squared) keeps the
-    /// waist.
+    /// Where a data sheet gives the divergence *and* an M², ask for the divergence `δ / M²` and
+    /// then for the M², which brings it back to `δ`: [`with_m_squared`](Self::with_m_squared) keeps
+    /// the waist.
     ///
     /// # Errors
     ///

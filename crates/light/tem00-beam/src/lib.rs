@@ -8,17 +8,17 @@
 //!
 //! # Two faces
 //!
-//! *Physics*, in `f64` and in the frame of the beam. Constructors check, so that nothing fails later.
+//! *Physics*, in `f64` and in the frame of the beam. Constructors check, so that nothing fails
+//! later.
 //!
 //! - Beams: [`GaussianBeam`] (z = 0 at the waist), [`LocatedBeam`] (at a reference plane),
 //!   [`AstigmaticBeam`] (elliptic).
 //! - Laser lines: [`LaserLine`] (z = 0 at the lens) with a [`LineProfile`].
 //!
-//! *Renderer*, in world coordinates: [`SpotLight`], [`LineLight`] and
-//! [`TabulatedLineLight`], plain structs prepared from the above by a [`Placement`], queried through
-//! the trait [`Emitter`]: next-event estimation, ray sampling, densities, radiance, bounds and batches.
-//! The text of their [closed forms](closed_form) in WGSL and C is for kernels that cannot call a
-//! library.
+//! *Renderer*, in world coordinates: [`SpotLight`], [`LineLight`] and [`TabulatedLineLight`], plain
+//! structs prepared from the above by a [`Placement`], queried through the trait [`Emitter`]:
+//! next-event estimation, ray sampling, densities, radiance, bounds and batches. The text of their
+//! [closed forms](closed_form) in WGSL and C is for kernels that cannot call a library.
 //!
 //! # Scope and non-goals
 //!

@@ -59,9 +59,9 @@ pub struct FanGeometry {
 /// w = w(r − r_w)     with r_w = focus_distance + z_a, or that over cos θ (see FocusCurve)
 /// ```
 ///
-/// It has no divergence, so that any surface that cuts the whole fan receives the full power. In the
-/// cylindrical coordinates (r, θ, y) the flow has no component along θ, and whatever depends on θ
-/// alone, `f` and `r_w`, is a constant of the streamline:
+/// It has no divergence, so that any surface that cuts the whole fan receives the full power. In
+/// the cylindrical coordinates (r, θ, y) the flow has no component along θ, and whatever depends on
+/// θ alone, `f` and `r_w`, is a constant of the streamline:
 ///
 /// ```text
 /// ∇·F / P = ∂(r F_r)/∂r / r + ∂F_y/∂y = f/r · [∂G/∂r + ∂(G y w'/w)/∂y] = 0
@@ -101,8 +101,8 @@ pub struct FanGeometry {
 ///
 /// # References
 ///
-/// - S. Bergmann et al., 2016, section 4, whose scaling of x, here normalised, gives the power `T z / w`
-///   instead of 1.
+/// - S. Bergmann et al., 2016, section 4, whose scaling of x, here normalised, gives the power
+///   `T z / w` instead of 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LaserLine {
     focus: GaussianBeam,
@@ -119,8 +119,8 @@ impl LaserLine {
     ///
     /// Returns an error if the fan angle is not in (0, π), if a Powell profile's edge is not in
     /// [1e−6, 1], if the focus distance is not finite or beyond 1e30 m, or if the apex offset is
-    /// beyond 1e30 m or below 100 times the [`source_radius`](Self::source_radius): a beam so narrow
-    /// on the lens could not be fanned out by that angle only.
+    /// beyond 1e30 m or below 100 times the [`source_radius`](Self::source_radius): a beam so
+    /// narrow on the lens could not be fanned out by that angle only.
     pub fn new(
         focus: GaussianBeam,
         fan: FanGeometry,
@@ -205,8 +205,9 @@ impl LaserLine {
         self.focus.radius_at(z - self.fan.focus_distance)
     }
 
-    /// Returns the half-thickness of the line (1/e² radius across the fan), in metres, on the plane at
-    /// the distance `z` from the lens, where the fan angle is `theta`, in radians within (−π/2, π/2).
+    /// Returns the half-thickness of the line (1/e² radius across the fan), in metres, on the plane
+    /// at the distance `z` from the lens, where the fan angle is `theta`, in radians within (−π/2,
+    /// π/2).
     ///
     /// It is measured along the normal of the fan plane. On the axis, `theta = 0`, it is
     /// [`half_thickness_at`](Self::half_thickness_at).
@@ -247,9 +248,9 @@ impl LaserLine {
         self.power_between_slopes(a, b)
     }
 
-    /// Returns the fraction of the power that falls between `x_min` and `x_max`, in metres, in either
-    /// order, on the plane at the distance `z` from the lens: what a window lets through, or a
-    /// sensor sees, that is high enough for the thickness of the line. It is 0 for z < 0.
+    /// Returns the fraction of the power that falls between `x_min` and `x_max`, in metres, in
+    /// either order, on the plane at the distance `z` from the lens: what a window lets through, or
+    /// a sensor sees, that is high enough for the thickness of the line. It is 0 for z < 0.
     ///
     /// # Examples
     ///

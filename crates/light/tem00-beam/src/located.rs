@@ -6,8 +6,8 @@ use crate::{GaussianBeam, Refusal};
 ///
 /// The reference plane is wherever two parts of a set-up meet: an aperture, a lens, the end of an
 /// optical system. The beam travels along +z, z = 0 is the reference plane, and the waist lies at
-/// `z = waist_distance`: positive where it is still to come, negative where it has been passed or is
-/// virtual.
+/// `z = waist_distance`: positive where it is still to come, negative where it has been passed or
+/// is virtual.
 ///
 /// # Examples
 ///

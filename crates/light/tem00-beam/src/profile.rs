@@ -11,13 +11,13 @@ pub(crate) use density::{SlopeDensity, SlopeProfile, Variable};
 
 /// Distribution of the power of a laser line along its fan.
 ///
-/// Each profile is a density in a variable `v` of the fan angle `θ`: in `tan θ`, in `θ` itself or in
-/// `sin θ`. With the full fan angle `α`, the edges of the fan are at `v(α/2)`: the 1/e² points of a
-/// Gaussian, the ends of a uniform profile, the half-value points of a Powell profile. On a plane
-/// square to the axis `tan θ` is proportional to the position along the line.
+/// Each profile is a density in a variable `v` of the fan angle `θ`: in `tan θ`, in `θ` itself or
+/// in `sin θ`. With the full fan angle `α`, the edges of the fan are at `v(α/2)`: the 1/e² points
+/// of a Gaussian, the ends of a uniform profile, the half-value points of a Powell profile. On a
+/// plane square to the axis `tan θ` is proportional to the position along the line.
 ///
-/// The densities are normalised on `|θ| < π/2`; the tails of a Gaussian in θ or sin θ that would lie
-/// beyond are left out.
+/// The densities are normalised on `|θ| < π/2`; the tails of a Gaussian in θ or sin θ that would
+/// lie beyond are left out.
 ///
 /// # Validity
 ///
@@ -65,8 +65,8 @@ pub enum LineProfile {
     /// g(u) = [erf((u + T) / (√2 σ)) − erf((u − T) / (√2 σ))] / (4 T)     with σ = edge · T
     /// ```
     ///
-    /// At the edges, `|u| = T`, the density is half that of the plateau, `1 / 2T`. With an `edge` above
-    /// 0.3 no plateau is left: at 1 the edges have 70 % of the density on the axis.
+    /// At the edges, `|u| = T`, the density is half that of the plateau, `1 / 2T`. With an `edge`
+    /// above 0.3 no plateau is left: at 1 the edges have 70 % of the density on the axis.
     Powell {
         /// Standard deviation of the roll-off relative to the half-length of the line, from 1e−6
         /// (a top hat) to 1.

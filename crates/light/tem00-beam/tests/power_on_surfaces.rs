@@ -1,5 +1,6 @@
-//! A surface that cuts the whole light receives the whole power, whatever its shape and tilt: planes,
-//! spheres and cylinders, and beams and lines of every profile, as laser and as placed light.
+//! A surface that cuts the whole light receives the whole power, whatever its shape and tilt:
+//! planes, spheres and cylinders, and beams and lines of every profile, as laser and as placed
+//! light.
 //!
 //! The power is the flux of the energy-flow vector through the surface. For a beam, and across a
 //! line, it is summed by the trapezoidal rule, which converges faster than any power of the spacing
@@ -172,7 +173,8 @@ fn waists() -> impl Strategy<Value = f64> {
     (20e-6_f64.ln()..1e-3_f64.ln()).prop_map(f64::exp)
 }
 
-/// Spheres and cylinders about the lens, the axis of the latter within 40° of the normal of the fan.
+/// Spheres and cylinders about the lens, the axis of the latter within 40° of the normal of the
+/// fan.
 fn round_surfaces() -> impl Strategy<Value = Surface> {
     let place = (
         -0.03..0.03_f64,

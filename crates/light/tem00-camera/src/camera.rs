@@ -30,9 +30,10 @@ pub const IMAGE_MARGIN: f64 = 16.0;
 /// ```
 ///
 /// Image points are given in pixels, `(0, 0)` at the upper left corner of the image, x to the right
-/// and y *down*; the centre of the first pixel is `(0.5, 0.5)`. The image is upright. The sensor may
-/// stand off the axis, by a principal point, and may be [tilted](crate::SensorTilt); the lens may
-/// [distort](crate::RadialDistortion) the image. Without either the axis is normal to the sensor.
+/// and y *down*; the centre of the first pixel is `(0.5, 0.5)`. The image is upright. The sensor
+/// may stand off the axis, by a principal point, and may be [tilted](crate::SensorTilt); the lens
+/// may [distort](crate::RadialDistortion) the image. Without either the axis is normal to the
+/// sensor.
 ///
 /// The value of a pixel is the mean radiance, over its area and over the pupil: a scene of uniform
 /// radiance L has the value L in every pixel. What falls on the sensor is another matter, see
@@ -61,11 +62,11 @@ impl Camera {
     ///
     /// # Errors
     ///
-    /// Returns an error if a length is not positive and finite, if the f-number is below 0.5, if the
-    /// focus distance does not exceed the focal length, if the camera looks at itself or along `up`,
-    /// if the image is empty or has more than [`MAXIMUM_PIXELS`](crate::MAXIMUM_PIXELS) pixels, if the tilt is so large
-    /// that a part of the pupil sees the back of the sensor or a part of the image lies before the
-    /// lens, or if the distortion folds a part of the image back.
+    /// Returns an error if a length is not positive and finite, if the f-number is below 0.5, if
+    /// the focus distance does not exceed the focal length, if the camera looks at itself or along
+    /// `up`, if the image is empty or has more than [`MAXIMUM_PIXELS`](crate::MAXIMUM_PIXELS)
+    /// pixels, if the tilt is so large that a part of the pupil sees the back of the sensor or a
+    /// part of the image lies before the lens, or if the distortion folds a part of the image back.
     pub fn new(description: CameraDescription) -> Result<Self, Refusal> {
         description.check()?;
         let view = (description.look_at - description.position)
@@ -187,8 +188,8 @@ impl Camera {
         self.geometry_for(wavelength, in_focus)
     }
 
-    /// Returns the vergence 1/L of what is in focus at an image point, in 1/m, with its distance L along the axis: not
-    /// positive where nothing real is.
+    /// Returns the vergence 1/L of what is in focus at an image point, in 1/m, with its distance L
+    /// along the axis: not positive where nothing real is.
     pub fn focus_vergence_at(&self, pixel: DVec2) -> f64 {
         self.description.focal_length.recip() - self.sensor.point(pixel).z.recip()
     }
@@ -207,9 +208,9 @@ impl Camera {
         }
     }
 
-    /// Returns the direction of the ray through the centre of the lens that arrives at an image point,
-    /// one metre along the axis, and its derivatives by the image point, per pixel to the right and
-    /// per pixel down; all in the axes of the world.
+    /// Returns the direction of the ray through the centre of the lens that arrives at an image
+    /// point, one metre along the axis, and its derivatives by the image point, per pixel to the
+    /// right and per pixel down; all in the axes of the world.
     ///
     /// Returns `None` for an image point that no ray reaches.
     pub fn sight(&self, pixel: DVec2) -> Option<(DVec3, [DVec3; 2])> {
@@ -353,7 +354,8 @@ impl Camera {
         })
     }
 
-    /// Checks that each image point stands behind the lens, in front of the sensor, and has one ray.
+    /// Checks that each image point stands behind the lens, in front of the sensor, and has one
+    /// ray.
     fn check_sensor(&self) -> Result<(), Refusal> {
         let tilt = self.description.tilt.angle;
         let steepest = self.sensor.slope().length() * 0.5 * self.pupil_diameter();

@@ -85,7 +85,8 @@ pub struct RadialDistortion {
 }
 
 impl Default for CameraDescription {
-    /// A lens of 25 mm at f/8 and 640 × 480 pixels of 3.45 µm, 0.3 m above the origin, which it looks at and has in focus.
+    /// A lens of 25 mm at f/8 and 640 × 480 pixels of 3.45 µm, 0.3 m above the origin, which it
+    /// looks at and has in focus.
     fn default() -> Self {
         Self {
             position: 0.3 * DVec3::Z,

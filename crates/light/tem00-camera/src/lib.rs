@@ -8,15 +8,15 @@
 //!
 //! # Main types
 //!
-//! A [`Camera`] is made of a [`CameraDescription`]. [`Camera::project`] and [`Camera::ray`] go to and
-//! fro through the centre of the lens; [`Camera::sample_ray`] and [`Camera::connect`] go through any
-//! point of it. [`Camera::imaging_geometry_at`] is what the laws of speckle ask for.
+//! A [`Camera`] is made of a [`CameraDescription`]. [`Camera::project`] and [`Camera::ray`] go to
+//! and fro through the centre of the lens; [`Camera::sample_ray`] and [`Camera::connect`] go
+//! through any point of it. [`Camera::imaging_geometry_at`] is what the laws of speckle ask for.
 //!
 //! # Scope and non-goals
 //!
-//! A thin lens, its pupil at the lens; a flat sensor that may be tilted (Scheimpflug); radial distortion.
-//! No chromatic aberration, no other aberration than distortion, no diffraction: those of the pupil
-//! are the speckle's.
+//! A thin lens, its pupil at the lens; a flat sensor that may be tilted (Scheimpflug); radial
+//! distortion. No chromatic aberration, no other aberration than distortion, no diffraction: those
+//! of the pupil are the speckle's.
 
 mod camera;
 mod description;

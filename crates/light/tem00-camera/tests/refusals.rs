@@ -20,7 +20,8 @@ fn tilt(angle: f64) -> SensorTilt {
 
 #[test]
 fn cameras() {
-    // The rim of the pupil, f/16 off the axis, is behind the sensor, which is 25 mm · 0.3 / 0.275 away.
+    // The rim of the pupil, f/16 off the axis, is behind the sensor, which is 25 mm · 0.3 / 0.275
+    // away.
     let steepest = (16.0_f64 * 0.3 / 0.275).atan();
     let oblique = CameraDescription {
         position: DVec3::new(0.1, 0.2, 0.3),

@@ -7,8 +7,9 @@ use tem00_numerics::disc_overlap;
 
 use crate::{chebyshev::Grid, lens};
 
-/// The mean of the phases of defocus over the lens that two displaced pupils share: `linear · s` along their displacement s,
-/// in diameters, and `bend · κ` at the edge for the difference κ of two wave numbers.
+/// The mean of the phases of defocus over the lens that two displaced pupils share: `linear · s`
+/// along their displacement s, in diameters, and `bend · κ` at the edge for the difference κ of two
+/// wave numbers.
 #[derive(Debug)]
 pub(crate) struct Blur {
     linear: f64,
@@ -16,7 +17,8 @@ pub(crate) struct Blur {
     table: Option<Grid>,
 }
 
-/// Phases in radians beyond which the squared mean, that of a jinc or less, is taken without its oscillations.
+/// Phases in radians beyond which the squared mean, that of a jinc or less, is taken without its
+/// oscillations.
 const FAR: f64 = 60.0;
 
 /// Phases in radians beyond which nothing is left of a mean.
@@ -67,8 +69,9 @@ impl Blur {
     }
 }
 
-/// Returns the squared mean of large phases without its oscillations: half of a jinc's envelope or, where the phase is
-/// stationary within the lens, of what is about that place, and about the edge without a displacement.
+/// Returns the squared mean of large phases without its oscillations: half of a jinc's envelope or,
+/// where the phase is stationary within the lens, of what is about that place, and about the edge
+/// without a displacement.
 fn smooth(shift: f64, phase: f64, bend: f64) -> f64 {
     if bend > FAR && phase < 2.0 * bend {
         let edge = if phase < 1.0 { 2.0 } else { 1.0 };

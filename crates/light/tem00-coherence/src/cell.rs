@@ -23,13 +23,14 @@ pub struct CellGeometry {
 
 /// The relief of a surface that is finer than a resolution cell. Lengths in metres.
 ///
-/// What is longer than a cell tilts it and spreads no paths: the roughness of a drawing, over 0.8 mm, says little.
+/// What is longer than a cell tilts it and spreads no paths: the roughness of a drawing, over 0.8
+/// mm, says little.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Relief {
     /// Root mean square height.
     pub rms_height: f64,
-    /// Distance ℓ at which the correlation `exp(−d²/ℓ²)` of the heights falls to 1/e. 0 stands for heights that differ
-    /// as soon as scatterers do.
+    /// Distance ℓ at which the correlation `exp(−d²/ℓ²)` of the heights falls to 1/e. 0 stands for
+    /// heights that differ as soon as scatterers do.
     pub correlation_length: f64,
 }
 
@@ -41,28 +42,29 @@ pub struct Relief {
 /// l_S + l = v + q n,     v ⊥ l,     q = (1 + l_S·l) / n·l
 /// ```
 ///
-/// so that a scatterer of the height z that is imaged at ξ has the path −v·ξ − qz. With κ the difference of two wave
-/// numbers, the fields of both correlate by
+/// so that a scatterer of the height z that is imaged at ξ has the path −v·ξ − qz. With κ the
+/// difference of two wave numbers, the fields of both correlate by
 ///
 /// ```text
 /// |P̂(κ)| = chat(|κ|/κ_t) exp(−κ² σ_L²/2)     κ_t = 4π sin u / (λ |v|),   σ_L = q R_q
 /// ```
 ///
-/// The first factor is the *tilt* of the cell: another wavelength sees the pupil displaced, as by a motion. In the plane
-/// of incidence, both angles positive on one side of the normal, `|v| = |sin θᵢ + sin θₒ| / cos θₒ` and
-/// `q = (1 + cos(θᵢ − θₒ)) / cos θₒ`, which is `cos θᵢ + cos θₒ` for θₒ = 0 and for mirror directions only: a height
-/// also shifts the image.
+/// The first factor is the *tilt* of the cell: another wavelength sees the pupil displaced, as by a
+/// motion. In the plane of incidence, both angles positive on one side of the normal,
+/// `|v| = |sin θᵢ + sin θₒ| / cos θₒ` and `q = (1 + cos(θᵢ − θₒ)) / cos θₒ`, which is
+/// `cos θᵢ + cos θₒ` for θₒ = 0 and for mirror directions only: a height also shifts the image.
 ///
 /// # Validity
 ///
-/// Rough surfaces, `σ_L > λ/2`; many scatterers to a cell; normal heights without shadows and multiple scattering. A
-/// bandwidth small against the wavelength: the sizes of speckle differ over it, which is left out. Where neither tilt
-/// nor heights tell wave numbers apart, contrasts are too large by `0.48 Δλ/λ`, 2 % at 20 nm of 450 nm.
+/// Rough surfaces, `σ_L > λ/2`; many scatterers to a cell; normal heights without shadows and
+/// multiple scattering. A bandwidth small against the wavelength: the sizes of speckle differ over
+/// it, which is left out. Where neither tilt nor heights tell wave numbers apart, contrasts are too
+/// large by `0.48 Δλ/λ`, 2 % at 20 nm of 450 nm.
 ///
 /// # References
 ///
-/// - G. Parry, *Speckle patterns in partially coherent light*, in *Laser Speckle and Related Phenomena*, ed. J. C.
-///   Dainty, 1975.
+/// - G. Parry, *Speckle patterns in partially coherent light*, in *Laser Speckle and Related
+///   Phenomena*, ed. J. C. Dainty, 1975.
 /// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007, ch. 6.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResolutionCell {
@@ -83,8 +85,8 @@ impl ResolutionCell {
     ///
     /// # Errors
     ///
-    /// Returns an error unless source and pupil stand on the side of the normal, `0 < sin_aperture ≤ 1` and the wavelength is
-    /// positive and finite.
+    /// Returns an error unless source and pupil stand on the side of the normal,
+    /// `0 < sin_aperture ≤ 1` and the wavelength is positive and finite.
     pub fn new(geometry: CellGeometry) -> Result<Self, Refusal> {
         let normal = unit("normal", geometry.normal)?;
         let above = |parameter, value: DVec3| {
@@ -130,7 +132,8 @@ impl ResolutionCell {
         Ok(Self { relief, ..self })
     }
 
-    /// Returns the cell out of focus, by the distance of the surface from the plane of focus, in metres, of either sign.
+    /// Returns the cell out of focus, by the distance of the surface from the plane of focus, in
+    /// metres, of either sign.
     ///
     /// # Errors
     ///
@@ -147,13 +150,14 @@ impl ResolutionCell {
     /// w = δ − p n,   p = δ·l / n·l,   δ = l_S − l_S'
     /// ```
     ///
-    /// A change δ of the direction to the source displaces the field across the pupil, by w of its distance, as a change
-    /// of the wave number does, by κ v / k; and it changes the phases of heights. In the plane of incidence
-    /// `|w| = |δ| cos θᵢ / cos θₒ`, across it `|w| = |δ|`.
+    /// A change δ of the direction to the source displaces the field across the pupil, by w of its
+    /// distance, as a change of the wave number does, by κ v / k; and it changes the phases of
+    /// heights. In the plane of incidence `|w| = |δ| cos θᵢ / cos θₒ`, across it `|w| = |δ|`.
     ///
     /// # Validity
     ///
-    /// All light of one direction is coherent over the cell, and lights of two are not with each other.
+    /// All light of one direction is coherent over the cell, and lights of two are not with each
+    /// other.
     ///
     /// # Examples
     ///
@@ -185,7 +189,8 @@ impl ResolutionCell {
     ///
     /// # References
     ///
-    /// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007, ch. 5 and 6: moving diffusers, many lasers.
+    /// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007, ch. 5 and 6: moving diffusers, many
+    ///   lasers.
     #[must_use]
     pub fn with_source_extent(self, source_extent: SourceExtent) -> Self {
         Self {
@@ -224,9 +229,10 @@ impl ResolutionCell {
         self.source
     }
 
-    /// Returns what a change of the unit vector to the source makes, over the wave number: the displacement of the field
-    /// across the pupil in its diameters, along the tilt and across it; and the difference of wave numbers that changes the
-    /// phases of heights as much. Both are linear in that vector.
+    /// Returns what a change of the unit vector to the source makes, over the wave number: the
+    /// displacement of the field across the pupil in its diameters, along the tilt and across it;
+    /// and the difference of wave numbers that changes the phases of heights as much. Both are
+    /// linear in that vector.
     pub(crate) fn change_with_source(&self, change: DVec3) -> (DVec2, f64) {
         let height_factor = change.dot(self.pupil) / self.normal.dot(self.pupil);
         let moved = change - height_factor * self.normal;
@@ -237,8 +243,9 @@ impl ResolutionCell {
         )
     }
 
-    /// Returns the greatest change that a radian of the direction to the source makes, over the wave number: of the
-    /// displacement in pupil diameters, and of the phases of heights and of defocus in radians.
+    /// Returns the greatest change that a radian of the direction to the source makes, over the
+    /// wave number: of the displacement in pupil diameters, and of the phases of heights and of
+    /// defocus in radians.
     pub(crate) fn greatest_change_with_source(&self) -> f64 {
         let height = self.normal.dot(self.pupil).recip();
         let moved = (1.0 + height) / self.full_displacement();
@@ -246,8 +253,8 @@ impl ResolutionCell {
         moved.max(height * self.relief.rms_height).max(blur)
     }
 
-    /// The directions across the line of sight: of the tilt or, without one, of the plane of incidence or any; and
-    /// across it.
+    /// The directions across the line of sight: of the tilt or, without one, of the plane of
+    /// incidence or any; and across it.
     fn axes(&self) -> [DVec3; 2] {
         let across_sight = |v: DVec3| v - v.dot(self.pupil) * self.pupil;
         let along = [self.tilt, self.normal, self.pupil.any_orthonormal_vector()]
@@ -258,8 +265,8 @@ impl ResolutionCell {
         [along, self.pupil.cross(along)]
     }
 
-    /// Returns the gradient of the phase over the object, in rad/m, by which a field is displaced by the diameter of the
-    /// pupil.
+    /// Returns the gradient of the phase over the object, in rad/m, by which a field is displaced
+    /// by the diameter of the pupil.
     fn full_displacement(&self) -> f64 {
         2.0 * TAU * self.sin_aperture / self.wavelength
     }
@@ -269,8 +276,8 @@ impl ResolutionCell {
         self.height_factor * self.relief.rms_height
     }
 
-    /// Returns the difference of wave numbers `κ_t`, in rad/m, by which the tilt displaces the field by the diameter of
-    /// the pupil; infinite without a tilt.
+    /// Returns the difference of wave numbers `κ_t`, in rad/m, by which the tilt displaces the
+    /// field by the diameter of the pupil; infinite without a tilt.
     pub fn tilt_wave_number(&self) -> f64 {
         self.full_displacement() / self.tilt.length()
     }
@@ -280,15 +287,16 @@ impl ResolutionCell {
         0.5 * self.wavelength / self.sin_aperture
     }
 
-    /// Returns the width in rad/m of the finest feature of [`field_correlation`](Self::field_correlation).
+    /// Returns the width in rad/m of the finest feature of
+    /// [`field_correlation`](Self::field_correlation).
     pub(crate) fn scale(&self) -> f64 {
         let blur = self.tilt.length() * self.defocus.abs() * self.sin_aperture;
         let tilt = self.tilt_wave_number();
         tilt.min(self.path_spread().recip()).min(2.0 / blur)
     }
 
-    /// Returns the correlation P̂ of the fields of two wave numbers that differ by κ, in rad/m, in one point of the
-    /// image, for a dense relief without correlation length.
+    /// Returns the correlation P̂ of the fields of two wave numbers that differ by κ, in rad/m, in
+    /// one point of the image, for a dense relief without correlation length.
     pub fn field_correlation(&self, kappa: f64) -> Complex<f64> {
         let shift = kappa / self.tilt_wave_number();
         self.blur(false).mean(shift, kappa) * self.height_correlation(kappa)
@@ -315,8 +323,8 @@ impl ResolutionCell {
         self.relief.correlation_length / self.speckle_size()
     }
 
-    /// Returns what the correlation length of the relief adds to a mean over lags with the weights of a kernel, of which
-    /// `is_often` asked.
+    /// Returns what the correlation length of the relief adds to a mean over lags with the weights
+    /// of a kernel, of which `is_often` asked.
     pub(crate) fn height_excess(&self, kernel: LagKernel, is_often: bool) -> HeightExcess {
         HeightExcess::new(
             kernel,
@@ -336,7 +344,8 @@ impl ResolutionCell {
         }
     }
 
-    /// Returns what parts of the light share of the pupil, with the phases of defocus, for which `is_often` asked.
+    /// Returns what parts of the light share of the pupil, with the phases of defocus, for which
+    /// `is_often` asked.
     fn blur(&self, is_often: bool) -> Blur {
         let half_depth = 0.5 * self.defocus * self.sin_aperture.powi(2);
         // Of the displacement: that of a sphere about the plane in focus.
@@ -379,7 +388,8 @@ impl<'a> Correlation<'a> {
 pub(crate) struct Difference {
     /// Their wave numbers, in rad/m.
     pub kappa: f64,
-    /// The places in the pupil at which their fields are alike, in its diameters, along the tilt and across it.
+    /// The places in the pupil at which their fields are alike, in its diameters, along the tilt
+    /// and across it.
     pub shift: DVec2,
     /// The difference of wave numbers, in rad/m, that changes the phases of heights as much.
     pub of_heights: f64,

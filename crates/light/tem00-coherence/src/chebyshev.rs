@@ -41,7 +41,8 @@ pub(crate) fn at_place([start, end]: [f64; 2], place: f64) -> f64 {
     0.5 * (start + end) + 0.5 * (end - start) * place
 }
 
-/// A function that is smooth between breaks. It is asked for at the nodes of a panel where a value in it is wanted.
+/// A function that is smooth between breaks. It is asked for at the nodes of a panel where a value
+/// in it is wanted.
 pub(crate) struct Tabulated<F> {
     function: F,
     breaks: Vec<f64>,
@@ -78,8 +79,8 @@ pub(crate) const SIDE: usize = 8;
 /// Coefficients of the polynomials on a cell, of the first argument first.
 pub(crate) type CellFit = [[f64; SIDE]; SIDE];
 
-/// A function of two numbers that is smooth between breaks. It is asked for at the nodes of a cell where a value in it is
-/// wanted.
+/// A function of two numbers that is smooth between breaks. It is asked for at the nodes of a cell
+/// where a value in it is wanted.
 #[derive(Clone, Debug)]
 pub(crate) struct Grid {
     breaks: [Vec<f64>; 2],

@@ -3,8 +3,8 @@ use num_complex::Complex;
 /// The largest number of steps towards an eigenvalue; two or three are usual.
 const MAX_STEPS: usize = 100;
 
-/// Returns the eigenvalues of a Hermitian matrix, row by row, good to rounding of the largest: by Householder's reflections
-/// to three diagonals, and QL steps with implicit shifts.
+/// Returns the eigenvalues of a Hermitian matrix, row by row, good to rounding of the largest: by
+/// Householder's reflections to three diagonals, and QL steps with implicit shifts.
 ///
 /// # References
 ///
@@ -69,7 +69,8 @@ fn reflect(a: &mut [Complex<f64>], n: usize, k: usize) -> f64 {
     size
 }
 
-/// Takes a QL step of three diagonals between two rows, by plane rotations from the last row to the first.
+/// Takes a QL step of three diagonals between two rows, by plane rotations from the last row to the
+/// first.
 fn step(diagonal: &mut [f64], beside: &mut [f64], [first, last]: [usize; 2]) {
     let half = (diagonal[first + 1] - diagonal[first]) / (2.0 * beside[first]);
     let root = half.hypot(1.0).copysign(half);

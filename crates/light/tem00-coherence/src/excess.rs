@@ -11,11 +11,11 @@ mod table;
 
 use reach::{STEEP, is_beyond};
 
-/// What a correlation length of heights adds to a mean of `exp(−x² (1 − ρ) + 2πi s·η)` over lags η, in speckles, with
-/// x the phase by heights and s the displacement of the pupil in its diameters.
+/// What a correlation length of heights adds to a mean of `exp(−x² (1 − ρ) + 2πi s·η)` over lags η,
+/// in speckles, with x the phase by heights and s the displacement of the pupil in its diameters.
 ///
-/// A single value takes an integral over the lags. Where many are asked for, or the integral is long, they come from a
-/// table, so that the work is bounded for any relief.
+/// A single value takes an integral over the lags. Where many are asked for, or the integral is
+/// long, they come from a table, so that the work is bounded for any relief.
 #[derive(Clone, Debug)]
 pub(crate) struct HeightExcess {
     kernel: LagKernel,
@@ -40,7 +40,8 @@ impl HeightExcess {
         }
     }
 
-    /// Returns the excess at a difference of wave numbers that heights see, in rad/m, and a displacement of the pupil.
+    /// Returns the excess at a difference of wave numbers that heights see, in rad/m, and a
+    /// displacement of the pupil.
     pub(crate) fn at(&self, of_heights: f64, shift: f64) -> f64 {
         let phase = (of_heights * self.path_spread).abs();
         if self.length == 0.0 || phase == 0.0 {
@@ -65,7 +66,8 @@ fn by_lags(kernel: LagKernel, length: f64, [phase, shift]: [f64; 2]) -> f64 {
         let excess = (-exponent * (1.0 - correlation)).exp() - (-exponent).exp();
         TAU * lag * kernel.at(lag) * excess * libm::j0(turns * lag)
     };
-    // The excess falls from lag 0 on over ℓ or, if heights are large, over less; the images over a speckle.
+    // The excess falls from lag 0 on over ℓ or, if heights are large, over less; the images over a
+    // speckle.
     let width = length / (1.0 + exponent).sqrt();
     if is_beyond(shift, width) {
         return 0.0;

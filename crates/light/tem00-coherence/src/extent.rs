@@ -5,15 +5,19 @@ use tem00_numerics::{check, disc_overlap, quadrature::for_each_node};
 
 use crate::{Refusal, cell::unit};
 
-/// The directions from which the light of a source reaches the surface: those of its transverse modes, of the points of
-/// a lamp or a fibre, or of a diffuser that moves many times while the detector integrates.
+/// The directions from which the light of a source reaches the surface: those of its transverse
+/// modes, of the points of a lamp or a fibre, or of a diffuser that moves many times while the
+/// detector integrates.
 ///
-/// Lights of different directions do not interfere: the detector adds their intensities, as it adds those of wave
-/// numbers. For [`ResolutionCell::with_source_extent`](crate::ResolutionCell::with_source_extent). The default is a point.
+/// Lights of different directions do not interfere: the detector adds their intensities, as it adds
+/// those of wave numbers. For
+/// [`ResolutionCell::with_source_extent`](crate::ResolutionCell::with_source_extent). The default
+/// is a point.
 ///
 /// # Validity
 ///
-/// Discs and Gaussians are small against a radian: to first order in the angle, errors are of the order of its square.
+/// Discs and Gaussians are small against a radian: to first order in the angle, errors are of the
+/// order of its square.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SourceExtent {
     directions: Directions,
@@ -56,7 +60,8 @@ fn angle(name: &'static str, angle: f64) -> Result<f64, Refusal> {
 }
 
 impl SourceExtent {
-    /// A disc about the direction to the source, equally bright, of this half-angle in radians as seen from the surface.
+    /// A disc about the direction to the source, equally bright, of this half-angle in radians as
+    /// seen from the surface.
     ///
     /// # Errors
     ///
@@ -69,8 +74,8 @@ impl SourceExtent {
         })
     }
 
-    /// A round Gaussian about the direction to the source, of this standard deviation along each axis, in radians as
-    /// seen from the surface.
+    /// A round Gaussian about the direction to the source, of this standard deviation along each
+    /// axis, in radians as seen from the surface.
     ///
     /// # Errors
     ///
@@ -83,12 +88,13 @@ impl SourceExtent {
         })
     }
 
-    /// Single directions from the surface to the source, of any length, each with its share of the light; shares are
-    /// scaled to the sum 1.
+    /// Single directions from the surface to the source, of any length, each with its share of the
+    /// light; shares are scaled to the sum 1.
     ///
     /// # Errors
     ///
-    /// Returns an error if there are more than 100, a direction has no length, a share is negative or not finite, or all are 0.
+    /// Returns an error if there are more than 100, a direction has no length, a share is negative
+    /// or not finite, or all are 0.
     pub fn directions(list: &[(DVec3, f64)]) -> Result<Self, Refusal> {
         let count = list.len();
         let allowed = "from 1 to 100 in number";
@@ -116,8 +122,9 @@ impl SourceExtent {
         }
     }
 
-    /// Visits the differences of two directions of the light, as vectors in radians about the direction `to_source`,
-    /// each with its probability; `feature` is the smallest difference that matters.
+    /// Visits the differences of two directions of the light, as vectors in radians about the
+    /// direction `to_source`, each with its probability; `feature` is the smallest difference that
+    /// matters.
     pub(crate) fn for_each_difference(
         &self,
         to_source: DVec3,
@@ -137,7 +144,8 @@ impl SourceExtent {
                     visit(radius * (angle.cos() * first + angle.sin() * second), share);
                 }
             };
-            // Far from each other directions have nothing in common but what varies as the source does.
+            // Far from each other directions have nothing in common but what varies as the source
+            // does.
             let mut from = end.min(EVEN_PANELS * feature.max(1e-12 * end));
             for_each_node(
                 [0.0, from],

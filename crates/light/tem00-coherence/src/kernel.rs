@@ -5,7 +5,8 @@ use std::sync::OnceLock;
 
 use tem00_numerics::{cast::to_usize, disc_overlap, jinc, quadrature::for_each_node};
 
-/// An isotropic weight of lags, of unit area: of the contrast, of the noise of tall rows, or between both.
+/// An isotropic weight of lags, of unit area: of the contrast, of the noise of tall rows, or
+/// between both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LagKernel {
     /// How much of the kernel is that of a contrast.
@@ -32,7 +33,8 @@ impl LagKernel {
     }
 }
 
-/// Lags per speckle of the table of the autocorrelation, and the last one, after which a series is as good.
+/// Lags per speckle of the table of the autocorrelation, and the last one, after which a series is
+/// as good.
 const LAGS: f64 = 64.0;
 const LAST_LAG: f64 = 30.0;
 
@@ -41,7 +43,8 @@ fn image_of_point(lag: f64) -> f64 {
     0.25 * PI * jinc(PI * lag).powi(2)
 }
 
-/// Returns the autocorrelation of the intensity of a point's image, in units of a speckle, of unit area.
+/// Returns the autocorrelation of the intensity of a point's image, in units of a speckle, of unit
+/// area.
 fn image_autocorrelation(lag: f64) -> f64 {
     static TABLE: OnceLock<Vec<f64>> = OnceLock::new();
     if lag >= LAST_LAG {

@@ -14,21 +14,22 @@ use crate::{
 
 /// The speckle that light of a finite bandwidth makes of one rough surface.
 ///
-/// The detector adds the intensities of all wave numbers, and fields of a rough surface are jointly circular Gaussian
-/// over place and wave number, so that
+/// The detector adds the intensities of all wave numbers, and fields of a rough surface are jointly
+/// circular Gaussian over place and wave number, so that
 ///
 /// ```text
 /// ⟨I(x) I(x')⟩ − ⟨I⟩⟨I'⟩ = ∬ S(k) S(k') |⟨U(x, k) U*(x', k')⟩|² dk dk'
 /// ```
 ///
-/// All answers are cases of this one law: the contrast at `x = x'`, the covariance of two frames where the second is
-/// displaced across the pupil, the autocovariance along the image, and the noise of a line's centroid, the power at
-/// low frequencies. They differ: *a contrast does not tell the noise of a line*.
+/// All answers are cases of this one law: the contrast at `x = x'`, the covariance of two frames
+/// where the second is displaced across the pupil, the autocovariance along the image, and the
+/// noise of a line's centroid, the power at low frequencies. They differ: *a contrast does not tell
+/// the noise of a line*.
 ///
 /// # Validity
 ///
-/// That of [`ResolutionCell`] and of [`SpectralLine`], polarised light, and a detector that integrates over many coherence
-/// times.
+/// That of [`ResolutionCell`] and of [`SpectralLine`], polarised light, and a detector that
+/// integrates over many coherence times.
 ///
 /// # Examples
 ///
@@ -56,8 +57,8 @@ use crate::{
 ///
 /// # References
 ///
-/// - G. Parry, *Speckle patterns in partially coherent light*, in *Laser Speckle and Related Phenomena*, ed. J. C.
-///   Dainty, 1975.
+/// - G. Parry, *Speckle patterns in partially coherent light*, in *Laser Speckle and Related
+///   Phenomena*, ed. J. C. Dainty, 1975.
 /// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007.
 #[derive(Clone, Copy, Debug)]
 pub struct PolychromaticSpeckle<'a> {
@@ -83,8 +84,8 @@ impl Rows {
     /// Rows taller than so many speckles count as tall: to 0.005 in f.
     const TALLEST: f64 = 40.0;
 
-    /// Returns f of [`line_noise_ratio`](PolychromaticSpeckle::line_noise_ratio) from a table by distance and direction, for many
-    /// displacements of an extended source.
+    /// Returns f of [`line_noise_ratio`](PolychromaticSpeckle::line_noise_ratio) from a table by
+    /// distance and direction, for many displacements of an extended source.
     fn tabulated(self) -> impl Fn(DVec2) -> f64 {
         const DISTANCES: u32 = 96;
         const TURNS: u32 = 24;
@@ -110,7 +111,8 @@ impl Rows {
         }
     }
 
-    /// Returns f of [`line_noise_ratio`](PolychromaticSpeckle::line_noise_ratio), of a displacement along the tilt and across it.
+    /// Returns f of [`line_noise_ratio`](PolychromaticSpeckle::line_noise_ratio), of a displacement
+    /// along the tilt and across it.
     fn shared_by_all(self) -> impl Fn(DVec2) -> f64 {
         let of_chord = self.power_of_chord();
         let power = move |shift| of_chord.as_ref().map(|of_chord| power_in(shift, of_chord));
@@ -121,8 +123,8 @@ impl Rows {
         }
     }
 
-    /// Returns `K(L) ∝ ∫ (L − |g|)₊ sinc²(πag) dg` of chords L along the rows, in diameters of the pupil; none for tall rows,
-    /// whose power is the area.
+    /// Returns `K(L) ∝ ∫ (L − |g|)₊ sinc²(πag) dg` of chords L along the rows, in diameters of the
+    /// pupil; none for tall rows, whose power is the area.
     fn power_of_chord(self) -> Option<impl Fn(f64) -> f64> {
         const STEPS: f64 = 4096.0;
         let height = match self {
@@ -151,8 +153,8 @@ impl Rows {
         })
     }
 
-    /// Returns how much of the kernel of a contrast, in place of that of tall rows, the correlation of heights takes:
-    /// 0.6 for thin rows, and for others as f lies between both.
+    /// Returns how much of the kernel of a contrast, in place of that of tall rows, the correlation
+    /// of heights takes: 0.6 for thin rows, and for others as f lies between both.
     fn weight_of_contrast(self) -> f64 {
         const OF_THIN_ROWS: f64 = 0.6;
         let half = DVec2::new(0.5, 0.0);
@@ -162,7 +164,8 @@ impl Rows {
     }
 }
 
-/// Returns ∫ K(L) dx over the chords L that cut the lens of two pupils, `shift` diameters apart, across the tilt.
+/// Returns ∫ K(L) dx over the chords L that cut the lens of two pupils, `shift` diameters apart,
+/// across the tilt.
 fn power_in(shift: DVec2, of_chord: impl Fn(f64) -> f64) -> f64 {
     let [along, across] = (0.5 * shift.abs()).to_array();
     let half = |x: f64| (0.25 - x * x).max(0.0).sqrt();
@@ -188,8 +191,8 @@ impl PolychromaticSpeckle<'_> {
         self.covariance([0.0; 2]).sqrt()
     }
 
-    /// Returns the covariance over ⟨I⟩² of two frames between which the field moved across the pupil by `displacement`,
-    /// in pupil diameters along the tilt and across it, in focus.
+    /// Returns the covariance over ⟨I⟩² of two frames between which the field moved across the
+    /// pupil by `displacement`, in pupil diameters along the tilt and across it, in focus.
     ///
     /// ```text
     /// cov(I₁, I₂) / ⟨I⟩² = ∫ R(κ) exp(−κ² σ_L²) chat²(|m + κ v̂ / κ_t|) dκ
@@ -209,8 +212,8 @@ impl PolychromaticSpeckle<'_> {
         })
     }
 
-    /// Returns the autocovariance over ⟨I⟩² at a lag on the object, in speckle sizes along the tilt and across it, in
-    /// focus: grains grow along the tilt.
+    /// Returns the autocovariance over ⟨I⟩² at a lag on the object, in speckle sizes along the tilt
+    /// and across it, in focus: grains grow along the tilt.
     pub fn autocovariance(&self, lag: [f64; 2]) -> f64 {
         let lag = PI * DVec2::from_array(lag);
         self.mean(|difference| {
@@ -228,8 +231,8 @@ impl PolychromaticSpeckle<'_> {
         })
     }
 
-    /// Returns the standard deviation of the position of a line over that in light of one wavelength, for a tilt across the
-    /// line.
+    /// Returns the standard deviation of the position of a line over that in light of one
+    /// wavelength, for a tilt across the line.
     ///
     /// ```text
     /// √∫ R(κ) exp(−κ² σ_L²) f(s) dκ,     s = |κ| / κ_t
@@ -238,22 +241,24 @@ impl PolychromaticSpeckle<'_> {
     /// f = ∫ K(L(x, s)) dx / ∫ K(L(x, 0)) dx,   K(L) = ∫ (L − |g|)₊ sinc²(πag) dg      rows of a speckle sizes
     /// ```
     ///
-    /// with the chords L along the rows of the lens that two discs of the diameter 1 share, s apart: K is L² for thin rows and
-    /// L for tall ones. Directions of an extended source displace the discs along the rows as well.
+    /// with the chords L along the rows of the lens that two discs of the diameter 1 share, s
+    /// apart: K is L² for thin rows and L for tall ones. Directions of an extended source displace
+    /// the discs along the rows as well.
     ///
-    /// A centroid asks for the power at low frequencies, to which a lens of the pupil counts with its area or its
-    /// chords, and not, as in the contrast, with the square of its area.
+    /// A centroid asks for the power at low frequencies, to which a lens of the pupil counts with
+    /// its area or its chords, and not, as in the contrast, with the square of its area.
     ///
     /// # Validity
     ///
-    /// Lines four speckles wide or wider; at two first order is up to 10 % higher. Defocus drops out as long as the wavelengths
-    /// are displaced by less than the width of the line. A correlation length of the relief takes for thin rows a mean of
-    /// two kernels: to 0.005 of the deviation without a tilt of the cell, and to 0.01 with one.
+    /// Lines four speckles wide or wider; at two first order is up to 10 % higher. Defocus drops
+    /// out as long as the wavelengths are displaced by less than the width of the line. A
+    /// correlation length of the relief takes for thin rows a mean of two kernels: to 0.005 of the
+    /// deviation without a tilt of the cell, and to 0.01 with one.
     ///
     /// # References
     ///
-    /// - R. G. Dorsch, G. Häusler, J. M. Herrmann, *Laser triangulation: fundamental uncertainty in distance
-    ///   measurement*, Applied Optics 33, 1994: the line in light of one wavelength.
+    /// - R. G. Dorsch, G. Häusler, J. M. Herrmann, *Laser triangulation: fundamental uncertainty in
+    ///   distance measurement*, Applied Optics 33, 1994: the line in light of one wavelength.
     pub fn line_noise_ratio(&self, rows: Rows) -> f64 {
         let variance = if self.cell.source_extent().is_point() {
             self.line_variance_by(rows, rows.shared_by_all())

@@ -5,9 +5,10 @@ use core::f64::consts::PI;
 use num_complex::Complex;
 use tem00_numerics::quadrature::for_each_node;
 
-/// Returns `(1/π) ∫ exp(iφ)` over the lens that two unit discs share whose centres are 2 `shift` apart along the
-/// first axis. The phase is a sum of one along it, which changes by at most some `range` from the centre to the edge, and of
-/// one across, of which `across` is the integral of `exp(iφ)` over a chord, from its half length.
+/// Returns `(1/π) ∫ exp(iφ)` over the lens that two unit discs share whose centres are 2 `shift`
+/// apart along the first axis. The phase is a sum of one along it, which changes by at most some
+/// `range` from the centre to the edge, and of one across, of which `across` is the integral of
+/// `exp(iφ)` over a chord, from its half length.
 pub(crate) fn mean_over_lens(
     shift: f64,
     range: f64,
@@ -59,7 +60,8 @@ pub(crate) fn quadratic_across(b: f64, c: f64) -> Complex<f64> {
         }
         2.0 * c * Complex::new(parts[0] - parts[2], parts[3] - parts[1])
     } else {
-        // All of the axis less both tails: exp(−z²) / (z + ½/(z + 1/(z + 3/2/(z + …)))) for z = √i y √b.
+        // All of the axis less both tails: exp(−z²) / (z + ½/(z + 1/(z + 3/2/(z + …)))) for z = √i
+        // y √b.
         let z = Complex::from_polar(phase.sqrt(), 0.25 * PI);
         let fraction = (1..=60)
             .rev()

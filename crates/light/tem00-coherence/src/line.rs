@@ -17,17 +17,20 @@ use crate::{Refusal, chebyshev::Tabulated};
 /// R(κ) = ∫ S(k) S(k + κ) dk          density of the difference of two draws of the wave number
 /// ```
 ///
-/// One peak stands for a single line, several for the modes of a cavity; all peaks have one shape P. Linewidths are
-/// full widths at half maximum of the power per wavelength; inside, everything is a wave number.
+/// One peak stands for a single line, several for the modes of a cavity; all peaks have one shape
+/// P. Linewidths are full widths at half maximum of the power per wavelength; inside, everything is
+/// a wave number.
 ///
 /// # Validity
 ///
-/// Widths small against the wavelength, at most a tenth of it: to there a shape in wavelength is as good as the same
-/// shape in wave number, and a pupil in units of the wavelength is the same for all of the line.
+/// Widths small against the wavelength, at most a tenth of it: to there a shape in wavelength is as
+/// good as the same shape in wave number, and a pupil in units of the wavelength is the same for
+/// all of the line.
 ///
 /// # Examples
 ///
-/// A single-mode laser is coherent over its paths, a superluminescent diode of 20 nm over some 20 µm:
+/// A single-mode laser is coherent over its paths, a superluminescent diode of 20 nm over some 20
+/// µm:
 ///
 /// ```
 /// use tem00_coherence::{LineShape, SpectralLine};
@@ -46,7 +49,8 @@ use crate::{Refusal, chebyshev::Tabulated};
 pub struct SpectralLine {
     wavelength: f64,
     shape: LineShape,
-    /// Standard deviation, half width or full width of a peak in rad/m, by its shape; 0 without a width.
+    /// Standard deviation, half width or full width of a peak in rad/m, by its shape; 0 without a
+    /// width.
     width: f64,
     peaks: Vec<Peak>,
 }
@@ -78,8 +82,8 @@ const MAX_RELATIVE_WIDTH: f64 = 0.1;
 const MAX_WIDE_PEAKS: usize = 24;
 /// The largest number of peaks whose pairs are taken one by one.
 const MAX_PEAKS_IN_PAIRS: usize = 8;
-/// Standard deviations of a Gaussian and half widths of a Lorentzian after which nothing is left: 1e−16 of the first,
-/// 1e−12 of the second.
+/// Standard deviations of a Gaussian and half widths of a Lorentzian after which nothing is left:
+/// 1e−16 of the first, 1e−12 of the second.
 const GAUSSIAN_REACH: f64 = 8.5;
 const LORENTZIAN_REACH: f64 = 1e12;
 
@@ -100,7 +104,8 @@ impl SpectralLine {
     ///
     /// # Errors
     ///
-    /// Returns an error unless the wavelength is positive and finite and the linewidth lies between 0 and a tenth of it.
+    /// Returns an error unless the wavelength is positive and finite and the linewidth lies between
+    /// 0 and a tenth of it.
     pub fn new(wavelength: f64, linewidth: f64, shape: LineShape) -> Result<Self, Refusal> {
         let single = Peak {
             offset: 0.0,
@@ -109,8 +114,8 @@ impl SpectralLine {
         Self::checked(wavelength, vec![single])?.with_linewidth(linewidth, shape)
     }
 
-    /// Creates `count` equal peaks without a width, the first and the last `span` apart, in metres: the longitudinal
-    /// modes of a cavity.
+    /// Creates `count` equal peaks without a width, the first and the last `span` apart, in metres:
+    /// the longitudinal modes of a cavity.
     ///
     /// # Errors
     ///
@@ -128,13 +133,13 @@ impl SpectralLine {
         Self::checked(wavelength, peaks.take(Self::MAX_PEAKS + 1).collect())
     }
 
-    /// Creates peaks without a width from wavelengths in metres, each with its power in any unit. The wavelength of
-    /// the line is that of the mean wave number.
+    /// Creates peaks without a width from wavelengths in metres, each with its power in any unit.
+    /// The wavelength of the line is that of the mean wave number.
     ///
     /// # Errors
     ///
-    /// Returns an error unless there are between 1 and `MAX_PEAKS`, within a tenth of the wavelength, and powers are finite
-    /// and positive.
+    /// Returns an error unless there are between 1 and `MAX_PEAKS`, within a tenth of the
+    /// wavelength, and powers are finite and positive.
     pub fn from_peaks(peaks: &[[f64; 2]]) -> Result<Self, Refusal> {
         check_count(peaks.len())?;
         for &[wavelength, power] in peaks {
@@ -221,7 +226,8 @@ impl SpectralLine {
         (within + between.max(0.0)).sqrt()
     }
 
-    /// Returns the complex degree of coherence γ at a path difference, in metres, without the phase of the mean wave.
+    /// Returns the complex degree of coherence γ at a path difference, in metres, without the phase
+    /// of the mean wave.
     pub fn coherence(&self, path: f64) -> Complex<f64> {
         let x = self.width * path;
         let within = match self.shape {
@@ -245,8 +251,8 @@ impl SpectralLine {
         self.coherence(path).norm_sqr()
     }
 
-    /// Returns the coherence length ∫ |γ|² dl over all path differences, in metres: for one Gaussian peak
-    /// 0.664 λ²/Δλ. It is infinite for peaks without a width.
+    /// Returns the coherence length ∫ |γ|² dl over all path differences, in metres: for one
+    /// Gaussian peak 0.664 λ²/Δλ. It is infinite for peaks without a width.
     pub fn coherence_length(&self) -> f64 {
         TAU * self.mean_over_differences(|offset| match self.width > 0.0 {
             true => self.pair_density(offset),
@@ -254,9 +260,11 @@ impl SpectralLine {
         })
     }
 
-    /// Returns the mean `∫ R(κ) f(κ) dκ` of a function over the difference κ of two wave numbers of the line, in rad/m.
+    /// Returns the mean `∫ R(κ) f(κ) dκ` of a function over the difference κ of two wave numbers of
+    /// the line, in rad/m.
     ///
-    /// `scale` is the width of the finest feature of f; f may have a cusp at 0, and falls or stays as it is far away.
+    /// `scale` is the width of the finest feature of f; f may have a cusp at 0, and falls or stays
+    /// as it is far away.
     pub fn mean_over_pairs(&self, scale: f64, f: impl Fn(f64) -> f64) -> f64 {
         let of_offset = |offset| match self.has_width() {
             true => self.mean_over_peaks(offset, scale, &f),
@@ -295,11 +303,11 @@ impl SpectralLine {
             .sum()
     }
 
-    /// Returns the difference κ between a wave number drawn from the line and the mean one, in rad/m, for a uniform
-    /// number between 0 and 1.
+    /// Returns the difference κ between a wave number drawn from the line and the mean one, in
+    /// rad/m, for a uniform number between 0 and 1.
     ///
-    /// It grows with that number within a peak, and from peak to peak in the order in which they were given. The wings
-    /// of a Lorentzian end at a tenth of the mean wave number.
+    /// It grows with that number within a peak, and from peak to peak in the order in which they
+    /// were given. The wings of a Lorentzian end at a tenth of the mean wave number.
     pub fn draw(&self, uniform: f64) -> f64 {
         let mut rest = uniform.clamp(0.0, 1.0);
         let last = self.peaks.len() - 1;
@@ -315,16 +323,17 @@ impl SpectralLine {
         0.0
     }
 
-    /// Returns the standard deviation, in rad/m, of a Gaussian line that is as wide as this one between the quantiles
-    /// of 12 % and 88 %, where a Gaussian has half its maximum.
+    /// Returns the standard deviation, in rad/m, of a Gaussian line that is as wide as this one
+    /// between the quantiles of 12 % and 88 %, where a Gaussian has half its maximum.
     pub fn effective_spread(&self) -> f64 {
         let tail = 0.5 * libm::erfc(LN_2.sqrt());
         (self.draw(1.0 - tail) - self.draw(tail)).abs() / (8.0 * LN_2).sqrt()
     }
 
-    /// Returns wave numbers, less the mean one, with the fractions of the power for which they stand in an integral:
-    /// 16 or more for each peak with a width, as a function asks whose finest feature is `scale` wide; nothing if that
-    /// takes more than `most`. Of more than 24 peaks the widths are left out.
+    /// Returns wave numbers, less the mean one, with the fractions of the power for which they
+    /// stand in an integral: 16 or more for each peak with a width, as a function asks whose finest
+    /// feature is `scale` wide; nothing if that takes more than `most`. Of more than 24 peaks the
+    /// widths are left out.
     pub(crate) fn nodes(&self, scale: f64, most: usize) -> Option<Vec<[f64; 2]>> {
         let is_wide = self.width > 0.0 && self.peaks.len() <= MAX_WIDE_PEAKS;
         let fewest = if self.peaks.len() <= 4 { 4.0 } else { 1.0 };
@@ -350,7 +359,8 @@ impl SpectralLine {
         self.shape.pair_density(kappa / self.width) / self.width
     }
 
-    /// ∫ f(κ) times the density of the difference of two draws from two peaks that are `offset` apart.
+    /// ∫ f(κ) times the density of the difference of two draws from two peaks that are `offset`
+    /// apart.
     fn mean_over_peaks(&self, offset: f64, scale: f64, f: &impl Fn(f64) -> f64) -> f64 {
         // In widths of a peak, of which there may be no reciprocal.
         let width = self.width;
@@ -386,7 +396,8 @@ impl LineShape {
         }
     }
 
-    /// Calls `visit` with nodes of a peak of width 1 and their fractions of its power, 16 on each panel.
+    /// Calls `visit` with nodes of a peak of width 1 and their fractions of its power, 16 on each
+    /// panel.
     fn for_each_node(self, panels: f64, mut visit: impl FnMut(f64, f64)) {
         let (reach, width) = match self {
             Self::Gaussian => (5.5, 11.0),

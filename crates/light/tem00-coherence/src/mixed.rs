@@ -2,10 +2,12 @@ use tem00_numerics::{check, disc_overlap, quadrature::integrate};
 
 use crate::Refusal;
 
-/// The light of a pixel that met one rough surface, *single*, mixed with light that met several, *multiple*.
+/// The light of a pixel that met one rough surface, *single*, mixed with light that met several,
+/// *multiple*.
 ///
-/// Each is a circular Gaussian field over the wave numbers, and fields add. With the fractions f of both, their degrees
-/// of polarisation P in the same two components, and what paths share of their coherence,
+/// Each is a circular Gaussian field over the wave numbers, and fields add. With the fractions f of
+/// both, their degrees of polarisation P in the same two components, and what paths share of their
+/// coherence,
 ///
 /// ```text
 /// C² = f₁² c₁₁ (1 + P₁²)/2 + f₁ f₂ c₁₂ (1 + P₁ P₂) + f₂² c₂₂ (1 + P₂²)/2
@@ -16,13 +18,13 @@ use crate::Refusal;
 ///
 /// # Validity
 ///
-/// Many scatterers share a resolution cell, and of the other surface so much is lit that its own speckle is much finer
-/// than the cell: see [`cascade_variance`].
+/// Many scatterers share a resolution cell, and of the other surface so much is lit that its own
+/// speckle is much finer than the cell: see [`cascade_variance`].
 ///
 /// # Examples
 ///
-/// A corner with 30 parts of multiple to 100 of single light, behind a laser of one wavelength and behind one so broad
-/// that only the single light interferes:
+/// A corner with 30 parts of multiple to 100 of single light, behind a laser of one wavelength and
+/// behind one so broad that only the single light interferes:
 ///
 /// ```
 /// use tem00_coherence::MixedLight;
@@ -36,7 +38,8 @@ use crate::Refusal;
 ///
 /// # References
 ///
-/// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007, ch. 3: sums of patterns that are partly correlated.
+/// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007, ch. 3: sums of patterns that are partly
+///   correlated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MixedLight {
     /// The fraction f₂ of the multiple light, from 0 to 1.
@@ -44,7 +47,8 @@ pub struct MixedLight {
     /// c₁₁, the squared contrast of the polarised single light alone, from 0 to 1: that of
     /// [`PolychromaticSpeckle`](crate::PolychromaticSpeckle).
     pub within_single: f64,
-    /// c₁₂ of single with multiple light, from 0 to 1: of [`PathPairs`](crate::PathPairs), as the next.
+    /// c₁₂ of single with multiple light, from 0 to 1: of [`PathPairs`](crate::PathPairs), as the
+    /// next.
     pub with_single: f64,
     /// c₂₂ of the multiple light with itself, from 0 to 1.
     pub within_multiple: f64,
@@ -93,17 +97,18 @@ impl MixedLight {
     }
 }
 
-/// Returns the relative variance 1/M, over a resolution cell, of the light that the speckle of a small lit part of
-/// another surface sends there.
+/// Returns the relative variance 1/M, over a resolution cell, of the light that the speckle of a
+/// small lit part of another surface sends there.
 ///
 /// ```text
 /// 1/M = ∫ chat²(ν) chat(ν/r) ν dν / ∫ chat(ν/r) ν dν
 /// C²  = 1 + 2/M                                         multiple light alone, of one wavelength
 /// ```
 ///
-/// for a round part of the half-angle α seen from the cell, r = sin α / sin u. A part much smaller than the aperture of
-/// the camera, r → 0, makes the squared contrast 3, as of a K distribution: speckle of speckle. With single light and a
-/// linewidth f₂² (1 + c₂₂) / M is added to the squared contrast of [`MixedLight`].
+/// for a round part of the half-angle α seen from the cell, r = sin α / sin u. A part much smaller
+/// than the aperture of the camera, r → 0, makes the squared contrast 3, as of a K distribution:
+/// speckle of speckle. With single light and a linewidth f₂² (1 + c₂₂) / M is added to the squared
+/// contrast of [`MixedLight`].
 ///
 /// # Errors
 ///

@@ -9,24 +9,26 @@ pub struct DelayedLight {
     pub delay: f64,
 }
 
-/// Mutual coherence of light that met several rough surfaces, from pairs of independently drawn paths.
+/// Mutual coherence of light that met several rough surfaces, from pairs of independently drawn
+/// paths.
 ///
 /// ```text
 /// c₂₂ = ∬ p₂(l) p₂(l') |γ(l − l')|² dl dl'     of the multiply scattered light with itself
 /// c₁₂ = ∫ p₂(l) |γ(l)|² dl                     with the singly scattered light
 /// ```
 ///
-/// with the density p₂ of the delays by their light. A pair of draws stands for the double integral, so that no
-/// histogram is needed and p₂ may have any shape: long tails, several peaks.
+/// with the density p₂ of the delays by their light. A pair of draws stands for the double
+/// integral, so that no histogram is needed and p₂ may have any shape: long tails, several peaks.
 ///
 /// # Validity
 ///
-/// Both samples of a pair must be *independent*: neighbours of a low-discrepancy sequence are not. The paths of the
-/// resolution cell itself, its tilt and its relief, are left out; they multiply.
+/// Both samples of a pair must be *independent*: neighbours of a low-discrepancy sequence are not.
+/// The paths of the resolution cell itself, its tilt and its relief, are left out; they multiply.
 ///
 /// # Examples
 ///
-/// Half of the light 2 mm longer on its way than the other half, in a line whose coherence ends between them:
+/// Half of the light 2 mm longer on its way than the other half, in a line whose coherence ends
+/// between them:
 ///
 /// ```
 /// use tem00_coherence::{DelayedLight, LineShape, PathPairs, SpectralLine};
@@ -72,17 +74,18 @@ impl PathPairs {
         ratio(self.of_pairs)
     }
 
-    /// Returns c₁₂ = Σ E |γ(Δ)|² / Σ E over the paths of the first samples, so that each counts once; nothing without
-    /// light.
+    /// Returns c₁₂ = Σ E |γ(Δ)|² / Σ E over the paths of the first samples, so that each counts
+    /// once; nothing without light.
     pub fn coherence_with_single(&self) -> Option<f64> {
         ratio(self.with_single)
     }
 }
 
-/// Returns the ratio t of the fractions `(1 − t) tⁿ` of independent patterns whose squares sum to a squared contrast
-/// between 0 and 1.
+/// Returns the ratio t of the fractions `(1 − t) tⁿ` of independent patterns whose squares sum to a
+/// squared contrast between 0 and 1.
 ///
-/// They are the modes of a Gaussian line over normally distributed paths, and nearly those of other densities.
+/// They are the modes of a Gaussian line over normally distributed paths, and nearly those of other
+/// densities.
 pub const fn mode_ratio(squared_contrast: f64) -> f64 {
     (1.0 - squared_contrast) / (1.0 + squared_contrast)
 }

@@ -17,21 +17,23 @@ use crate::{
 /// I = Σⱼ fⱼ ⟨ |Σₕ rₕ exp(iκ q zₕ) Uⱼₕ|² ⟩      mean over wave numbers κ drawn from the line
 /// ```
 ///
-/// Each wave number sees the patterns displaced across the pupil by `κ/κ_t` diameters along the tilt of the cell.
+/// Each wave number sees the patterns displaced across the pupil by `κ/κ_t` diameters along the
+/// tilt of the cell.
 ///
 /// # Validity
 ///
-/// Contrasts are right, to 0.006 of representative heights. Where heights dominate, patterns are the coherent modes, and
-/// look alike in all wave numbers. Directions of an extended source add patterns that leave the grains and the
-/// correlation of frames as those of a point; truly, [`autocovariance`](PolychromaticSpeckle::autocovariance) and
+/// Contrasts are right, to 0.006 of representative heights. Where heights dominate, patterns are
+/// the coherent modes, and look alike in all wave numbers. Directions of an extended source add
+/// patterns that leave the grains and the correlation of frames as those of a point; truly,
+/// [`autocovariance`](PolychromaticSpeckle::autocovariance) and
 /// [`covariance`](PolychromaticSpeckle::covariance) reach a little farther.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PatternSum {
-    /// Fractions f of the light in independent patterns whose intensities add, the largest first; their sum is 1, and there
-    /// are at most 1024.
+    /// Fractions f of the light in independent patterns whose intensities add, the largest first;
+    /// their sum is 1, and there are at most 1024.
     pub fractions: Vec<f64>,
-    /// Heights z of the relief in metres whose fields add, each with the root r of its fraction of the light; none where the
-    /// patterns are looked up as in one wavelength.
+    /// Heights z of the relief in metres whose fields add, each with the root r of its fraction of
+    /// the light; none where the patterns are looked up as in one wavelength.
     pub heights: Vec<[f64; 2]>,
 }
 
@@ -45,8 +47,8 @@ const MAX_NODES: usize = 400;
 const MAX_PATTERNS: u32 = 1024;
 
 impl PolychromaticSpeckle<'_> {
-    /// Returns the patterns that together have a variance: the squared [`contrast`](Self::contrast) or
-    /// [`line_noise_ratio`](Self::line_noise_ratio).
+    /// Returns the patterns that together have a variance: the squared [`contrast`](Self::contrast)
+    /// or [`line_noise_ratio`](Self::line_noise_ratio).
     ///
     /// The variance of light in 1024 equal patterns is the least: a contrast of 1/32.
     pub fn patterns(&self, variance: impl Fn(&PolychromaticSpeckle<'_>) -> f64) -> PatternSum {
@@ -77,16 +79,16 @@ impl PolychromaticSpeckle<'_> {
         }
     }
 
-    /// Returns the fractions of the light in its coherent modes, the largest first; their squares sum to the squared
-    /// contrast.
+    /// Returns the fractions of the light in its coherent modes, the largest first; their squares
+    /// sum to the squared contrast.
     ///
-    /// They are the eigenvalues of `√S(k) P̂(k − k') √S(k')`: the intensity is the sum of as many independent speckle
-    /// patterns. The last modes, of together 10⁻⁴ of the light, are left out. The correlation length of the relief is left
-    /// out.
+    /// They are the eigenvalues of `√S(k) P̂(k − k') √S(k')`: the intensity is the sum of as many
+    /// independent speckle patterns. The last modes, of together 10⁻⁴ of the light, are left out.
+    /// The correlation length of the relief is left out.
     ///
-    /// Where the paths are spread so widely that more than some hundred modes would count, the fractions fall by one
-    /// ratio, which is exact for a Gaussian line and heights alone, and keep the contrast down to that of 1024 modes, 1/32. So
-    /// do those of a source that is not a point.
+    /// Where the paths are spread so widely that more than some hundred modes would count, the
+    /// fractions fall by one ratio, which is exact for a Gaussian line and heights alone, and keep
+    /// the contrast down to that of 1024 modes, 1/32. So do those of a source that is not a point.
     pub fn modes(&self) -> Vec<f64> {
         let is_point = self.cell.source_extent().is_point();
         let nodes = is_point.then(|| self.line.nodes(self.cell.scale(), MAX_NODES));

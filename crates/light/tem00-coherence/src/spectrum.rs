@@ -1,6 +1,7 @@
 use crate::{LineShape, Refusal, SourceExtent, SpectralLine};
 
-/// The light of a laser as a data sheet or a file states it: numbers as they were given. Lengths in metres.
+/// The light of a laser as a data sheet or a file states it: numbers as they were given. Lengths in
+/// metres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LaserLight {
     /// The wavelength in vacuum of the middle of the line.
@@ -9,8 +10,9 @@ pub struct LaserLight {
     pub linewidth: f64,
     /// What lies within.
     pub spectrum: Spectrum,
-    /// The half-angle in radians of the disc from which the light reaches the surface, seen from there; 0 for a point. Light
-    /// of its parts does not interfere: a fibre of many modes, a diffuser that moves during an exposure, a lamp.
+    /// The half-angle in radians of the disc from which the light reaches the surface, seen from
+    /// there; 0 for a point. Light of its parts does not interfere: a fibre of many modes, a
+    /// diffuser that moves during an exposure, a lamp.
     pub source_half_angle: f64,
 }
 
@@ -19,10 +21,11 @@ pub struct LaserLight {
 pub enum Spectrum {
     /// One peak, as wide as the linewidth.
     Peak(LineShape),
-    /// So many equal lines without a width, the first and the last a linewidth apart: the longitudinal modes of a
-    /// cavity.
+    /// So many equal lines without a width, the first and the last a linewidth apart: the
+    /// longitudinal modes of a cavity.
     Comb(u32),
-    /// Pairs of a wavelength, in metres, and a power, in any unit. Each of them is a Gaussian peak of the linewidth.
+    /// Pairs of a wavelength, in metres, and a power, in any unit. Each of them is a Gaussian peak
+    /// of the linewidth.
     Peaks(Vec<[f64; 2]>),
 }
 
@@ -43,7 +46,8 @@ impl LaserLight {
         }
     }
 
-    /// Creates the light of peaks, see [`Spectrum::Peaks`], about the wavelength of their mean wave number.
+    /// Creates the light of peaks, see [`Spectrum::Peaks`], about the wavelength of their mean wave
+    /// number.
     ///
     /// # Errors
     ///
@@ -70,8 +74,8 @@ impl LaserLight {
     ///
     /// # Errors
     ///
-    /// Those of the constructors of [`SpectralLine`], and an error for a wavelength that is not that of its
-    /// [`Peaks`](Spectrum::Peaks).
+    /// Those of the constructors of [`SpectralLine`], and an error for a wavelength that is not
+    /// that of its [`Peaks`](Spectrum::Peaks).
     pub fn line(&self) -> Result<SpectralLine, Refusal> {
         let &Self {
             wavelength,

@@ -1,9 +1,11 @@
 //! The law of speckle motion as source text for kernels.
 //!
-//! A kernel on a GPU cannot call this crate: it evaluates the law itself. Whole frames, with the rows of camera, laser
-//! and motion, are looked up by `tem00_factor` of the crate `tem00-shading`, which calls these functions.
+//! A kernel on a GPU cannot call this crate: it evaluates the law itself. Whole frames, with the
+//! rows of camera, laser and motion, are looked up by `tem00_factor` of the crate `tem00-shading`,
+//! which calls these functions.
 
-/// Motion and correlation of speckle between two states in WGSL: functions and structs without bindings.
+/// Motion and correlation of speckle between two states in WGSL: functions and structs without
+/// bindings.
 ///
 /// Its first comment says how to call them and how exact they are.
 ///

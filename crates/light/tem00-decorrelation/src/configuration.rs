@@ -23,14 +23,14 @@ pub struct ConfigurationData {
 
 /// A point of a rough surface, its light and its camera, all in the world: one state of a scene.
 ///
-/// Two states say what happens to the speckle in between: one is made with
-/// [`new`](Self::new), the other from it, by moving the bodies or by changing the light. The surface
-/// point is the same bit of matter in both.
+/// Two states say what happens to the speckle in between: one is made with [`new`](Self::new), the
+/// other from it, by moving the bodies or by changing the light. The surface point is the same bit
+/// of matter in both.
 ///
 /// # Examples
 ///
-/// A surface seen and lit along its normal from 0.3 m tilts by 0.3 mrad. The reflected light turns by
-/// twice that, and the speckle moves by 180 µm across the pupil:
+/// A surface seen and lit along its normal from 0.3 m tilts by 0.3 mrad. The reflected light turns
+/// by twice that, and the speckle moves by 180 µm across the pupil:
 ///
 /// ```
 /// use tem00_decorrelation::{

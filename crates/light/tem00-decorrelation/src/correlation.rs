@@ -16,8 +16,8 @@ use tem00_numerics::{disc_overlap, sinc_pi_squared};
 /// γ = chat²(s),    chat(s) = (2/π) (acos s − s √(1 − s²))
 /// ```
 ///
-/// `shift` is the length s of the pupil displacement in units of the pupil diameter. The part of the
-/// pupil that sees the same field as before is the overlap of two discs; from s = 1 on there is
+/// `shift` is the length s of the pupil displacement in units of the pupil diameter. The part of
+/// the pupil that sees the same field as before is the overlap of two discs; from s = 1 on there is
 /// none. The function is even.
 ///
 /// # Examples

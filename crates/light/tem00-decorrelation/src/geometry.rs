@@ -19,8 +19,8 @@ use crate::{
 /// ```
 ///
 /// The scene is seen in perspective from the centre of the entrance pupil, as by a pinhole camera
-/// with the sensor at the principal distance `c`. In a thin lens both pupils coincide with the lens:
-/// `m_p` = 1 and `c = d_PI`.
+/// with the sensor at the principal distance `c`. In a thin lens both pupils coincide with the
+/// lens: `m_p` = 1 and `c = d_PI`.
 ///
 /// The speckle size `h` is the period of the finest intensity fringes that the pupil lets through.
 /// The intensity correlation first vanishes at 1.22 h and its full width at half maximum is 1.03 h.
@@ -134,8 +134,8 @@ impl ImagingGeometry {
     ///
     /// Returns an error if a length, the magnification or the pupil magnification is not positive
     /// and finite, if the f-number is below 0.5, if the surface lies so near that no real image
-    /// forms or that the pupil is wider than twice its distance, or if the pupil is smaller than the
-    /// wavelength.
+    /// forms or that the pupil is wider than twice its distance, or if the pupil is smaller than
+    /// the wavelength.
     ///
     /// # Examples
     ///
@@ -196,8 +196,8 @@ impl ImagingGeometry {
     ///
     /// # Errors
     ///
-    /// Returns an error if a length is not positive and finite, if the pupil is wider than twice its
-    /// distance to surface or sensor, or if it is smaller than the wavelength.
+    /// Returns an error if a length is not positive and finite, if the pupil is wider than twice
+    /// its distance to surface or sensor, or if it is smaller than the wavelength.
     ///
     /// # Examples
     ///
@@ -427,8 +427,8 @@ impl ImagingGeometry {
     /// Returns the defocus `W = 1/Z − 1/L` of a point at `depth` Z, in metres, before the entrance
     /// pupil, in 1/m.
     ///
-    /// It is positive before the surface in focus and negative behind. The path of the light through
-    /// the pupil point p is `W p²/2` longer than to a point in focus.
+    /// It is positive before the surface in focus and negative behind. The path of the light
+    /// through the pupil point p is `W p²/2` longer than to a point in focus.
     pub fn defocus_at(&self, depth: f64) -> f64 {
         depth.recip() - self.surface_to_pupil.recip()
     }
@@ -440,11 +440,12 @@ impl ImagingGeometry {
     /// c = (h_p / h_I) (t_x, −t_y) − (h_p / h) a_I
     /// ```
     ///
-    /// `pixel` is the position t in pixels, x to the right and y *down* as rows count, from any origin.
-    /// `image_displacement` is the motion `a_I` of the speckle since the reference state to the right and
-    /// *up*, in metres, as [`SpeckleMotion`](crate::SpeckleMotion) has it: the pattern moves across the
-    /// image *by* `a_I`. `pattern_speckle_size` is `h_p`, the speckle size of the pattern in samples. The
-    /// result is that of a look-up, to the right and up, and not wrapped to the period of the pattern.
+    /// `pixel` is the position t in pixels, x to the right and y *down* as rows count, from any
+    /// origin. `image_displacement` is the motion `a_I` of the speckle since the reference state to
+    /// the right and *up*, in metres, as [`SpeckleMotion`](crate::SpeckleMotion) has it: the
+    /// pattern moves across the image *by* `a_I`. `pattern_speckle_size` is `h_p`, the speckle size
+    /// of the pattern in samples. The result is that of a look-up, to the right and up, and not
+    /// wrapped to the period of the pattern.
     ///
     /// Bergmann et al. 2016, §6.3, prints a plus sign, by which the pattern runs backwards.
     pub fn pattern_coordinate(

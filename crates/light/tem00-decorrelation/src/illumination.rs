@@ -64,9 +64,9 @@ impl Illumination {
 
     /// Creates light from its wavefront at a position, in metres.
     ///
-    /// Around that position the wave is followed by [`Wavefront::direction_from`], within the limits
-    /// stated there. Take a position near the surface point, and describe a beam anew where the
-    /// surface has moved too far through it.
+    /// Around that position the wave is followed by [`Wavefront::direction_from`], within the
+    /// limits stated there. Take a position near the surface point, and describe a beam anew where
+    /// the surface has moved too far through it.
     ///
     /// # Errors
     ///

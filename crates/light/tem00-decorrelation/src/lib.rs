@@ -3,8 +3,8 @@
 //! # Conventions
 //!
 //! - SI units and radians; world vectors are [`DVec3`], vectors in the pupil or image [`DVec2`].
-//! - A [`CameraFrame`] has `b1` to the right and `b2` up in the pupil plane, and `b3` from the scene
-//!   towards the camera.
+//! - A [`CameraFrame`] has `b1` to the right and `b2` up in the pupil plane, and `b3` from the
+//!   scene towards the camera.
 //! - Directions lead *away from the surface*: to the pupil, to the light source.
 //! - A wavefront has a *curvature* 1/R, positive where the wave diverges; zero is a plane wave.
 //! - `correlation` is always that of intensity: 1 for the same pattern, 0 for a new one.

@@ -22,8 +22,8 @@ pub struct SpeckleMotion {
     /// the defocus W. The speckle field that has moved across the pupil is found that much farther
     /// in the image. Zero for a point in focus, and where the pattern is decorrelated.
     pub defocus_displacement: DVec2,
-    /// Motion of the speckle field across the pupil, along b1 and b2, in metres, or `None` where the
-    /// pattern is decorrelated for [`Configuration::pupil_point_after`].
+    /// Motion of the speckle field across the pupil, along b1 and b2, in metres, or `None` where
+    /// the pattern is decorrelated for [`Configuration::pupil_point_after`].
     pub pupil_displacement: Option<DVec2>,
     /// Motion of the surface towards the camera along the optical axis, in metres.
     pub axial_displacement: f64,
@@ -47,8 +47,8 @@ impl Configuration {
     /// ```
     ///
     /// with the tangents T of the surface, its rotation R, and the unit vectors `l_S` to the source
-    /// and l to the pupil point. The law fixes the part of l' along the surface; its length fixes the
-    /// rest. The line along l' meets the pupil at the point in question.
+    /// and l to the pupil point. The law fixes the part of l' along the surface; its length fixes
+    /// the rest. The line along l' meets the pupil at the point in question.
     ///
     /// # Validity
     ///
@@ -104,8 +104,8 @@ impl Configuration {
     ///
     /// l' is the direction to [the point](Self::pupil_point_after) that the field at the centre has
     /// moved to. Where that motion has been followed, the heights of the surface are all that still
-    /// tells the patterns apart, and the loss is that of roughness and not of geometry. Heights with
-    /// a normal distribution of the standard deviation σ leave
+    /// tells the patterns apart, and the loss is that of roughness and not of geometry. Heights
+    /// with a normal distribution of the standard deviation σ leave
     ///
     /// ```text
     /// γ = exp(−σ² Δq²)
@@ -147,7 +147,8 @@ impl Configuration {
     ///
     /// # References
     ///
-    /// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007. Speckle in light of several wavelengths.
+    /// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007. Speckle in light of several
+    ///   wavelengths.
     pub fn height_phase_change(&self, after: &Self) -> Option<f64> {
         let direction = self.sight.direction();
         let direction_after = self.direction_after(after, direction)?;
@@ -208,16 +209,16 @@ impl SpeckleMotion {
     /// left      γ of |A| / D and of (W'/λ' − W/λ) D²/8, at the peak
     /// ```
     ///
-    /// `geometry` is that of the camera in both states. Its wavelength does not count here, those of
-    /// the states do.
+    /// `geometry` is that of the camera in both states. Its wavelength does not count here, those
+    /// of the states do.
     ///
     /// # Validity
     ///
     /// The image displacement and the pupil displacement are exact for the centre of the pupil. The
-    /// correlation takes the field to move across the pupil as a whole. After a large change it also
-    /// stretches; the error is about the difference of
-    /// [`pupil_point_after`](Configuration::pupil_point_after) across the pupil beyond the motion of
-    /// its centre, over the pupil diameter.
+    /// correlation takes the field to move across the pupil as a whole. After a large change it
+    /// also stretches; the error is about the difference of
+    /// [`pupil_point_after`](Configuration::pupil_point_after) across the pupil beyond the motion
+    /// of its centre, over the pupil diameter.
     ///
     /// What a *rough surface* loses under another wavelength or direction of illumination is not
     /// geometric and not included: see

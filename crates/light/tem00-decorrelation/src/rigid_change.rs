@@ -4,14 +4,15 @@ use crate::{CameraFrame, GRAZING_COSINE, Refusal, RigidMotion, RigidMotions, vec
 
 /// Surface and camera before and after a motion of both, for many points of the surface.
 ///
-/// It is the law of [`SpeckleMotion::between`](crate::SpeckleMotion::between) in light of one wavelength, without what
-/// depends on the lens: everything that the points share is worked out once, and [`at`](Self::at) needs no more than
-/// arithmetic, square roots and choices, so that a loop over points fills the vector units
-/// ([`tem00_numerics::vectorised`]).
+/// It is the law of [`SpeckleMotion::between`](crate::SpeckleMotion::between) in light of one
+/// wavelength, without what depends on the lens: everything that the points share is worked out
+/// once, and [`at`](Self::at) needs no more than arithmetic, square roots and choices, so that a
+/// loop over points fills the vector units ([`tem00_numerics::vectorised`]).
 ///
 /// # Examples
 ///
-/// A surface seen and lit along its normal slides by 0.1 mm. Its speckle moves over the pupil as far:
+/// A surface seen and lit along its normal slides by 0.1 mm. Its speckle moves over the pupil as
+/// far:
 ///
 /// ```
 /// use tem00_decorrelation::{CameraFrame, ChangedPoint, DVec3, RigidChange, RigidMotion, RigidMotions};
@@ -54,26 +55,29 @@ pub struct ChangedPoint {
     pub position: DVec3,
     /// The unit normal of the surface there, to either side.
     pub normal: DVec3,
-    /// The unit vectors from the point to the source: from where it stood before, and from where it is.
+    /// The unit vectors from the point to the source: from where it stood before, and from where it
+    /// is.
     pub to_source: [DVec3; 2],
 }
 
 /// Change of the speckle at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointChange {
-    /// The displacement t' − t of its image along b1 and b2 of the camera, upright, in units of the principal distance;
-    /// infinite where one of the states does not see the point.
+    /// The displacement t' − t of its image along b1 and b2 of the camera, upright, in units of the
+    /// principal distance; infinite where one of the states does not see the point.
     pub tangent_displacement: DVec2,
-    /// The displacement of the speckle field over the pupil, in metres along b1 and b2; infinite where the pattern is
-    /// decorrelated for [`pupil_point_after`](crate::Configuration::pupil_point_after).
+    /// The displacement of the speckle field over the pupil, in metres along b1 and b2; infinite
+    /// where the pattern is decorrelated for
+    /// [`pupil_point_after`](crate::Configuration::pupil_point_after).
     pub pupil_displacement: DVec2,
     /// 1/Z before and after, with the depth Z before the pupil plane, in 1/m.
     pub per_depth: [f64; 2],
 }
 
 impl RigidChange {
-    /// Creates a change from the axes of the camera and the centre of its pupil before it, in metres, and the motions of
-    /// surface and camera. The motion of the source does not count: its light comes with each point.
+    /// Creates a change from the axes of the camera and the centre of its pupil before it, in
+    /// metres, and the motions of surface and camera. The motion of the source does not count: its
+    /// light comes with each point.
     ///
     /// # Errors
     ///
@@ -103,7 +107,8 @@ impl RigidChange {
         self.surface.direction(direction)
     }
 
-    /// Returns what has become of the speckle at a point. Coordinates that are not finite give infinite displacements.
+    /// Returns what has become of the speckle at a point. Coordinates that are not finite give
+    /// infinite displacements.
     #[inline(always)]
     pub fn at(&self, point: &ChangedPoint) -> PointChange {
         let [before, after] = &self.eyes;
@@ -135,8 +140,9 @@ impl RigidChange {
     }
 }
 
-/// Returns the direction in which a field leaves whose part along the surface is that of `sum`, to the `side` of the
-/// normal that has this sign, and the square of its part along the normal: none leaves where that is not positive.
+/// Returns the direction in which a field leaves whose part along the surface is that of `sum`, to
+/// the `side` of the normal that has this sign, and the square of its part along the normal: none
+/// leaves where that is not positive.
 #[inline(always)]
 pub(crate) fn leaving(normal: DVec3, sum: DVec3, side: f64) -> (DVec3, f64) {
     let tangential = sum - normal * normal.dot(sum);

@@ -22,9 +22,9 @@ use crate::{GRAZING_COSINE, Refusal, vector::unit};
 /// # Off the axis of a beam
 ///
 /// A beam with its curvatures `κ_x` and `κ_y` at the distance z lights a point x, y beside its axis
-/// from the direction `−(x κ_x, y κ_y, 1)`, in coordinates with z along the beam. That is the direction
-/// to give to the constructors. To take that of the axis instead is wrong by the angle x κ, which is
-/// at most the divergence of a spot and half the angle of a fan.
+/// from the direction `−(x κ_x, y κ_y, 1)`, in coordinates with z along the beam. That is the
+/// direction to give to the constructors. To take that of the axis instead is wrong by the angle x
+/// κ, which is at most the divergence of a spot and half the angle of a fan.
 ///
 /// # Examples
 ///
@@ -39,10 +39,10 @@ use crate::{GRAZING_COSINE, Refusal, vector::unit};
 /// # Ok::<(), tem00_decorrelation::Refusal>(())
 /// ```
 ///
-/// A helium–neon laser with a waist of 100 µm, that is a Rayleigh range of 49.65 mm. Seen from
-/// 200 mm, a motion a of the surface moves the speckle across the pupil by (1 + d/R) a: by three
-/// times the motion 50 mm behind the waist, by as much as the motion at the waist, and the other way
-/// 80 mm before it:
+/// A helium–neon laser with a waist of 100 µm, that is a Rayleigh range of 49.65 mm. Seen from 200
+/// mm, a motion a of the surface moves the speckle across the pupil by (1 + d/R) a: by three times
+/// the motion 50 mm behind the waist, by as much as the motion at the waist, and the other way 80
+/// mm before it:
 ///
 /// ```
 /// use tem00_decorrelation::{
@@ -170,24 +170,25 @@ impl Wavefront {
         })
     }
 
-    /// Creates a wave from the direction to its source, of any length, and from how that direction turns
-    /// along a surface, as a renderer has it from its ray differentials: after mirrors and lenses, too.
+    /// Creates a wave from the direction to its source, of any length, and from how that direction
+    /// turns along a surface, as a renderer has it from its ray differentials: after mirrors and
+    /// lenses, too.
     ///
     /// ```text
     /// K t = −∂l_S/∂t
     /// ```
     ///
-    /// `dp` are the differentials of the surface point by two parameters, in metres, `∂p/∂u` and `∂p/∂v`, and
-    /// `dl` those of the unit vector to the source by the same two. At a mirror of the normal n they follow
-    /// from `∂n/∂u` and `∂n/∂v` and from the direction d in which the light arrives: that of the reflected light
-    /// is d − 2 n (n·d), and `l_S` leads against it. Only the symmetric part across the direction counts; the
-    /// rays of one wave have no other.
+    /// `dp` are the differentials of the surface point by two parameters, in metres, `∂p/∂u` and
+    /// `∂p/∂v`, and `dl` those of the unit vector to the source by the same two. At a mirror of the
+    /// normal n they follow from `∂n/∂u` and `∂n/∂v` and from the direction d in which the light
+    /// arrives: that of the reflected light is d − 2 n (n·d), and `l_S` leads against it. Only the
+    /// symmetric part across the direction counts; the rays of one wave have no other.
     ///
     /// # Errors
     ///
-    /// Returns an error if the direction is zero or not finite, if differentials are not finite, or if
-    /// the light sees those of the point along one line, within 2⁻²⁶: in a grazing light, or where a
-    /// parametrisation is singular.
+    /// Returns an error if the direction is zero or not finite, if differentials are not finite, or
+    /// if the light sees those of the point along one line, within 2⁻²⁶: in a grazing light, or
+    /// where a parametrisation is singular.
     ///
     /// # Examples
     ///
@@ -231,8 +232,9 @@ impl Wavefront {
         Self::from_tensor(direction, (curvature + curvature.transpose()) * 0.5)
     }
 
-    /// Returns the unit vector to the source as it is seen at the distance `offset`, in metres, from
-    /// the point that the wave is described for, or `None` in a focus, where there is no direction.
+    /// Returns the unit vector to the source as it is seen at the distance `offset`, in metres,
+    /// from the point that the wave is described for, or `None` in a focus, where there is no
+    /// direction.
     ///
     /// ```text
     /// l_S' ∝ l_S − K (I − ζ K)⁻¹ a,    ζ = l_S·a

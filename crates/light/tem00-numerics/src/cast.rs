@@ -45,8 +45,8 @@ pub const fn to_i64(x: f64) -> i64 {
     x as i64
 }
 
-/// Returns a count or an index as a signed number; [`i64::MAX`] for the larger ones, which no memory
-/// holds.
+/// Returns a count or an index as a signed number; [`i64::MAX`] for the larger ones, which no
+/// memory holds.
 #[expect(clippy::cast_possible_wrap, reason = "larger numbers are left out")]
 #[inline]
 pub const fn to_signed(n: usize) -> i64 {

@@ -71,7 +71,8 @@ pub fn range(
     that(false, parameter, x, unit, format!("from {least} to {most}")).map(|()| x)
 }
 
-/// Returns a length from 1e−30 m to 1e30 m: squares, products and quotients of such lengths stay within `f64`.
+/// Returns a length from 1e−30 m to 1e30 m: squares, products and quotients of such lengths stay
+/// within `f64`.
 ///
 /// # Errors
 ///

@@ -1,7 +1,7 @@
 //! Points of the unit circle, from fractions of a turn.
 //!
-//! Angles that are drawn are known as fractions of a turn, for which sine and cosine need no reduction
-//! of their argument: a third of the time of general ones.
+//! Angles that are drawn are known as fractions of a turn, for which sine and cosine need no
+//! reduction of their argument: a third of the time of general ones.
 
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 

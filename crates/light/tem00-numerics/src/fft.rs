@@ -34,11 +34,11 @@ use chunks::for_each_chunk;
 /// # Cost
 ///
 /// Nothing that is zero by construction is transformed: with an aperture of `w × h` in an array of
-/// `W × H` there are `w` transforms of length H and `H` of length W, each made of short ones no longer
-/// than the aperture needs. Any size works; products of small primes are fastest, and powers of two
-/// most of all. The array never exists as a whole: the memory is `8 w H` bytes and a few dozen lines
-/// for each thread, reused with [`forward_into`](Self::forward_into), and the output. Nor need the
-/// aperture: [`forward_from`](Self::forward_from) takes it piece by piece.
+/// `W × H` there are `w` transforms of length H and `H` of length W, each made of short ones no
+/// longer than the aperture needs. Any size works; products of small primes are fastest, and powers
+/// of two most of all. The array never exists as a whole: the memory is `8 w H` bytes and a few
+/// dozen lines for each thread, reused with [`forward_into`](Self::forward_into), and the output.
+/// Nor need the aperture: [`forward_from`](Self::forward_from) takes it piece by piece.
 ///
 /// # Threads
 ///
@@ -185,9 +185,9 @@ impl Fft2 {
     /// Like [`forward_into`](Self::forward_into), of an aperture that is made on the way and never
     /// exists as a whole.
     ///
-    /// `fill(columns, y, values)` writes what these columns hold in row y. It covers each position of
-    /// the aperture once, in any order and by any thread, in pieces of up to 64 values that begin
-    /// at a multiple of 8.
+    /// `fill(columns, y, values)` writes what these columns hold in row y. It covers each position
+    /// of the aperture once, in any order and by any thread, in pieces of up to 64 values that
+    /// begin at a multiple of 8.
     ///
     /// # Examples
     ///

@@ -95,8 +95,8 @@ impl<T> Grid<T> {
         self.values.chunks_exact(self.width)
     }
 
-    /// Calls `each(y, row)` for every row, by all threads of the current rayon pool where the feature
-    /// `parallel` allows it.
+    /// Calls `each(y, row)` for every row, by all threads of the current rayon pool where the
+    /// feature `parallel` allows it.
     ///
     /// # Examples
     ///

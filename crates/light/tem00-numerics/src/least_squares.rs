@@ -1,8 +1,8 @@
 //! Nonlinear least squares by damped Gauss–Newton steps.
 //!
-//! Levenberg's and Marquardt's damping (D. W. Marquardt, J. Soc. Indust. Appl. Math. 11, 431, 1963):
-//! each diagonal element of the normal matrix grows by the same factor, so that the units of the
-//! parameters make no difference.
+//! Levenberg's and Marquardt's damping (D. W. Marquardt, J. Soc. Indust. Appl. Math. 11, 431,
+//! 1963): each diagonal element of the normal matrix grows by the same factor, so that the units of
+//! the parameters make no difference.
 
 use core::{error, fmt};
 
@@ -15,26 +15,27 @@ const MIN_DAMPING: f64 = 1e-10;
 /// Steps that are damped more than this are nothing but rounding: the minimum is found, …
 const MAX_DAMPING: f64 = 1e12;
 
-/// … as it is after so many steps in a row that neither lowered the sum of squares by more than its rounding nor
-/// halved the gain to be had, …
+/// … as it is after so many steps in a row that neither lowered the sum of squares by more than its
+/// rounding nor halved the gain to be had, …
 const MAX_IDLE_STEPS: u32 = 16;
 
-/// … and where no more than this fraction of the first sum of squares is left: the residuals are those of rounding.
+/// … and where no more than this fraction of the first sum of squares is left: the residuals are
+/// those of rounding.
 const NOTHING_LEFT: f64 = 1e-28;
 
-/// The fraction of the sum of squares below which no gain is worth a step: the parameters would move by
-/// less than 1e−10 of their standard errors.
+/// The fraction of the sum of squares below which no gain is worth a step: the parameters would
+/// move by less than 1e−10 of their standard errors.
 const NEGLIGIBLE_GAIN: f64 = 1e-22;
 
-/// The relative change of the sum of squares that its rounding hides: the sum is flat near its minimum, and there a
-/// step is judged by the gain that it leaves.
+/// The relative change of the sum of squares that its rounding hides: the sum is flat near its
+/// minimum, and there a step is judged by the gain that it leaves.
 const ROUNDING: f64 = 1e-12;
 
 /// The smallest pivot of the normal matrix, scaled to a unit diagonal, that is no rounding error.
 const MIN_PIVOT: f64 = 1e-13;
 
-/// The normal equations at one state: with the residuals `r` and the matrix `J` of their derivatives by the
-/// parameters, the matrix `JᵀJ`, the vector `Jᵀr` and the sum `rᵀr`.
+/// The normal equations at one state: with the residuals `r` and the matrix `J` of their
+/// derivatives by the parameters, the matrix `JᵀJ`, the vector `Jᵀr` and the sum `rᵀr`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NormalEquations {
     /// Row by row, up to the diagonal.
@@ -76,16 +77,16 @@ impl error::Error for LeastSquaresError {}
 
 /// Finds the state of least squares near `start`.
 ///
-/// `stepped` changes a state by a step, one number per parameter: a state need not be a vector itself, as a
-/// rotation is none. `equations` returns the normal equations of all residuals, or `None` for a state that
-/// is not possible. The search ends where a full step would move the parameters by less than 1e−10 of their
-/// standard errors, or where rounding hides any gain: of residuals without noise, or whose derivatives are
-/// differences.
+/// `stepped` changes a state by a step, one number per parameter: a state need not be a vector
+/// itself, as a rotation is none. `equations` returns the normal equations of all residuals, or
+/// `None` for a state that is not possible. The search ends where a full step would move the
+/// parameters by less than 1e−10 of their standard errors, or where rounding hides any gain: of
+/// residuals without noise, or whose derivatives are differences.
 ///
 /// # Errors
 ///
-/// Returns an error if the start is not possible, if the search does not end, or if the residuals leave
-/// a direction of the state open.
+/// Returns an error if the start is not possible, if the search does not end, or if the residuals
+/// leave a direction of the state open.
 ///
 /// # Examples
 ///
@@ -179,8 +180,8 @@ impl NormalEquations {
         Some(step)
     }
 
-    /// Returns by how much a full step would lower the sum of squares if the residuals were linear; NaN
-    /// without such a step.
+    /// Returns by how much a full step would lower the sum of squares if the residuals were linear;
+    /// NaN without such a step.
     fn gain(&self) -> f64 {
         self.step(0.0).map_or(f64::NAN, |step| {
             let gains = step.iter().zip(&self.gradient);
@@ -188,7 +189,8 @@ impl NormalEquations {
         })
     }
 
-    /// Whether these equations are nearer to a minimum than those of the sum of squares `sum` and the gain `gain`.
+    /// Whether these equations are nearer to a minimum than those of the sum of squares `sum` and
+    /// the gain `gain`.
     fn is_better(&self, own_gain: f64, sum: f64, gain: f64) -> bool {
         let is_lower = self.sum_of_squares < (1.0 - ROUNDING) * sum;
         is_lower || self.sum_of_squares <= (1.0 + ROUNDING) * sum && own_gain < gain

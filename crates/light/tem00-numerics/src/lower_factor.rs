@@ -1,8 +1,8 @@
 /// Returns the rows, up to the diagonal, of the lower triangular L with L Lᵀ = R (Cholesky), or the
 /// first row with which R is not positive semi-definite.
 ///
-/// The matrix is scaled to a diagonal of about 1, and given by its rows, of which only the part up to
-/// the diagonal counts. A pivot up to `rounding` is taken as 0, and its column is left out: in a
+/// The matrix is scaled to a diagonal of about 1, and given by its rows, of which only the part up
+/// to the diagonal counts. A pivot up to `rounding` is taken as 0, and its column is left out: in a
 /// semi-definite matrix the elements of that column are at most the root of `rounding`.
 ///
 /// # Errors

@@ -42,8 +42,8 @@ fn check_against(needed: u64, available: Option<u64>) -> Result<(), MemoryError>
 /// Returns the bytes that the system can give without swapping and that the limits of the process
 /// (`ulimit -v`) allow, where it says so (Linux).
 ///
-/// Many systems grant any memory that is asked for and end the program when it is used, so whoever is
-/// about to use much asks first. A container may have less than its system.
+/// Many systems grant any memory that is asked for and end the program when it is used, so whoever
+/// is about to use much asks first. A container may have less than its system.
 pub fn available_memory() -> Option<u64> {
     let read = |path| fs::read_to_string(path).ok();
     let system = read("/proc/meminfo").and_then(|text| bytes_of(&text, "MemAvailable:"));
@@ -68,7 +68,8 @@ fn address_space_limit(limits: &str) -> Option<u64> {
     line.split_whitespace().next()?.parse().ok()
 }
 
-/// The addresses that the C library of Linux systems sets aside for the small allocations of a thread.
+/// The addresses that the C library of Linux systems sets aside for the small allocations of a
+/// thread.
 const ARENA: u64 = 64 << 20;
 
 /// Memory kept for all that is too small to be checked.

@@ -1,4 +1,5 @@
-/// Returns the number below which a standard normal variate lies with the probability `p` in (0, 1), to 16 digits.
+/// Returns the number below which a standard normal variate lies with the probability `p` in (0,
+/// 1), to 16 digits.
 ///
 /// # References
 ///

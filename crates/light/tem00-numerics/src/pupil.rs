@@ -8,8 +8,8 @@
 
 use core::f64::consts::PI;
 
-/// Returns the normalised overlap of two discs of equal diameter, the function called *chat*, within
-/// 5e−16.
+/// Returns the normalised overlap of two discs of equal diameter, the function called *chat*,
+/// within 5e−16.
 ///
 /// `shift` is the distance of the centres in units of the diameter.
 ///
@@ -28,7 +28,8 @@ use core::f64::consts::PI;
 /// - J. W. Goodman, *Introduction to Fourier Optics*, 2005, §6.3.
 #[inline(always)]
 pub fn disc_overlap(shift: f64) -> f64 {
-    // chat(1 − ε) = ε √ε S(ε), with S analytic up to ε = 2: 17 coefficients reach rounding on [0, 1].
+    // chat(1 − ε) = ε √ε S(ε), with S analytic up to ε = 2: 17 coefficients reach rounding on [0,
+    // 1].
     let epsilon = (1.0 - shift.abs()).max(0.0);
     let series = polynomial(&OVERLAP, 2.0 * epsilon - 1.0);
     // Rounding may end a unit above 1.
@@ -38,8 +39,8 @@ pub fn disc_overlap(shift: f64) -> f64 {
 /// Returns the shift ρ in [0, 1], in units of the diameter, at which [`disc_overlap`] is `overlap`,
 /// within 1e−15.
 ///
-/// An overlap of 1 or more needs no shift and one of 0 or less, or NaN, is reached at ρ = 1, so that
-/// values with rounding noise at either end are mapped to the end.
+/// An overlap of 1 or more needs no shift and one of 0 or less, or NaN, is reached at ρ = 1, so
+/// that values with rounding noise at either end are mapped to the end.
 #[inline(always)]
 pub fn disc_overlap_inverse(overlap: f64) -> f64 {
     let r = 0.5 * circular_path_overlap_inverse(overlap);
@@ -101,7 +102,8 @@ pub fn sinc(x: f64) -> f64 {
     libm::sin(x) / x
 }
 
-/// Returns the square of [`sinc`] at πx, `sin²(π x) / (π x)²`, within 1e−15; 0 beyond |x| = 2⁵⁰, where it is below 1e−31.
+/// Returns the square of [`sinc`] at πx, `sin²(π x) / (π x)²`, within 1e−15; 0 beyond |x| = 2⁵⁰,
+/// where it is below 1e−31.
 ///
 /// With the nearest integer k, sin²(π x) is sin²(π r) for r = x − k.
 #[inline(always)]

@@ -11,8 +11,8 @@ use core::f64::consts::PI;
 /// Sixteen points per panel.
 const RULE: [(f64, f64); 16] = gauss_legendre();
 
-/// Returns ∫ f over `[start, end]` by the Gauss–Legendre rule with sixteen points on panels that are
-/// at most `longest` wide; 0 where `end ≤ start`.
+/// Returns ∫ f over `[start, end]` by the Gauss–Legendre rule with sixteen points on panels that
+/// are at most `longest` wide; 0 where `end ≤ start`.
 ///
 /// On one panel polynomials up to degree 31 are exact, and a cosine of one period to 10⁻¹⁵. The
 /// number of panels, `(end − start) / longest`, must be one that a loop can take.

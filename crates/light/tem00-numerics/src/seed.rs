@@ -5,7 +5,8 @@
 pub enum Purpose {
     /// The speckle of a laser of a scene, by its number.
     Laser,
-    /// The speckle of a body that moves by itself, from the seed of the laser; body 0 has that seed.
+    /// The speckle of a body that moves by itself, from the seed of the laser; body 0 has that
+    /// seed.
     Body,
     /// The noise of a sensor in a frame, or another draw that each frame has anew.
     Frame,
@@ -15,8 +16,9 @@ pub enum Purpose {
 
 /// Returns the seed of number `index` for a purpose.
 ///
-/// Lasers, bodies and frames take steps of a Weyl sequence, which keep the seeds of small indices far apart from each
-/// other. Patterns are scattered over all seeds, so that the second pattern of one seed is not the first of another.
+/// Lasers, bodies and frames take steps of a Weyl sequence, which keep the seeds of small indices
+/// far apart from each other. Patterns are scattered over all seeds, so that the second pattern of
+/// one seed is not the first of another.
 ///
 /// # Examples
 ///
@@ -40,7 +42,8 @@ pub const fn derived(seed: u64, purpose: Purpose, index: u64) -> u64 {
     }
 }
 
-/// Spreads neighbouring numbers over all: the output function of `SplitMix64` (Steele, Lea and Flood 2014).
+/// Spreads neighbouring numbers over all: the output function of `SplitMix64` (Steele, Lea and
+/// Flood 2014).
 #[inline]
 pub const fn scattered(number: u64) -> u64 {
     let mut bits = number.wrapping_add(GOLDEN);

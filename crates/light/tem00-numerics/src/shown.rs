@@ -1,6 +1,7 @@
 use core::fmt;
 
-/// A number as messages show it: as it is read back, with an exponent where it would have many zeros.
+/// A number as messages show it: as it is read back, with an exponent where it would have many
+/// zeros.
 ///
 /// # Examples
 ///

@@ -67,8 +67,8 @@ pub struct AbcdMatrix {
 }
 
 impl AbcdMatrix {
-    /// Creates the matrix with the rows (`a`, `b`) and (`c`, `d`), where `b` is in metres and `c` in
-    /// m⁻¹.
+    /// Creates the matrix with the rows (`a`, `b`) and (`c`, `d`), where `b` is in metres and `c`
+    /// in m⁻¹.
     ///
     /// Where the system is known by its elements, their own constructors give a more precise
     /// determinant.

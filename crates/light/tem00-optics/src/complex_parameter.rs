@@ -13,8 +13,8 @@ use tem00_numerics::check;
 ///
 /// It knows neither wavelength nor M²: with [`AbcdMatrix`](crate::AbcdMatrix) it answers where the
 /// beam is focused and how deep, and together with the *effective wavelength* `M² λ` also how wide
-/// it is. Both parts follow the convention exp(i (ω t − k z)) of the references, where the imaginary
-/// part of q is positive.
+/// it is. Both parts follow the convention exp(i (ω t − k z)) of the references, where the
+/// imaginary part of q is positive.
 ///
 /// # Validity
 ///

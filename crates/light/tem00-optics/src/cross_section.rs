@@ -140,7 +140,8 @@ impl CrossSection {
             let along = rho * cos;
             rho * sin * (-2.0 * along * along).exp() * libm::erf(SQRT_2 * rho_slim * sin)
         };
-        // Near the ends of the axis chords grow over the slim radius, and further on over the wide one.
+        // Near the ends of the axis chords grow over the slim radius, and further on over the wide
+        // one.
         let (mut start, mut step) = (0.0, rho_slim.recip().max(1e-18));
         let mut sum = 0.0;
         while start < FRAC_PI_2 {

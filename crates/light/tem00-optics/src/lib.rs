@@ -4,8 +4,8 @@
 //!
 //! Those of `tem00-beam`: SI units, radii to 1/e², light along +z of its own frame.
 //!
-//! - Systems: [`AbcdMatrix`] and [`ComplexBeamParameter`] hold for one axis; an elliptic beam takes a
-//!   matrix for each of its two, by [`through_axes`].
+//! - Systems: [`AbcdMatrix`] and [`ComplexBeamParameter`] hold for one axis; an elliptic beam takes
+//!   a matrix for each of its two, by [`through_axes`].
 //! - Widths and apertures: [`CrossSection`] holds for a beam that is known.
 //! - Measurements: [`CausticFit`] and [`KnifeEdgeFit`] find a beam from measured data.
 //!

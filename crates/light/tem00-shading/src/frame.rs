@@ -46,34 +46,37 @@ impl Light<'_> {
     }
 }
 
-/// The points of a pixel that stand for all of it in light with a linewidth, each in a wave number of its own.
+/// The points of a pixel that stand for all of it in light with a linewidth, each in a wave number
+/// of its own.
 const POINTS: usize = 64;
 
 /// The largest error of the correlation of two frames in light with a linewidth.
 const MAX_ERROR: f64 = 0.05;
 
 impl SpeckleFrame {
-    /// Returns the factor by which speckle multiplies the radiance at a point, now, of a surface with a unit normal.
+    /// Returns the factor by which speckle multiplies the radiance at a point, now, of a surface
+    /// with a unit normal.
     ///
-    /// It is 1 where the camera does not see the point: there is no pattern there. Where it sees it, but the law has no
-    /// value, as where the surface is seen edge-on, the speckle is new.
+    /// It is 1 where the camera does not see the point: there is no pattern there. Where it sees
+    /// it, but the law has no value, as where the surface is seen edge-on, the speckle is new.
     pub fn factor(&self, point: DVec3, normal: DVec3) -> f64 {
         let mut factor = [1.0];
         self.factors(&[point], &[normal], &mut factor);
         factor[0]
     }
 
-    /// Returns the factor at a point that is lit otherwise than straight from the laser, as over mirrors and lenses:
-    /// [`Wavefront::from_differentials`](crate::Wavefront::from_differentials) has the wave from rays that a host has
-    /// traced. `light` is that of the reference state, and moves with the laser.
+    /// Returns the factor at a point that is lit otherwise than straight from the laser, as over
+    /// mirrors and lenses: [`Wavefront::from_differentials`](crate::Wavefront::from_differentials)
+    /// has the wave from rays that a host has traced. `light` is that of the reference state, and
+    /// moves with the laser.
     pub fn factor_under(&self, light: &Illumination, point: DVec3, normal: DVec3) -> f64 {
         let mut factor = [1.0];
         self.look_up(Some(light), &[self.seen(point, normal)], &mut factor);
         factor[0]
     }
 
-    /// Returns the factor at a point that a camera sample sees at an image point, in pixels with y down: out of focus it
-    /// lies beside the one where the centre of the lens sees it.
+    /// Returns the factor at a point that a camera sample sees at an image point, in pixels with y
+    /// down: out of focus it lies beside the one where the centre of the lens sees it.
     pub fn factor_at(&self, pixel: DVec2, point: DVec3, normal: DVec3) -> f64 {
         let seen = SeenPoint {
             pixel,
@@ -85,7 +88,8 @@ impl SpeckleFrame {
         factor[0]
     }
 
-    /// Writes the factors at many points, with their unit normals: the same bits as [`factor`](Self::factor) one by one.
+    /// Writes the factors at many points, with their unit normals: the same bits as
+    /// [`factor`](Self::factor) one by one.
     ///
     /// Neighbours in the image, one after the other, are looked up fastest.
     ///
@@ -98,7 +102,8 @@ impl SpeckleFrame {
         });
     }
 
-    /// Hands points where the camera sees them to `answer`, block by block, with the places of their answers.
+    /// Hands points where the camera sees them to `answer`, block by block, with the places of
+    /// their answers.
     fn in_blocks<T>(
         &self,
         points: &[DVec3],
@@ -123,20 +128,20 @@ impl SpeckleFrame {
         }
     }
 
-    /// Returns the factor at a point in light of one wave number of the laser's line, the quantile `wave` between 0 and 1:
-    /// for a renderer that draws a wave number for each of its samples.
+    /// Returns the factor at a point in light of one wave number of the laser's line, the quantile
+    /// `wave` between 0 and 1: for a renderer that draws a wave number for each of its samples.
     ///
-    /// [`factor`](Self::factor) is the mean over so many of them, at most 64, that contrasts are within 1 %, at as much
-    /// cost. In light of one wavelength both are the same.
+    /// [`factor`](Self::factor) is the mean over so many of them, at most 64, that contrasts are
+    /// within 1 %, at as much cost. In light of one wavelength both are the same.
     pub fn factor_in_wave(&self, point: DVec3, normal: DVec3, wave: f64) -> f64 {
         let mut factor = [1.0];
         self.look_up_in(Light::of(wave), &[self.seen(point, normal)], &mut factor);
         factor[0]
     }
 
-    /// Returns the mean factor over the pixel about the image of a point: for a host with one sample per pixel, whose
-    /// speckle would have too much contrast at a point. In light with a linewidth it is the mean of 64 points, each in a
-    /// wave number of its own.
+    /// Returns the mean factor over the pixel about the image of a point: for a host with one
+    /// sample per pixel, whose speckle would have too much contrast at a point. In light with a
+    /// linewidth it is the mean of 64 points, each in a wave number of its own.
     pub fn average(&self, point: DVec3, normal: DVec3) -> f64 {
         let Some(seen) = self.seen(point, normal) else {
             return 1.0;
@@ -173,8 +178,8 @@ impl SpeckleFrame {
         sum / POINTS as f64
     }
 
-    /// Returns the complex amplitude of the first pattern, of mean square 1, for a host that adds fields: in light of
-    /// the median wave number of the laser's line.
+    /// Returns the complex amplitude of the first pattern, of mean square 1, for a host that adds
+    /// fields: in light of the median wave number of the laser's line.
     ///
     /// Returns `None` where the camera does not see the point.
     pub fn amplitude(&self, point: DVec3, normal: DVec3) -> Option<Complex<f64>> {
@@ -184,15 +189,16 @@ impl SpeckleFrame {
         Some(self.amplitude_of(part, &positions, 0))
     }
 
-    /// Returns what has become of the speckle at a point since the reference state, or `None` where the law has no value.
+    /// Returns what has become of the speckle at a point since the reference state, or `None` where
+    /// the law has no value.
     pub fn shift(&self, point: DVec3, normal: DVec3) -> Option<SpeckleShift> {
         let mut shift = [None];
         self.shifts(&[point], &[normal], &mut shift);
         shift[0]
     }
 
-    /// Writes what has become of the speckle at many points, `None` where the camera does not see them or the law has no
-    /// value: the same bits as [`shift`](Self::shift) one by one.
+    /// Writes what has become of the speckle at many points, `None` where the camera does not see
+    /// them or the law has no value: the same bits as [`shift`](Self::shift) one by one.
     ///
     /// # Panics
     ///
@@ -209,8 +215,8 @@ impl SpeckleFrame {
         });
     }
 
-    /// Returns on which side of the reference state the speckle is: 1, or −1 where the pupil has moved over it the other
-    /// way than in the frame in which it moves farthest.
+    /// Returns on which side of the reference state the speckle is: 1, or −1 where the pupil has
+    /// moved over it the other way than in the frame in which it moves farthest.
     pub const fn side(&self) -> f64 {
         self.side
     }
@@ -286,7 +292,8 @@ impl SpeckleFrame {
         fields.sum()
     }
 
-    /// Finds where points are looked up in the stacks, which are alike; those out of sight anywhere.
+    /// Finds where points are looked up in the stacks, which are alike; those out of sight
+    /// anywhere.
     fn positions(&self, light: Light<'_>, points: &[Option<SeenPoint>]) -> Positions {
         let mut positions = Positions {
             x: [0.0; BLOCK],
@@ -340,8 +347,8 @@ impl SpeckleFrame {
         positions
     }
 
-    /// Displaces a position by what a wave number of the line displaces the speckle, in slices that stand along the axis
-    /// of the bandwidth.
+    /// Displaces a position by what a wave number of the line displaces the speckle, in slices that
+    /// stand along the axis of the bandwidth.
     fn displace(
         &self,
         positions: &mut Positions,
@@ -367,7 +374,8 @@ impl SpeckleFrame {
         positions.phase_per_height[i] = shift.phase_per_height;
     }
 
-    /// Checks that slices along one line hold the correlation of the frame with the reference in light with a linewidth.
+    /// Checks that slices along one line hold the correlation of the frame with the reference in
+    /// light with a linewidth.
     pub(crate) fn check_crossing(&self, shift: &SpeckleShift) -> Result<(), ShadingError> {
         let Some(bandwidth) = &self.speckle.bandwidth else {
             return Ok(());

@@ -9,11 +9,13 @@ use tem00_speckle::{PupilField, SlicePath, StackPlan};
 
 use crate::{Laser, Motion, PreparedSpeckle, ShadingError, Speckle, patterns::Patterns};
 
-/// The function `tem00_factor` in WGSL, which is [`SpeckleFrame::factor`](crate::SpeckleFrame::factor) in single
-/// precision: functions and structs without bindings.
+/// The function `tem00_factor` in WGSL, which is
+/// [`SpeckleFrame::factor`](crate::SpeckleFrame::factor) in single precision: functions and structs
+/// without bindings.
 ///
-/// Its first comment says how to call it and how exact it is. The texts of [`tem00_decorrelation::closed_form`] and
-/// [`tem00_speckle::closed_form`] stand beside it. A frame is a uniform, [`KernelSpeckle::rows`].
+/// Its first comment says how to call it and how exact it is. The texts of
+/// [`tem00_decorrelation::closed_form`] and [`tem00_speckle::closed_form`] stand beside it. A frame
+/// is a uniform, [`KernelSpeckle::rows`].
 ///
 /// # Examples
 ///
@@ -32,8 +34,8 @@ use crate::{Laser, Motion, PreparedSpeckle, ShadingError, Speckle, patterns::Pat
 /// ```
 pub const WGSL: &str = include_str!("../shaders/tem00_shading.wgsl");
 
-/// The speckle of a laser in the image of a camera for a kernel, whose host makes the stack itself: on the card, or by
-/// [`SpeckleStack`](tem00_speckle::SpeckleStack).
+/// The speckle of a laser in the image of a camera for a kernel, whose host makes the stack itself:
+/// on the card, or by [`SpeckleStack`](tem00_speckle::SpeckleStack).
 ///
 /// It is the speckle that [`Speckle::prepare`] gives.
 #[derive(Clone, Debug)]
@@ -48,8 +50,9 @@ impl Speckle {
     ///
     /// # Errors
     ///
-    /// As [`prepare`](Self::prepare), if the light has a linewidth that the speckle shows, and if it takes more than one
-    /// pattern: for several looks take as many, each with a seed of its own, and let the kernel average their factors.
+    /// As [`prepare`](Self::prepare), if the light has a linewidth that the speckle shows, and if
+    /// it takes more than one pattern: for several looks take as many, each with a seed of its own,
+    /// and let the kernel average their factors.
     pub fn for_kernel(self) -> Result<KernelSpeckle, ShadingError> {
         let (patterns, mut fields) = self.planned()?;
         one_pattern(&patterns)?;
@@ -90,7 +93,8 @@ impl KernelSpeckle {
     }
 }
 
-/// The speckle of one body in one frame, for a kernel and a stack of the host's own: what a [`SpeckleFrame`](crate::SpeckleFrame) is made of.
+/// The speckle of one body in one frame, for a kernel and a stack of the host's own: what a
+/// [`SpeckleFrame`](crate::SpeckleFrame) is made of.
 #[derive(Clone, Copy, Debug)]
 pub struct KernelFrame<'a> {
     /// The camera in the reference state.
@@ -101,8 +105,8 @@ pub struct KernelFrame<'a> {
     pub motion: &'a Motion,
     /// The sizes of the stack.
     pub plan: &'a StackPlan,
-    /// The largest shift of the pupil that the slices hold on this side of the reference state, in its diameters: less
-    /// than 0 on one of both sides.
+    /// The largest shift of the pupil that the slices hold on this side of the reference state, in
+    /// its diameters: less than 0 on one of both sides.
     pub reach: f64,
 }
 
@@ -111,7 +115,8 @@ impl KernelFrame<'_> {
     ///
     /// # Errors
     ///
-    /// Returns an error if the sensor is tilted, if the lens distorts, or if a number overflows in single precision.
+    /// Returns an error if the sensor is tilted, if the lens distorts, or if a number overflows in
+    /// single precision.
     pub fn to_rows(&self) -> Result<[[f32; 4]; 14], ShadingError> {
         let description = self.camera.description();
         let (tilt, distortion) = (&description.tilt, &description.distortion);

@@ -26,8 +26,8 @@ pub struct LaserDescription {
     pub position: DVec3,
     /// A point on the axis in front of the aperture, in metres.
     pub look_at: DVec3,
-    /// Across the axis: the direction in which a line opens, and the first axis of an elliptic spot.
-    /// Its part along the axis is ignored.
+    /// Across the axis: the direction in which a line opens, and the first axis of an elliptic
+    /// spot. Its part along the axis is ignored.
     pub line_direction: DVec3,
     /// The shape of the beam.
     pub shape: BeamShape,
@@ -83,8 +83,9 @@ impl Laser {
     ///
     /// # Errors
     ///
-    /// Returns an error if the beam is not possible (see [`GaussianBeam`](tem00_beam::GaussianBeam)), if
-    /// `look_at` is the position, or if the line direction is parallel to the axis.
+    /// Returns an error if the beam is not possible (see
+    /// [`GaussianBeam`](tem00_beam::GaussianBeam)), if `look_at` is the position, or if the line
+    /// direction is parallel to the axis.
     pub fn new(description: LaserDescription) -> Result<Self, ShadingError> {
         let placement = Placement {
             origin: description.position,
@@ -126,7 +127,8 @@ impl Laser {
         })
     }
 
-    /// Returns the laser with a source that is no point, as the surfaces see it: it acts on speckle only.
+    /// Returns the laser with a source that is no point, as the surfaces see it: it acts on speckle
+    /// only.
     #[must_use]
     pub fn with_source_extent(mut self, source_extent: SourceExtent) -> Self {
         self.source_extent = source_extent;
@@ -201,8 +203,8 @@ impl Laser {
         self.description.power
     }
 
-    /// Returns how the laser lights `point` as a delta light, or `None` where it sends no light: the light of one
-    /// direction, along the mean flow of energy there.
+    /// Returns how the laser lights `point` as a delta light, or `None` where it sends no light:
+    /// the light of one direction, along the mean flow of energy there.
     pub fn next_event(&self, point: DVec3) -> Option<LaserEvent> {
         let event = match &self.source {
             Source::Spot { light, .. } => light.next_event(point.to_array()),
@@ -215,8 +217,8 @@ impl Laser {
         })
     }
 
-    /// Finds for each of the points what [`next_event`](Self::next_event) finds, but for the rounding of
-    /// the point of the aperture, in less time.
+    /// Finds for each of the points what [`next_event`](Self::next_event) finds, but for the
+    /// rounding of the point of the aperture, in less time.
     pub fn next_events(&self, events: &mut LaserEventBatch) {
         match &self.source {
             Source::Spot { light, .. } => events.by(light),
@@ -230,8 +232,8 @@ impl Laser {
         }
     }
 
-    /// Returns the placed light as plain data, for a kernel of one's own; the table of a tabulated profile is in
-    /// [`description`](Self::description).
+    /// Returns the placed light as plain data, for a kernel of one's own; the table of a tabulated
+    /// profile is in [`description`](Self::description).
     pub const fn placed(&self) -> PlacedLight {
         match &self.source {
             Source::Spot { light, .. } => PlacedLight::Spot(*light),

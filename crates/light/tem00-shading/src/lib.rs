@@ -2,10 +2,12 @@
 //!
 //! # Conventions
 //!
-//! - SI units and radians; world vectors are [`DVec3`], image points [`DVec2`] in pixels with y down.
-//! - The camera and the laser that a [`Speckle`] is made for stand as they do in the *reference state*. A [`Motion`]
-//!   leads from there to now; points and normals are given as they are now.
-//! - Factors are dimensionless with mean 1: multiply the radiance that a surface sends from this laser to the camera.
+//! - SI units and radians; world vectors are [`DVec3`], image points [`DVec2`] in pixels with y
+//!   down.
+//! - The camera and the laser that a [`Speckle`] is made for stand as they do in the *reference
+//!   state*. A [`Motion`] leads from there to now; points and normals are given as they are now.
+//! - Factors are dimensionless with mean 1: multiply the radiance that a surface sends from this
+//!   laser to the camera.
 //!
 //! # Two levels
 //!
@@ -17,9 +19,9 @@
 //!
 //! # Validity
 //!
-//! That of the parts: a lit patch much wider than a resolution cell, fully developed speckle of a rough surface, a pupil
-//! free of aberrations. The light of a laser line thinner than a few speckles has a profile that the lens blurs before
-//! it is multiplied.
+//! That of the parts: a lit patch much wider than a resolution cell, fully developed speckle of a
+//! rough surface, a pupil free of aberrations. The light of a laser line thinner than a few
+//! speckles has a profile that the lens blurs before it is multiplied.
 
 mod error;
 mod frame;

@@ -5,8 +5,8 @@ use crate::Pose;
 /// Only differences count: if all three move as one, nothing changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
-    /// The number of the body. Bodies that move apart have numbers of their own, and speckle of their own: what one of
-    /// them uncovers does not show the speckle that it took with it.
+    /// The number of the body. Bodies that move apart have numbers of their own, and speckle of
+    /// their own: what one of them uncovers does not show the speckle that it took with it.
     pub body: usize,
     /// The pose of the body whose surface is looked at.
     pub surface: Pose,

@@ -48,8 +48,8 @@ impl Perspective {
         if point.is_finite() { point } else { pixel }
     }
 
-    /// Returns the image point of a point in perspective, both in pixels, or `None` where the sensor is
-    /// not met.
+    /// Returns the image point of a point in perspective, both in pixels, or `None` where the
+    /// sensor is not met.
     pub fn pixel(&self, point: DVec2) -> Option<DVec2> {
         if self.plain {
             return Some(point);

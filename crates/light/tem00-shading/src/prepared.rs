@@ -7,8 +7,8 @@ use tem00_speckle::StackPlan;
 
 use crate::{Motion, Pose, ShadingError, SpeckleFrame, patterns::Patterns, state::State};
 
-/// The speckle of a laser in the image of a camera, ready for the frames that it was prepared for. Clones share the
-/// patterns.
+/// The speckle of a laser in the image of a camera, ready for the frames that it was prepared for.
+/// Clones share the patterns.
 #[derive(Clone, Debug)]
 pub struct PreparedSpeckle(pub(crate) Arc<Patterns>);
 
@@ -17,8 +17,8 @@ impl PreparedSpeckle {
     ///
     /// # Errors
     ///
-    /// Returns an error if the motion shifts the speckle farther than the poses that it was prepared for, or otherwise
-    /// than [`prepare`](crate::Speckle::prepare) says of a linewidth.
+    /// Returns an error if the motion shifts the speckle farther than the poses that it was
+    /// prepared for, or otherwise than [`prepare`](crate::Speckle::prepare) says of a linewidth.
     pub fn frame(&self, motion: &Motion) -> Result<SpeckleFrame, ShadingError> {
         let Self(patterns) = self;
         let frame = self.unchecked(motion)?;
@@ -36,11 +36,12 @@ impl PreparedSpeckle {
         Ok(frame)
     }
 
-    /// Writes the factors at points that stood elsewhere in the reference state, for a host that knows no bodies but has
-    /// buffers of an image: where the points are, their unit normals, and where they were.
+    /// Writes the factors at points that stood elsewhere in the reference state, for a host that
+    /// knows no bodies but has buffers of an image: where the points are, their unit normals, and
+    /// where they were.
     ///
-    /// A point counts as carried along without a turn. Points whose motion is the same, one after the other, are looked up
-    /// fastest; those that are not finite have the factor 1.
+    /// A point counts as carried along without a turn. Points whose motion is the same, one after
+    /// the other, are looked up fastest; those that are not finite have the factor 1.
     ///
     /// # Panics
     ///

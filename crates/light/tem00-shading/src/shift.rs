@@ -19,9 +19,9 @@ const LANES: usize = 8;
 
 /// A point of a surface, and where in the image it is seen.
 ///
-/// The point need not lie on the chief ray of its pixel: out of focus it is seen beside it, and in a
-/// mirror somewhere else. Its speckle counts as moving by as much as the point would move seen directly,
-/// which in a plane mirror is right but for the reflection.
+/// The point need not lie on the chief ray of its pixel: out of focus it is seen beside it, and in
+/// a mirror somewhere else. Its speckle counts as moving by as much as the point would move seen
+/// directly, which in a plane mirror is right but for the reflection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeenPoint {
     /// The image point of the sample, in pixels with y down.
@@ -55,30 +55,34 @@ pub enum LightPath {
 pub struct SpeckleShift {
     /// The displacement of the speckle in the image in perspective, in pixels with y down.
     pub displacement: DVec2,
-    /// The displacement of the pupil over the speckle, in pupil diameters, never negative: the one across it that leaves
-    /// alone what it and a displacement along the axis leave together. Infinite where the speckle is new.
+    /// The displacement of the pupil over the speckle, in pupil diameters, never negative: the one
+    /// across it that leaves alone what it and a displacement along the axis leave together.
+    /// Infinite where the speckle is new.
     pub pupil: f64,
     /// The part of it across the line of sight, to the right and up, in pupil diameters.
     pub across: DVec2,
-    /// The displacement along the axis, in axial decorrelation lengths: positive where the point has come nearer.
+    /// The displacement along the axis, in axial decorrelation lengths: positive where the point
+    /// has come nearer.
     pub axial: f64,
 }
 
 impl SpeckleShift {
-    /// Returns the displacement of the pupil as a vector, to the right and up, in its diameters: one without direction
-    /// is to the right.
+    /// Returns the displacement of the pupil as a vector, to the right and up, in its diameters:
+    /// one without direction is to the right.
     pub fn pupil_vector(&self) -> DVec2 {
         self.pupil * self.across.try_normalize().unwrap_or(DVec2::X)
     }
 
-    /// Returns the way of the pupil over the speckle: across it, in its diameters, and along the axis, in axial
-    /// decorrelation lengths. Ways on two sides of the reference have a negative product.
+    /// Returns the way of the pupil over the speckle: across it, in its diameters, and along the
+    /// axis, in axial decorrelation lengths. Ways on two sides of the reference have a negative
+    /// product.
     pub const fn way(&self) -> DVec3 {
         DVec3::new(self.across.x, self.across.y, self.axial)
     }
 }
 
-/// The law by which the speckle of the points of one body moves and changes in the light of one laser.
+/// The law by which the speckle of the points of one body moves and changes in the light of one
+/// laser.
 #[derive(Clone, Copy, Debug)]
 pub struct SpeckleLaw<'a> {
     /// The motion of body and camera since the reference frame.
@@ -92,8 +96,8 @@ pub struct SpeckleLaw<'a> {
 }
 
 impl SpeckleLaw<'_> {
-    /// Writes what has become of the speckle at points, `None` where a frame does not see them: the same bits as one by
-    /// one.
+    /// Writes what has become of the speckle at points, `None` where a frame does not see them: the
+    /// same bits as one by one.
     ///
     /// # Panics
     ///
@@ -122,8 +126,8 @@ impl SpeckleLaw<'_> {
 }
 
 impl SpeckleLaw<'_> {
-    /// Returns what has become of the speckle of a point that is lit from the unit vectors `to_source`, in the reference
-    /// frame and now, or `None` where the law has no value.
+    /// Returns what has become of the speckle of a point that is lit from the unit vectors
+    /// `to_source`, in the reference frame and now, or `None` where the law has no value.
     pub fn shift_under(&self, to_source: [DVec3; 2], point: SeenPoint) -> Option<SpeckleShift> {
         let shared = self.shared(LightPath::Direct);
         let block = self.block([point].into_iter());

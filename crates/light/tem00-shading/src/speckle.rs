@@ -15,7 +15,8 @@ use crate::{
 
 /// What speckle is wanted: of a laser, in the image of a camera, for the motions of some frames.
 ///
-/// [`prepare`](Self::prepare) chooses the sizes and generates the patterns; its `Display` says what it chose and why.
+/// [`prepare`](Self::prepare) chooses the sizes and generates the patterns; its `Display` says what
+/// it chose and why.
 ///
 /// # Examples
 ///
@@ -58,8 +59,9 @@ pub struct Speckle {
 }
 
 impl Speckle {
-    /// Asks for the speckle of a laser in the image of a camera, both as they stand in the reference state, with the
-    /// phasors of `seed`: one look, polarised, in at most 256 MiB, of bodies that stand still.
+    /// Asks for the speckle of a laser in the image of a camera, both as they stand in the
+    /// reference state, with the phasors of `seed`: one look, polarised, in at most 256 MiB, of
+    /// bodies that stand still.
     ///
     /// Two lasers want two seeds: [`derived`](tem00_numerics::seed::derived) makes them from one.
     pub fn new(camera: &Camera, laser: &Laser, seed: u64) -> Self {
@@ -87,10 +89,12 @@ impl Speckle {
         self
     }
 
-    /// Sets points with their normals, in the reference state, from which the largest shift of the speckle is found.
+    /// Sets points with their normals, in the reference state, from which the largest shift of the
+    /// speckle is found.
     ///
-    /// Without them it is found where the light of the laser crosses the plane in focus, or all over the image if it is
-    /// seen nowhere, on a surface that faces the camera, the laser or the direction between both.
+    /// Without them it is found where the light of the laser crosses the plane in focus, or all
+    /// over the image if it is seen nowhere, on a surface that faces the camera, the laser or the
+    /// direction between both.
     pub fn at_points(mut self, points: impl IntoIterator<Item = (DVec3, DVec3)>) -> Self {
         self.points.extend(points);
         self
@@ -102,22 +106,22 @@ impl Speckle {
         self
     }
 
-    /// Sets the number of equal independent patterns that add up, which lowers the contrast to `1/√looks`: of several
-    /// exposures, places or modes that the detector adds.
+    /// Sets the number of equal independent patterns that add up, which lowers the contrast to
+    /// `1/√looks`: of several exposures, places or modes that the detector adds.
     pub const fn looks(mut self, looks: usize) -> Self {
         self.looks = looks;
         self
     }
 
-    /// Sets the degree of polarisation of the light that reaches the sensor: 1 behind a polariser, near 0 for laser light
-    /// off white paper without one.
+    /// Sets the degree of polarisation of the light that reaches the sensor: 1 behind a polariser,
+    /// near 0 for laser light off white paper without one.
     pub const fn polarisation(mut self, degree: f64) -> Self {
         self.polarisation = degree;
         self
     }
 
-    /// Sets the relief of the surface that is finer than a resolution cell: its paths lower the contrast of a laser that
-    /// has a linewidth.
+    /// Sets the relief of the surface that is finer than a resolution cell: its paths lower the
+    /// contrast of a laser that has a linewidth.
     pub const fn relief(mut self, relief: Relief) -> Self {
         self.relief = relief;
         self
@@ -127,12 +131,14 @@ impl Speckle {
     ///
     /// # Errors
     ///
-    /// Returns an error if the image or the motions need more memory than allowed, if the number of looks or the degree
-    /// of polarisation is out of range, or if no frame shows a point from which to find the largest shift.
+    /// Returns an error if the image or the motions need more memory than allowed, if the number of
+    /// looks or the degree of polarisation is out of range, or if no frame shows a point from which
+    /// to find the largest shift.
     ///
-    /// A laser that has a linewidth or is no point needs [`at_points`](Self::at_points), one of which the camera sees in
-    /// the reference state. With a linewidth, motions must displace the pupil along the direction in which other
-    /// wavelengths do: an error says where two frames would correlate by 0.05 otherwise than by the law.
+    /// A laser that has a linewidth or is no point needs [`at_points`](Self::at_points), one of
+    /// which the camera sees in the reference state. With a linewidth, motions must displace the
+    /// pupil along the direction in which other wavelengths do: an error says where two frames
+    /// would correlate by 0.05 otherwise than by the law.
     pub fn prepare(self) -> Result<PreparedSpeckle, ShadingError> {
         let motions = self.motions.clone();
         let (mut patterns, fields) = self.planned()?;
@@ -157,7 +163,8 @@ impl Speckle {
         let bandwidth = light.bandwidth.map(|bandwidth| demand.beside(&bandwidth));
         let heights = bandwidth.as_ref().map_or(1, |b| b.heights.len());
         let fields = fractions.len() * heights;
-        // The reference state is one of them; the waves of a line want a path as long as many frames do.
+        // The reference state is one of them; the waves of a line want a path as long as many
+        // frames do.
         let frames = 1 + self.motions.len();
         let frames = if bandwidth.is_some() {
             frames.max(3)
@@ -294,8 +301,8 @@ struct Demand {
     image: DVec2,
     /// The corners of the region of the reference image from which speckle is looked up, in pixels.
     region: [DVec2; 2],
-    /// The largest shifts of the pupil to either side of the reference, in its diameters; the second to the side of
-    /// the farthest.
+    /// The largest shifts of the pupil to either side of the reference, in its diameters; the
+    /// second to the side of the farthest.
     shifts: [f64; 2],
     farthest: Option<ReferencePoint>,
 }
@@ -310,7 +317,8 @@ impl Demand {
         }
     }
 
-    /// Makes room beside the motion for what a linewidth asks, which it returns on the side of the farthest.
+    /// Makes room beside the motion for what a linewidth asks, which it returns on the side of the
+    /// farthest.
     fn beside(&mut self, bandwidth: &Bandwidth) -> Bandwidth {
         let [before, after] = self.shifts;
         self.shifts = [before.max(after) + bandwidth.reach; 2];

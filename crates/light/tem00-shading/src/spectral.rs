@@ -28,7 +28,8 @@ pub struct SpectralLaw<'a> {
 /// The change of the speckle of a point with the wave number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpectralShift {
-    /// The displacement of the speckle in the image in perspective, in pixels with y down: none in focus.
+    /// The displacement of the speckle in the image in perspective, in pixels with y down: none in
+    /// focus.
     pub displacement: DVec2,
     /// The displacement of the pupil over the speckle to the right and up, in pupil diameters.
     pub pupil: DVec2,
@@ -36,7 +37,8 @@ pub struct SpectralShift {
     pub phase_per_height: f64,
 }
 
-/// The light of a laser on a surface: fractions of patterns whose intensities add, and what else its bandwidth asks.
+/// The light of a laser on a surface: fractions of patterns whose intensities add, and what else
+/// its bandwidth asks.
 #[derive(Clone, Debug)]
 pub struct SurfaceLight {
     /// One, or the modes of heights that dominate, or of directions of the source.
@@ -48,31 +50,34 @@ pub struct SurfaceLight {
 /// How a surface looks up the speckle of a laser that has a linewidth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bandwidth {
-    /// Heights that stand for the relief, in metres, with the roots of their fractions of the light. Their fields add.
+    /// Heights that stand for the relief, in metres, with the roots of their fractions of the
+    /// light. Their fields add.
     pub heights: Vec<[f64; 2]>,
-    /// The unit vector in the image, with y up, along which another wavelength displaces the pupil, on the side to which
-    /// it moves farthest.
+    /// The unit vector in the image, with y up, along which another wavelength displaces the pupil,
+    /// on the side to which it moves farthest.
     pub axis: DVec2,
     /// The largest such displacement that the slices hold to either side, in pupil diameters.
     pub reach: f64,
     /// The displacement in pupil diameters over the difference of wave numbers.
     pub tilt: f64,
-    /// The change of the phase with the height, in radians per metre, over the difference of wave numbers.
+    /// The change of the phase with the height, in radians per metre, over the difference of wave
+    /// numbers.
     pub phase_per_height: f64,
 }
 
-/// The spread of the wave number over that which displaces the pupil by its diameter, below which a contrast is above
-/// 0.999.
+/// The spread of the wave number over that which displaces the pupil by its diameter, below which a
+/// contrast is above 0.999.
 const NEGLIGIBLE_TILT: f64 = 5e-4;
 
-/// The part of the line to either side that the slices need not hold, and the most that they hold in pupil diameters: on
-/// a path that closes, the rest finds speckle that is new to nearly all of the line.
+/// The part of the line to either side that the slices need not hold, and the most that they hold
+/// in pupil diameters: on a path that closes, the rest finds speckle that is new to nearly all of
+/// the line.
 const LEFT_OUT: f64 = 5e-4;
 const MAX_REACH: f64 = 1.5;
 
 impl SpectralLaw<'_> {
-    /// Returns what becomes of the speckle at a point in light whose wave number differs by `kappa`, in rad/m, from the
-    /// mean one, or `None` where the theory has no value.
+    /// Returns what becomes of the speckle at a point in light whose wave number differs by
+    /// `kappa`, in rad/m, from the mean one, or `None` where the theory has no value.
     pub fn shift(&self, point: &SeenPoint, kappa: f64) -> Option<SpectralShift> {
         let mean = self.configuration(point)?;
         let other = mean
@@ -107,8 +112,8 @@ impl SpectralLaw<'_> {
         .ok()
     }
 
-    /// Returns the light on a surface of a relief of which these points are seen, or `None` if the theory has a value at
-    /// none of them.
+    /// Returns the light on a surface of a relief of which these points are seen, or `None` if the
+    /// theory has a value at none of them.
     ///
     /// The point where wavelengths displace the pupil most stands for all.
     pub fn light(
@@ -160,7 +165,8 @@ impl SpectralLaw<'_> {
         })
     }
 
-    /// The point with its light: its phase follows from its direction alone, so that the wave need not be known.
+    /// The point with its light: its phase follows from its direction alone, so that the wave need
+    /// not be known.
     fn configuration(&self, point: &SeenPoint) -> Option<Configuration> {
         let camera = self.perspective.camera();
         let to_source = self.laser.wave_direction_at(point.position);
@@ -198,7 +204,8 @@ impl SurfaceLight {
 }
 
 impl Bandwidth {
-    /// Returns the same with an axis on the side of a way of the pupil over the speckle, to the right and up.
+    /// Returns the same with an axis on the side of a way of the pupil over the speckle, to the
+    /// right and up.
     #[must_use]
     pub fn beside(&self, way: DVec2) -> Self {
         let axis = self.axis;
@@ -214,14 +221,14 @@ impl Bandwidth {
         }
     }
 
-    /// Returns the covariance of intensities in the light of a line between which the pupil has moved by so many
-    /// diameters, where other waves displace it along an axis.
+    /// Returns the covariance of intensities in the light of a line between which the pupil has
+    /// moved by so many diameters, where other waves displace it along an axis.
     pub fn covariance(&self, line: &SpectralLine, shift: DVec2, axis: DVec2) -> f64 {
         line.mean_over_pairs(self.scale(), |kappa| self.kept_of(kappa, shift, axis))
     }
 
-    /// Returns into how many equal parts a line must be split, each with its median wave number, for a contrast within 1 %
-    /// of that of the whole line: at most 64.
+    /// Returns into how many equal parts a line must be split, each with its median wave number,
+    /// for a contrast within 1 % of that of the whole line: at most 64.
     pub(crate) fn waves(&self, line: &SpectralLine) -> usize {
         let law = self.covariance(line, DVec2::ZERO, self.axis);
         let of_parts = |count: usize| {
@@ -239,7 +246,8 @@ impl Bandwidth {
             .unwrap_or(64)
     }
 
-    /// Returns the covariance that a difference of wave numbers and a displacement of the pupil leave.
+    /// Returns the covariance that a difference of wave numbers and a displacement of the pupil
+    /// leave.
     fn kept_of(&self, kappa: f64, shift: DVec2, axis: DVec2) -> f64 {
         let shift = shift + kappa * self.tilt * axis;
         self.kept_by_heights(kappa) * pupil_overlap_correlation(shift.length())

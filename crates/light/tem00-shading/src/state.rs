@@ -35,7 +35,8 @@ impl ReferencePoint {
     }
 }
 
-/// Rays along each dimension of the light of the laser, and of the image, by which points are found.
+/// Rays along each dimension of the light of the laser, and of the image, by which points are
+/// found.
 const RAYS: u32 = 6;
 
 impl State {
@@ -98,8 +99,8 @@ impl State {
         }
     }
 
-    /// Returns what has become of the speckle of a point in light that, in the reference state, was this and moves with
-    /// the laser.
+    /// Returns what has become of the speckle of a point in light that, in the reference state, was
+    /// this and moves with the laser.
     pub(crate) fn shift_under(
         &self,
         light: &Illumination,
@@ -131,7 +132,8 @@ impl State {
         shift[0]
     }
 
-    /// Returns where a point was in the reference state, with the way of the pupil over its speckle.
+    /// Returns where a point was in the reference state, with the way of the pupil over its
+    /// speckle.
     pub(crate) fn reference_point(&self, point: &SeenPoint, way: DVec3) -> ReferencePoint {
         let back = self.motion.surface.inverse();
         ReferencePoint {
@@ -141,8 +143,8 @@ impl State {
         }
     }
 
-    /// Returns on which side of the reference the speckle is: 1 where the pupil has moved over that of a point as it
-    /// has where it moved farthest, and −1 where it has moved the other way.
+    /// Returns on which side of the reference the speckle is: 1 where the pupil has moved over that
+    /// of a point as it has where it moved farthest, and −1 where it has moved the other way.
     pub(crate) fn side(
         &self,
         geometry: &ImagingGeometry,
@@ -161,8 +163,8 @@ impl State {
         }
     }
 
-    /// Returns points that the camera sees now, with what has become of their speckle: those given in the reference
-    /// state, or else points of the plane in focus.
+    /// Returns points that the camera sees now, with what has become of their speckle: those given
+    /// in the reference state, or else points of the plane in focus.
     pub(crate) fn scouted(
         &self,
         geometry: &ImagingGeometry,
@@ -195,8 +197,9 @@ impl State {
         DVec2::new(self.camera.width() as f64, self.camera.height() as f64)
     }
 
-    /// Points in the image and in focus, where rays of the laser meet the plane there or, if none does as of a line much
-    /// wider than the image, all over the image; with normals towards the camera, the laser and between both.
+    /// Points in the image and in focus, where rays of the laser meet the plane there or, if none
+    /// does as of a line much wider than the image, all over the image; with normals towards the
+    /// camera, the laser and between both.
     fn in_focus(&self) -> Vec<(DVec3, DVec3)> {
         let (origin, normal) = self.camera.plane_in_focus();
         let meet = |ray: Ray| {

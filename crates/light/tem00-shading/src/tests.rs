@@ -103,8 +103,8 @@ proptest! {
     }
 }
 
-/// The speckle of points that the body carries along keeps as much as the law says, for motions across, along the
-/// line of sight, about axes, and of camera and laser.
+/// The speckle of points that the body carries along keeps as much as the law says, for motions
+/// across, along the line of sight, about axes, and of camera and laser.
 #[test]
 fn factors_of_two_frames_correlate_by_the_law() {
     let motions = [
@@ -129,7 +129,8 @@ fn factors_of_two_frames_correlate_by_the_law() {
         let [reference, frame] = [Motion::default(), motion].map(|m| speckle.frame(&m).unwrap());
         let points = places(600);
         let carried = |point: DVec3| motion.surface.point(point);
-        // Where the peak has gone, beside the image of the point: the factor follows the body, its speckle the peak.
+        // Where the peak has gone, beside the image of the point: the factor follows the body, its
+        // speckle the peak.
         let normal = motion.surface.direction(DVec3::Z);
         let shift = frame.shift(carried(DVec3::ZERO), normal).unwrap();
         let seen = camera.moved(&motion.camera);
@@ -146,7 +147,8 @@ fn factors_of_two_frames_correlate_by_the_law() {
         let law = pupil_overlap_correlation(shift.pupil);
         let found = correlation(&before, &after);
         assert!((0.05..0.95).contains(&law), "{law} tells nothing");
-        // Three standard errors of a correlation of exponentials from 600 points, and what the blend adds.
+        // Three standard errors of a correlation of exponentials from 600 points, and what the
+        // blend adds.
         let tolerance = 3.0 * (1.0 + law) / 600_f64.sqrt() + 0.02;
         assert!((found - law).abs() < tolerance, "{found}, by the law {law}");
     }

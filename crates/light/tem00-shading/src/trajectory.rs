@@ -14,8 +14,8 @@ use crate::ShadingError;
 /// ```
 ///
 /// In a steady motion angle and displacement grow with the frame, from none in frame 0; the pivot
-/// travels along. Between keyframes the displacement changes at a constant rate and the rotation at a
-/// constant rate about one axis; before the first and after the last the thing stands still.
+/// travels along. Between keyframes the displacement changes at a constant rate and the rotation at
+/// a constant rate about one axis; before the first and after the last the thing stands still.
 ///
 /// # Examples
 ///
@@ -123,8 +123,8 @@ impl Trajectory {
     ///
     /// # Errors
     ///
-    /// As [`steady`](Self::steady), and if the pivot is not finite, if the axis is zero or not finite,
-    /// or if the angle, or what it adds up to, is not finite.
+    /// As [`steady`](Self::steady), and if the pivot is not finite, if the axis is zero or not
+    /// finite, or if the angle, or what it adds up to, is not finite.
     pub fn turning(
         pivot: DVec3,
         rotation: Rotation,
@@ -154,8 +154,8 @@ impl Trajectory {
     ///
     /// # Errors
     ///
-    /// Returns an error if there are no keyframes, if their frames do not increase, if an axis is zero,
-    /// or if a number is not finite.
+    /// Returns an error if there are no keyframes, if their frames do not increase, if an axis is
+    /// zero, or if a number is not finite.
     pub fn keyframed(
         pivot: DVec3,
         keyframes: impl IntoIterator<Item = Keyframe>,

@@ -1,7 +1,9 @@
-//! Phasors, the parts of a Fourier transform and look-ups as source text, for kernels on a graphics card.
+//! Phasors, the parts of a Fourier transform and look-ups as source text, for kernels on a graphics
+//! card.
 //!
-//! A kernel cannot call this crate. It is given the [`coefficients`](crate::SpeckleStack::coefficients) of a stack and
-//! the rows of its [`SliceLaw`](crate::SliceLaw), and looks intensities up by these functions; or it makes the
+//! A kernel cannot call this crate. It is given the
+//! [`coefficients`](crate::SpeckleStack::coefficients) of a stack and the rows of its
+//! [`SliceLaw`](crate::SliceLaw), and looks intensities up by these functions; or it makes the
 //! phasors from the seed itself. `tem00-gpu` does both on a device of `wgpu`.
 //!
 //! # Examples
@@ -28,7 +30,8 @@
 //! assert!(module.contains("fn tem00_stack_intensity("));
 //! ```
 
-/// Phasors, the parts of a Fourier transform and look-ups in WGSL: functions and structs without bindings.
+/// Phasors, the parts of a Fourier transform and look-ups in WGSL: functions and structs without
+/// bindings.
 ///
 /// Its first comment names the two functions that the host writes.
 pub const WGSL: &str = include_str!("../shaders/tem00_speckle.wgsl");

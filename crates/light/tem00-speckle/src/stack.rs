@@ -43,8 +43,8 @@ use workers::map_with_scratch;
 ///
 /// Slices hold complex amplitudes, not intensities: interpolated amplitudes of a Gaussian random
 /// process are Gaussian again, so that the intensity keeps its exponential law at every coordinate
-/// once it is divided by the variance that the interpolation leaves. In the plane that is the
-/// cubic B-spline over 4 × 4 coefficients, prefiltered in the pupil, with the variance in closed form.
+/// once it is divided by the variance that the interpolation leaves. In the plane that is the cubic
+/// B-spline over 4 × 4 coefficients, prefiltered in the pupil, with the variance in closed form.
 /// Between slices it is a linear blend in the common frame of the lattice:
 ///
 /// ```text
@@ -52,30 +52,33 @@ use workers::map_with_scratch;
 /// I = |U|² / ((1 − f)² v_i + f² v_{i+1} + 2 f (1 − f) w_i)
 /// ```
 ///
-/// with the pupil centres c, the variance v of the interpolated amplitude and its covariance w between
-/// the two slices, both as functions of the fractions of x and y. At the samples w is the overlap of the two
-/// pupils, counted on the lattice; elsewhere it is what interpolation makes of the light that both see. For
-/// an external field, v and w are those of the light that the pupils see, slice by slice.
+/// with the pupil centres c, the variance v of the interpolated amplitude and its covariance w
+/// between the two slices, both as functions of the fractions of x and y. At the samples w is the
+/// overlap of the two pupils, counted on the lattice; elsewhere it is what interpolation makes of
+/// the light that both see. For an external field, v and w are those of the light that the pupils
+/// see, slice by slice.
 ///
 /// # Validity
 ///
 /// - Pupil centres are rounded to the lattice, which changes the overlap of two slices by up to
-///   about 1/C against the closed form. [`correlation_between`](Self::correlation_between) is exact.
-/// - The spline's rms error of the field is 4.3e−3 at a speckle size of 2 samples and 2e−4 at 4, twice
-///   that behind a square pupil.
-///   It changes the autocovariance by up to 3.8e−3 and 1.3e−4, but neither mean nor contrast.
-/// - The mean is 1 at every coordinate but for 3e−6, the rounding of `f32`, and between slices of a pupil
-///   without symmetry 2e−5, what polynomials leave of their covariance. The one exception is M = 1,
-///   where both pupils may meet the same points of the rim from opposite sides: the overlap is 1/N
-///   for a disc and up to 1/C for a rectangle.
+///   about 1/C against the closed form. [`correlation_between`](Self::correlation_between) is
+///   exact.
+/// - The spline's rms error of the field is 4.3e−3 at a speckle size of 2 samples and 2e−4 at 4,
+///   twice that behind a square pupil. It changes the autocovariance by up to 3.8e−3 and 1.3e−4,
+///   but neither mean nor contrast.
+/// - The mean is 1 at every coordinate but for 3e−6, the rounding of `f32`, and between slices of a
+///   pupil without symmetry 2e−5, what polynomials leave of their covariance. The one exception is
+///   M = 1, where both pupils may meet the same points of the rim from opposite sides: the overlap
+///   is 1/N for a disc and up to 1/C for a rectangle.
 /// - Between slices the correlation is that of the blend, which the methods below take in:
 ///
 ///   ```text
 ///   γ(0, i + f) = [(1 − f) ρ(i) + f ρ(i + 1)]² / [1 − 2 f (1 − f) (1 − ρ(1))]
 ///   ```
 ///
-///   It depends on both coordinates, and not on their distance alone: on a circle it exceeds ρ² of that
-///   distance by up to 0.2 for 2M = 16 slices and 0.06 for 64, from slice 0 by up to 0.11 and 0.03.
+///   It depends on both coordinates, and not on their distance alone: on a circle it exceeds ρ² of
+///   that distance by up to 0.2 for 2M = 16 slices and 0.06 for 64, from slice 0 by up to 0.11 and
+///   0.03.
 ///
 /// # Examples
 ///
@@ -169,8 +172,8 @@ impl SpeckleStack {
         }
     }
 
-    /// Returns the field the slices were cut from. That of a straight path closes on itself after the
-    /// length of the path.
+    /// Returns the field the slices were cut from. That of a straight path closes on itself after
+    /// the length of the path.
     pub const fn field(&self) -> &PupilField {
         &self.field
     }
@@ -180,7 +183,8 @@ impl SpeckleStack {
         self.law.path
     }
 
-    /// Returns the coefficients of slice `index` that the look-up interpolates: those of the prefiltered spline.
+    /// Returns the coefficients of slice `index` that the look-up interpolates: those of the
+    /// prefiltered spline.
     ///
     /// # Panics
     ///
@@ -234,13 +238,13 @@ impl SpeckleStack {
         self.law.path.offset(index, &self.field)
     }
 
-    /// Returns the correlation γ of the intensities looked up at u = 0 and u = `distance`, in closed
-    /// form.
+    /// Returns the correlation γ of the intensities looked up at u = 0 and u = `distance`, in
+    /// closed form.
     ///
     /// It is what look-ups show of the pattern of slice 0, on slices and between. That of any two
-    /// coordinates is [`correlation_between`](Self::correlation_between), from which this differs by
-    /// the rounding of pupil centres. The function is even and has the period of the stack; for a
-    /// still stack it is 1. A `distance` that is not finite leaves nothing: 0.
+    /// coordinates is [`correlation_between`](Self::correlation_between), from which this differs
+    /// by the rounding of pupil centres. The function is even and has the period of the stack; for
+    /// a still stack it is 1. A `distance` that is not finite leaves nothing: 0.
     ///
     /// # Validity
     ///
@@ -257,16 +261,17 @@ impl SpeckleStack {
     /// reference pattern at u = 0: the inverse of [`correlation_at`](Self::correlation_at).
     ///
     /// A correlation of 1 or more needs no distance. One of 0 or less, and NaN, gives the first
-    /// slice of no correlation: M on the circle, the first from `2 M / length` on along the straight
-    /// path. For a still stack the distance is always 0. Where the law is not monotonic (an annulus),
-    /// it is the smallest distance.
+    /// slice of no correlation: M on the circle, the first from `2 M / length` on along the
+    /// straight path. For a still stack the distance is always 0. Where the law is not monotonic
+    /// (an annulus), it is the smallest distance.
     pub fn coordinate_of(&self, correlation: f64) -> f64 {
         let mut coordinate = [correlation];
         self.coordinates_of(&mut coordinate);
         coordinate[0]
     }
 
-    /// Puts the coordinate of each correlation in its place, as [`coordinate_of`](Self::coordinate_of) returns it.
+    /// Puts the coordinate of each correlation in its place, as
+    /// [`coordinate_of`](Self::coordinate_of) returns it.
     ///
     /// Neighbours between the same two slices are found fastest.
     pub fn coordinates_of(&self, correlations: &mut [f64]) {
@@ -276,13 +281,13 @@ impl SpeckleStack {
         self.law.coordinates_of(correlations);
     }
 
-    /// Returns the coordinate u, in slices, where the pupil has moved by a `shift` over the speckle, in its diameters,
-    /// to one side or the other.
+    /// Returns the coordinate u, in slices, where the pupil has moved by a `shift` over the
+    /// speckle, in its diameters, to one side or the other.
     ///
-    /// The look-up there has kept as much of the reference pattern at u = 0 as that shift leaves, chat²(s), and its
-    /// speckle is that of no smaller shift. Shifts beyond the [reach](SlicePath::reach) of the path count as the reach,
-    /// and so does NaN: speckle that is new. Behind pupils that are no circle, a shift counts by what it would leave
-    /// behind one.
+    /// The look-up there has kept as much of the reference pattern at u = 0 as that shift leaves,
+    /// chat²(s), and its speckle is that of no smaller shift. Shifts beyond the
+    /// [reach](SlicePath::reach) of the path count as the reach, and so does NaN: speckle that is
+    /// new. Behind pupils that are no circle, a shift counts by what it would leave behind one.
     ///
     /// # Examples
     ///
@@ -304,9 +309,10 @@ impl SpeckleStack {
         coordinate[0].copysign(shift)
     }
 
-    /// Puts the coordinate of each shift, to one side, in its place, as [`coordinate_at`](Self::coordinate_at) returns it,
-    /// for a `reach` that is not that of the path: where one side of the reference gets a part of the path, or where
-    /// the slices are a part of a longer path.
+    /// Puts the coordinate of each shift, to one side, in its place, as
+    /// [`coordinate_at`](Self::coordinate_at) returns it, for a `reach` that is not that of the
+    /// path: where one side of the reference gets a part of the path, or where the slices are a
+    /// part of a longer path.
     ///
     /// Neighbours between the same two slices are found fastest.
     pub fn coordinates_within(&self, reach: f64, shifts: &mut [f64]) {
@@ -319,8 +325,8 @@ impl SpeckleStack {
                 *shift = shift.min(reach);
                 *overlap = disc_overlap(*shift);
             }
-            // Where the blend of two slices has kept as much of the reference pattern as that shift, and on along the
-            // path once nothing is left.
+            // Where the blend of two slices has kept as much of the reference pattern as that
+            // shift, and on along the path once nothing is left.
             self.law.coordinates_of(overlaps);
             for (shift, u) in shifts.iter_mut().zip(&*overlaps) {
                 *shift = u.max(*shift * per_diameter);

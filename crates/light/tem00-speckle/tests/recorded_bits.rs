@@ -1,5 +1,5 @@
-//! The same bits with and without the feature `parallel`, and for any number of threads: either build
-//! is held to the same recorded checksums.
+//! The same bits with and without the feature `parallel`, and for any number of threads: either
+//! build is held to the same recorded checksums.
 
 #![cfg_attr(
     feature = "parallel",
@@ -60,8 +60,9 @@ fn on_threads<T>(_: usize, work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// Recorded once without the feature `parallel`. The transform rounds as the processor's instructions
-/// demand, here AVX and FMA; a new version of it may round otherwise and be recorded anew.
+/// Recorded once without the feature `parallel`. The transform rounds as the processor's
+/// instructions demand, here AVX and FMA; a new version of it may round otherwise and be recorded
+/// anew.
 const RECORDED: [u64; 5] = [
     0x6413_a0f7_57ba_767a,
     0x116d_4df6_424c_93b4,

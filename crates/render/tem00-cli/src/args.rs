@@ -62,9 +62,9 @@ pub(crate) enum Command {
 
 /// Generate a speckle pattern and compare it with the theory.
 ///
-/// The pattern has Q × Q samples, is periodic, and has mean 1. A random pupil field of diameter C gives
-/// speckles of Q / C samples, and so does a measured or computed field read with --field. The table on
-/// standard output compares measured values with theory and states the tolerance of each.
+/// The pattern has Q × Q samples, is periodic, and has mean 1. A random pupil field of diameter C
+/// gives speckles of Q / C samples, and so does a measured or computed field read with --field. The
+/// table on standard output compares measured values with theory and states the tolerance of each.
 #[derive(Args, Debug)]
 #[command(after_help = PATTERN_EXAMPLES)]
 pub(crate) struct PatternArgs {
@@ -111,10 +111,10 @@ Examples:
 
 /// Measure the speckle in an image and compare it with theory.
 ///
-/// The image may come from a camera, a simulation or this program: grey or colour, an
-/// OpenEXR channel, or a two-dimensional NumPy array. The light should be even over the image: select a
-/// part with --crop, or divide by the local mean with --flatten. Uneven light increases the contrast,
-/// which gives a warning.
+/// The image may come from a camera, a simulation or this program: grey or colour, an OpenEXR
+/// channel, or a two-dimensional NumPy array. The light should be even over the image: select a
+/// part with --crop, or divide by the local mean with --flatten. Uneven light increases the
+/// contrast, which gives a warning.
 #[derive(Args, Debug)]
 #[command(after_help = STATS_EXAMPLES)]
 pub(crate) struct StatsArgs {
@@ -125,9 +125,9 @@ pub(crate) struct StatsArgs {
     #[arg(long, value_name = "X,Y,WIDTH,HEIGHT", value_parser = crop)]
     pub(crate) crop: Option<Crop>,
 
-    /// Divide the image by its mean over PIXELS × PIXELS around each pixel, and correct contrast and
-    /// speckle size for the effect of this division [default: 20 speckle sizes, at most a third of the
-    /// image].
+    /// Divide the image by its mean over PIXELS × PIXELS around each pixel, and correct contrast
+    /// and speckle size for the effect of this division [default: 20 speckle sizes, at most a third
+    /// of the image].
     #[arg(long, value_name = "PIXELS", num_args = 0..=1, require_equals = true)]
     pub(crate) flatten: Option<Option<usize>>,
 

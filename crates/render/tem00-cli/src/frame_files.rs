@@ -13,8 +13,8 @@ use tem00_tracer::{Frame, LaserLayers, Scene};
 
 use crate::{preview::Picture, summary::Exposure};
 
-/// Makes sure, before the work, that there is memory for the frames of the scene in a file: for their layers,
-/// once more to write them, and for the picture.
+/// Makes sure, before the work, that there is memory for the frames of the scene in a file: for
+/// their layers, once more to write them, and for the picture.
 ///
 /// # Errors
 ///
@@ -87,8 +87,8 @@ fn laser_picture_of(frame: &Frame) -> Picture {
 
 /// Chooses the white level for the light of the lasers, or for all light if no laser is seen.
 ///
-/// A thin line on an object that another light illuminates is few of the pixels: with those counted, the
-/// line would be burnt out.
+/// A thin line on an object that another light illuminates is few of the pixels: with those
+/// counted, the line would be burnt out.
 pub(crate) fn automatic_exposure(frame: &Frame) -> Exposure {
     let lasers = laser_picture_of(frame);
     if lasers.is_dark() {

@@ -51,8 +51,8 @@ impl<'a> Inspection<'a> {
         lasers.flat_map(|laser| self.words(laser)).collect()
     }
 
-    /// Draws camera, lasers and parts into NAME.svg in a folder, as they stand in the first frame in which a
-    /// laser is not seen, or else in the first; returns the path.
+    /// Draws camera, lasers and parts into NAME.svg in a folder, as they stand in the first frame
+    /// in which a laser is not seen, or else in the first; returns the path.
     ///
     /// # Errors
     ///

@@ -33,8 +33,8 @@ pub use crate::{
 /// The commands of `tem00-inspect`.
 const INSPECTION: &str = "budget calibrate characterise design lines sweep triangulate";
 
-/// Runs the program with the arguments of a process, the first of which is its own name, and returns
-/// the exit code.
+/// Runs the program with the arguments of a process, the first of which is its own name, and
+/// returns the exit code.
 ///
 /// Takes over Ctrl-C and the termination signals of the process: a second one ends it at once.
 pub fn run(arguments: &[OsString]) -> u8 {

@@ -16,7 +16,8 @@ use crate::args::{ListArgs, Listed};
 ///
 /// # Errors
 ///
-/// Returns a failure if a metal was not measured at the wavelength, or standard output cannot be written.
+/// Returns a failure if a metal was not measured at the wavelength, or standard output cannot be
+/// written.
 pub(crate) fn run(args: &ListArgs, out: &mut impl Write) -> Result<(), Failure> {
     let (table, note) = match args.what {
         Listed::Metals => (metals(args.wavelength)?, METALS),

@@ -23,10 +23,12 @@ use tem00_speckle::{PupilField, SpeckleError, SpeckleField, SpecklePattern};
 
 use crate::{args::PatternArgs, check_writable, comparison};
 
-/// The largest size Q: 2²⁸ samples, the most that [`read_image`](tem00_report::image::read_image) takes.
+/// The largest size Q: 2²⁸ samples, the most that [`read_image`](tem00_report::image::read_image)
+/// takes.
 const MAXIMUM_SIZE: usize = 1 << 14;
 
-/// The bytes that it takes to make a sample, to measure it and to write it; its amplitude takes more.
+/// The bytes that it takes to make a sample, to measure it and to write it; its amplitude takes
+/// more.
 const BYTES_PER_SAMPLE: u64 = 36;
 
 /// The memory that an external field may take: as much as the largest pattern of amplitudes.

@@ -43,7 +43,8 @@ struct Speckle {
     decorrelation: [Decorrelation; 5],
 }
 
-/// A change that decorrelates speckle, and its amounts that leave half of the pattern and none, in SI units.
+/// A change that decorrelates speckle, and its amounts that leave half of the pattern and none, in
+/// SI units.
 #[derive(Debug)]
 struct Decorrelation {
     by: &'static str,
@@ -199,8 +200,8 @@ fn length(metres: f64) -> Cell {
     Unit::of_length(metres).quantity(metres)
 }
 
-/// Returns what decorrelates the speckle of a surface that faces the camera, under collimated light at
-/// an angle to the line of sight, in radians.
+/// Returns what decorrelates the speckle of a surface that faces the camera, under collimated light
+/// at an angle to the line of sight, in radians.
 ///
 /// Across, tilt and wavelength slide the speckle field over the pupil, in proportion while they are
 /// small; along the sight the field is defocused.
@@ -240,8 +241,8 @@ fn decorrelation(
     }))
 }
 
-/// Returns how far the speckle field slides over the pupil: per length across the sight, per radian of
-/// tilt, in metres, and per relative change of the wavelength, in metres.
+/// Returns how far the speckle field slides over the pupil: per length across the sight, per radian
+/// of tilt, in metres, and per relative change of the wavelength, in metres.
 fn pupil_shifts(
     geometry: &ImagingGeometry,
     angle: f64,

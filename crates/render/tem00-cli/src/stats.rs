@@ -40,8 +40,8 @@ const MIN_WINDOW: f64 = 8.0;
 
 /// The smallest window in speckle sizes for which what is taken is known.
 const SMALLEST_WINDOW: f64 = 6.0;
-/// The bytes that it takes to measure a pixel, most of them for the lags of the autocovariance, of which
-/// there are four for each.
+/// The bytes that it takes to measure a pixel, most of them for the lags of the autocovariance, of
+/// which there are four for each.
 const BYTES_PER_PIXEL: u64 = 100;
 
 /// The statistics of an image.
@@ -185,8 +185,9 @@ fn flattened(image: &Grid<f32>, window: Option<usize>) -> Result<FlatImage, Stri
 
 /// Returns the size of the speckle in uneven light, and the largest window that follows the light.
 ///
-/// Light makes speckles seem larger than they are: it is taken out before they are measured. Where the image does not
-/// hold eight of what is left, that is light as well, and smaller windows are tried until speckle fills them.
+/// Light makes speckles seem larger than they are: it is taken out before they are measured. Where
+/// the image does not hold eight of what is left, that is light as well, and smaller windows are
+/// tried until speckle fills them.
 fn size_in_light(image: &Grid<f32>) -> Result<(f64, usize), StatisticsError> {
     let shorter = image.width().min(image.height());
     let size_over = |window| size_in(&FlatImage::new(image, window)?);

@@ -57,8 +57,8 @@ pub(crate) struct FrameSummary {
     pub(crate) preview_fnv1a: String,
     pub(crate) layers_fnv1a: String,
     pub(crate) lasers: Vec<FrameLaser>,
-    /// The camera samples, the rays followed from the camera and towards light, and the time that they
-    /// took.
+    /// The camera samples, the rays followed from the camera and towards light, and the time that
+    /// they took.
     pub(crate) samples: u64,
     pub(crate) rays: u64,
     pub(crate) seconds: f64,
@@ -73,8 +73,8 @@ pub(crate) struct FrameLaser {
     pub(crate) power_ratio: f64,
     /// The standard error of that ratio; `None` with one sample in a pixel.
     pub(crate) power_ratio_error: Option<f64>,
-    /// The contrast of the speckle in the lit pixels; `None` without speckle, without light, or where
-    /// what to expect is not known.
+    /// The contrast of the speckle in the lit pixels; `None` without speckle, without light, or
+    /// where what to expect is not known.
     pub(crate) contrast: Option<ContrastSummary>,
 }
 
@@ -86,8 +86,8 @@ pub(crate) struct ContrastSummary {
     pub(crate) standard_error: f64,
 }
 
-/// Returns the lasers of a scene with the patterns planned for them, as JSON; `null` stands for a pattern that
-/// was left out.
+/// Returns the lasers of a scene with the patterns planned for them, as JSON; `null` stands for a
+/// pattern that was left out.
 pub(crate) fn lasers(scene: &Scene, plan: Option<&SpecklePlan>) -> Vec<Value> {
     let lasers = scene.lasers.iter().enumerate();
     let laser = |(index, laser): (usize, &Laser)| {
@@ -147,8 +147,8 @@ fn contrast(
     })
 }
 
-/// Returns the contrast of fully developed speckle in square pixels, each the mean of n samples that lie in it as those of a
-/// render do.
+/// Returns the contrast of fully developed speckle in square pixels, each the mean of n samples
+/// that lie in it as those of a render do.
 ///
 /// ```text
 /// C² = ⟨c(d / h)⟩        h in pixels, d from sample to sample, c the autocovariance

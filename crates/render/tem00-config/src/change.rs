@@ -10,12 +10,13 @@ use crate::source::INCLUDE;
 
 /// A key of a document, and the value that it is to have instead of the file's.
 ///
-/// It is written `camera.f_number=8`: the path of the key with dots between tables, and the value as the
-/// file has it. Of several tables, as of lasers, the index counts from 0: `laser[0].power=2 mW`. A value
-/// that is no TOML is a string, so that quotation marks, which shells take away, may be left out.
+/// It is written `camera.f_number=8`: the path of the key with dots between tables, and the value
+/// as the file has it. Of several tables, as of lasers, the index counts from 0:
+/// `laser[0].power=2 mW`. A value that is no TOML is a string, so that quotation marks, which
+/// shells take away, may be left out.
 ///
-/// The value is read as if it stood in the file: it is held to the same rules, and an unknown key is met
-/// with the nearest known one.
+/// The value is read as if it stood in the file: it is held to the same rules, and an unknown key
+/// is met with the nearest known one.
 ///
 /// # Examples
 ///
@@ -115,9 +116,9 @@ fn steps(text: &str) -> Option<Vec<Step>> {
         .collect()
 }
 
-/// Writes the changes into the texts of a document, each into the text that has its section, or else into
-/// `main`, the number of one of them. The texts stand in the order in which they are put together, and
-/// are TOML.
+/// Writes the changes into the texts of a document, each into the text that has its section, or
+/// else into `main`, the number of one of them. The texts stand in the order in which they are put
+/// together, and are TOML.
 pub(crate) fn apply(changes: &[Change], texts: &mut [String], main: usize) -> Result<(), Problem> {
     let documents = texts.iter().map(|text| text.parse::<DocumentMut>());
     let documents: Result<Vec<_>, _> = documents.collect();
@@ -135,7 +136,8 @@ pub(crate) fn apply(changes: &[Change], texts: &mut [String], main: usize) -> Re
 }
 
 impl Change {
-    /// Returns whether both change the same value, or one of them the whole of which the other changes a part.
+    /// Returns whether both change the same value, or one of them the whole of which the other
+    /// changes a part.
     pub fn overlaps(&self, other: &Self) -> bool {
         let steps = self.path.len().min(other.path.len());
         self.path[..steps] == other.path[..steps]
@@ -190,8 +192,8 @@ impl Change {
     }
 }
 
-/// Returns the number of the document that has the section that a path begins with. Where several have
-/// tables of it, the index counts through them all, and is made that of the document.
+/// Returns the number of the document that has the section that a path begins with. Where several
+/// have tables of it, the index counts through them all, and is made that of the document.
 fn owner(path: &mut [Step], documents: &[DocumentMut]) -> Option<usize> {
     let [Step::Key(key), rest @ ..] = path else {
         return None;

@@ -17,13 +17,13 @@ const SPECTRA: &[(&str, Spectrum)] = &[
     ("comb", Spectrum::Comb(0)),
 ];
 
-/// Reads the keys of the light of a laser, in scene files and in set-up files: `wavelength`, `linewidth`, `spectrum`,
-/// `lines` and `source_half_angle`.
+/// Reads the keys of the light of a laser, in scene files and in set-up files: `wavelength`,
+/// `linewidth`, `spectrum`, `lines` and `source_half_angle`.
 ///
 /// # Errors
 ///
-/// Returns a problem, placed at a key, if one is missing, beyond its range or contradicts another. Whether the light
-/// [has a line](LaserLight::line) is left to the caller.
+/// Returns a problem, placed at a key, if one is missing, beyond its range or contradicts another.
+/// Whether the light [has a line](LaserLight::line) is left to the caller.
 pub fn read_laser_light(
     section: &Section<'_>,
     wavelengths: &Wavelengths,
@@ -110,12 +110,13 @@ fn peaks(
     list.list(PEAKS)?.iter().map(peak).collect()
 }
 
-/// Reads the keys of the relief of a surface, in scene files and in set-up files: `rms_height`, with a `usual` one, and
-/// `correlation_length`.
+/// Reads the keys of the relief of a surface, in scene files and in set-up files: `rms_height`,
+/// with a `usual` one, and `correlation_length`.
 ///
 /// # Errors
 ///
-/// Returns a problem, placed at a key, if one is beyond its range, or a correlation length without a height.
+/// Returns a problem, placed at a key, if one is beyond its range, or a correlation length without
+/// a height.
 pub fn read_relief(section: &Section<'_>, usual: Option<f64>) -> Result<Relief, Problem> {
     let height = section.or("rms_height", usual, |value| {
         value.positive(&LENGTH).map(Some)

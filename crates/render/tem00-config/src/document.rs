@@ -25,13 +25,14 @@ impl<'a> Document<'a> {
         self.sources.folder()
     }
 
-    /// Returns the files that were read, the one that includes the others first; standard input is not
-    /// among them.
+    /// Returns the files that were read, the one that includes the others first; standard input is
+    /// not among them.
     pub fn paths(&self) -> Vec<PathBuf> {
         self.sources.files()
     }
 
-    /// Returns a value that stands outside of all sections; that of the file that includes the others counts.
+    /// Returns a value that stands outside of all sections; that of the file that includes the
+    /// others counts.
     pub fn value(&self, key: &'static str) -> Option<Value<'a>> {
         self.files.iter().rev().find_map(|file| file.optional(key))
     }
@@ -40,8 +41,8 @@ impl<'a> Document<'a> {
     ///
     /// # Errors
     ///
-    /// Returns a problem, placed in its file, if it is written otherwise, is given twice or has a key that it
-    /// may not have.
+    /// Returns a problem, placed in its file, if it is written otherwise, is given twice or has a
+    /// key that it may not have.
     pub fn table(
         &self,
         key: &'static str,
@@ -65,8 +66,8 @@ impl<'a> Document<'a> {
     ///
     /// # Errors
     ///
-    /// Returns a problem, placed in its file, if it is written otherwise, is given twice or has a key that it
-    /// may not have.
+    /// Returns a problem, placed in its file, if it is written otherwise, is given twice or has a
+    /// key that it may not have.
     pub fn tables(
         &self,
         key: &'static str,

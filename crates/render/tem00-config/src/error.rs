@@ -33,8 +33,8 @@ impl ConfigError {
         }
     }
 
-    /// Returns the path of the file with the error: the file that was asked for or one that it includes; `None` if
-    /// the text did not come from a file.
+    /// Returns the path of the file with the error: the file that was asked for or one that it
+    /// includes; `None` if the text did not come from a file.
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()
     }
@@ -116,8 +116,8 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Creates a problem without a location. What cannot be printed is escaped, and a long message is cut: it
-    /// may quote the file.
+    /// Creates a problem without a location. What cannot be printed is escaped, and a long message
+    /// is cut: it may quote the file.
     pub fn new(message: impl Into<String>) -> Self {
         Self {
             message: printable_line(&message.into(), MAX_CHARS),

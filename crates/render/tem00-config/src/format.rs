@@ -27,11 +27,11 @@ pub enum DocumentKind {
     Grid,
 }
 
-/// Tells by its sections what a document describes, so that a file of another kind can be told by name;
-/// `None` if it is not TOML, or of no known kind.
+/// Tells by its sections what a document describes, so that a file of another kind can be told by
+/// name; `None` if it is not TOML, or of no known kind.
 ///
-/// A scene may have several lasers and surfaces, `[[laser]]` and `[[surface]]`; a set-up has one `[laser]`
-/// and one `[surface]`; a grid has nothing but `[sweep]`.
+/// A scene may have several lasers and surfaces, `[[laser]]` and `[[surface]]`; a set-up has one
+/// `[laser]` and one `[surface]`; a grid has nothing but `[sweep]`.
 pub fn kind_of_document(text: &str) -> Option<DocumentKind> {
     let document = DeTable::parse(text.trim_start_matches('\u{feff}')).ok()?;
     if document

@@ -20,8 +20,8 @@ const STANDARD_INPUT: &str = "-";
 /// The locations of the files that a document may name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum FileAccess {
-    /// Files that it includes lie below its own folder, and the data of a glTF file below that of the
-    /// glTF file, symbolic links followed. Meshes and maps of radiance may lie anywhere.
+    /// Files that it includes lie below its own folder, and the data of a glTF file below that of
+    /// the glTF file, symbolic links followed. Meshes and maps of radiance may lie anywhere.
     #[default]
     WithinFolder,
     /// All files may lie anywhere.
@@ -47,7 +47,8 @@ pub fn open_input(path: &Path, max_bytes: u64) -> io::Result<File> {
 ///
 /// # Errors
 ///
-/// Returns the errors of [`open_input`], and an error if it cannot be read or there is not the memory.
+/// Returns the errors of [`open_input`], and an error if it cannot be read or there is not the
+/// memory.
 pub fn read_input(path: &Path, max_bytes: u64) -> io::Result<Vec<u8>> {
     let file = open_input(path, max_bytes)?;
     check_memory(file.metadata()?.len())
@@ -55,7 +56,8 @@ pub fn read_input(path: &Path, max_bytes: u64) -> io::Result<Vec<u8>> {
     read_bounded(file, max_bytes)
 }
 
-/// Reads a text of [at most 16 MiB](MAX_TEXT_BYTES): a regular file, or standard input for the path `-`.
+/// Reads a text of [at most 16 MiB](MAX_TEXT_BYTES): a regular file, or standard input for the path
+/// `-`.
 pub(crate) fn read_text(path: &Path) -> io::Result<Vec<u8>> {
     if is_standard_input(path) {
         read_bounded(io::stdin().lock(), MAX_TEXT_BYTES)

@@ -2,21 +2,24 @@
 //!
 //! # Conventions
 //!
-//! - Lengths, angles, powers, radiances, durations and amounts of memory are numbers in SI units, or strings
-//!   with a unit, such as `"0.25 mm"`: see [`Dimension`].
+//! - Lengths, angles, powers, radiances, durations and amounts of memory are numbers in SI units,
+//!   or strings with a unit, such as `"0.25 mm"`: see [`Dimension`].
 //! - A file that another includes lies below its folder, unless [`FileAccess::Anywhere`] is given.
 //! - An unknown key is an error, which names the nearest known one.
-//! - Text of a file that is shown is escaped, so that it does nothing to a terminal: see [`printable`].
+//! - Text of a file that is shown is escaped, so that it does nothing to a terminal: see
+//!   [`printable`].
 //!
 //! # Main types
 //!
-//! [`read_document`] opens a file of a [`Format`] as a [`Document`] of [`Section`]s, whose [`Value`]s are
-//! read one by one; [`read_laser_light`] and [`read_relief`] read keys that
-//! scenes and set-ups have in common. What is wrong is a [`Problem`], which becomes a [`ConfigError`] once its file is known.
+//! [`read_document`] opens a file of a [`Format`] as a [`Document`] of [`Section`]s, whose
+//! [`Value`]s are read one by one; [`read_laser_light`] and [`read_relief`] read keys that scenes
+//! and set-ups have in common. What is wrong is a [`Problem`], which becomes a [`ConfigError`] once
+//! its file is known.
 //!
 //! # Scope and non-goals
 //!
-//! No derived deserialisation: it loses the location of a value inside tagged tables. Nothing is written.
+//! No derived deserialisation: it loses the location of a value inside tagged tables. Nothing is
+//! written.
 
 mod change;
 mod coherence;

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-/// Returns text that does nothing to a terminal: control characters, and those that turn the direction of
-/// writing, are replaced by `\u001b` and the like. Line feeds and tabs stay.
+/// Returns text that does nothing to a terminal: control characters, and those that turn the
+/// direction of writing, are replaced by `\u001b` and the like. Line feeds and tabs stay.
 ///
 /// Inside a JSON string the replacements mean the same characters.
 pub fn printable(text: &str) -> Cow<'_, str> {
@@ -31,8 +31,8 @@ pub fn printable_line(text: &str, max_chars: usize) -> String {
 }
 
 /// Returns whether a character could do something to a terminal or a page other than show itself: a
-/// control character other than a line feed or a tab, a separator of lines, or a mark that turns the
-/// direction of writing.
+/// control character other than a line feed or a tab, a separator of lines, or a mark that turns
+/// the direction of writing.
 pub const fn is_hazard(character: char) -> bool {
     matches!(character,
         '\0'..='\x08' | '\x0b'..='\x1f' | '\x7f'..='\u{9f}'

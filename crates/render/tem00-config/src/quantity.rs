@@ -70,8 +70,8 @@ impl Unit {
         value * self.divisor / self.multiplier
     }
 
-    /// Returns the number of digits and the text of the shortest number, without an exponent, that reads back as the
-    /// same bits; `None` if it would be long.
+    /// Returns the number of digits and the text of the shortest number, without an exponent, that
+    /// reads back as the same bits; `None` if it would be long.
     fn shortest(&self, value: f64) -> Option<(usize, String)> {
         const MAX_DIGITS: usize = 9;
         let number = self.of(value);
@@ -219,8 +219,8 @@ impl Dimension {
         Some(format!("{} {}", digits(unit.of(value)), unit.symbol))
     }
 
-    /// Returns a message about `typed` with its lengths, or whatever it is, in the unit that was typed; or
-    /// `None` if it is not a quantity of this kind.
+    /// Returns a message about `typed` with its lengths, or whatever it is, in the unit that was
+    /// typed; or `None` if it is not a quantity of this kind.
     pub(crate) fn retyped(&self, message: &str, typed: &str) -> Option<String> {
         let value = self.parse(typed)?;
         let si = self.units.iter().find(|unit| unit.is_si())?;
@@ -257,7 +257,8 @@ impl Dimension {
         Some(message.replace(&format!(", in {}", self.si_unit), ""))
     }
 
-    /// Returns the quantity that a message tells in a unit that is not the SI unit: "1 µm", or "45°" in one word.
+    /// Returns the quantity that a message tells in a unit that is not the SI unit: "1 µm", or
+    /// "45°" in one word.
     fn limit(&self, word: &str, next: Option<&str>) -> Option<Limit> {
         let of = |number: &str, symbol: &str, is_one_word: bool| {
             let unit = self.unit(symbol).filter(|unit| !unit.is_si())?;
@@ -271,8 +272,9 @@ impl Dimension {
         degrees.or_else(|| of(one, bare(next?), false))
     }
 
-    /// Returns a value in SI units as one would write it into a file: in the unit that takes the fewest
-    /// digits, in the `usual` one of several, or else as a bare number. It reads back as the same bits.
+    /// Returns a value in SI units as one would write it into a file: in the unit that takes the
+    /// fewest digits, in the `usual` one of several, or else as a bare number. It reads back as the
+    /// same bits.
     pub fn text(&self, value: f64, usual: &str) -> String {
         // Symbols beyond ASCII are second names of units.
         let units = self.units.iter().filter(|unit| unit.symbol.is_ascii());
@@ -284,9 +286,9 @@ impl Dimension {
         }
     }
 
-    /// Returns the value nearest to one in SI units that is written with few digits in a unit: rounded to
-    /// the power of ten at or below `step`, which is in SI units, too. It is the value that its text reads
-    /// back as.
+    /// Returns the value nearest to one in SI units that is written with few digits in a unit:
+    /// rounded to the power of ten at or below `step`, which is in SI units, too. It is the value
+    /// that its text reads back as.
     pub fn rounded(&self, value: f64, step: f64, symbol: &str) -> f64 {
         const MAX_DECIMALS: f64 = 15.0;
         const ONE: Unit = unit("", 1.0, 1.0);

@@ -8,8 +8,8 @@ use crate::{
 ///
 /// # Errors
 ///
-/// Returns an error if a file cannot be read or is not valid TOML, if it has a key that its `format`
-/// does not know, and the errors of `read`, placed in the file.
+/// Returns an error if a file cannot be read or is not valid TOML, if it has a key that its
+/// `format` does not know, and the errors of `read`, placed in the file.
 pub fn read_document<'a, T>(
     path: &Path,
     reading: impl Into<Reading<'a>>,

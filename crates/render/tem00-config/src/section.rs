@@ -112,8 +112,8 @@ impl<'a> Section<'a> {
     ///
     /// # Errors
     ///
-    /// Returns a problem, placed in the file, if it is missing, written otherwise or has a key that it may
-    /// not have.
+    /// Returns a problem, placed in the file, if it is missing, written otherwise or has a key that
+    /// it may not have.
     pub fn table(
         &self,
         key: &'static str,
@@ -134,8 +134,8 @@ impl<'a> Section<'a> {
     ///
     /// # Errors
     ///
-    /// Returns a problem, placed in the file, if it is missing, written otherwise or has a key that it may
-    /// not have.
+    /// Returns a problem, placed in the file, if it is missing, written otherwise or has a key that
+    /// it may not have.
     pub fn tables(
         &self,
         key: &'static str,
@@ -169,8 +169,8 @@ impl<'a> Section<'a> {
     ///
     /// # Errors
     ///
-    /// Returns a problem, placed in the file, if it is missing, written otherwise or has a key that it may
-    /// not have.
+    /// Returns a problem, placed in the file, if it is missing, written otherwise or has a key that
+    /// it may not have.
     pub fn at_most_one_of(
         &self,
         what: &str,
@@ -199,8 +199,8 @@ impl<'a> Section<'a> {
     ///
     /// # Errors
     ///
-    /// Returns a problem, placed in the file, if it is missing, written otherwise or has a key that it may
-    /// not have.
+    /// Returns a problem, placed in the file, if it is missing, written otherwise or has a key that
+    /// it may not have.
     pub fn one_of(&self, what: &str, choices: &[Choice]) -> Result<(&'static str, Self), Problem> {
         self.at_most_one_of(what, choices)?.ok_or_else(|| {
             let headers = choices

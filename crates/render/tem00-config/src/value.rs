@@ -9,7 +9,8 @@ use crate::error::{Location, Problem};
 use crate::quantity::{DIMENSIONS, Dimension, LENGTH, NUMBER};
 use crate::source::Source;
 
-/// A value of the file, with what it takes to complain about it: its name, its text and its location.
+/// A value of the file, with what it takes to complain about it: its name, its text and its
+/// location.
 #[derive(Clone, Debug)]
 pub struct Value<'a> {
     name: String,
@@ -303,7 +304,8 @@ fn decimal(digits: &str, radix: u32) -> Option<f64> {
     Some(f64::from(value))
 }
 
-/// Returns the word of `words` that `word` is most likely a misspelling or a part of, if any is close.
+/// Returns the word of `words` that `word` is most likely a misspelling or a part of, if any is
+/// close.
 pub fn nearest<'w>(word: &str, words: &[&'w str]) -> Option<&'w str> {
     // The Jaro–Winkler similarity of unrelated words is around a half, of a typo above nine tenths.
     const CLOSE: f64 = 0.8;

@@ -21,10 +21,10 @@ const MIN_FRACTION: f64 = 1e-5;
 
 /// Fate of a laser's light on its way to the camera, in one frame.
 ///
-/// It is found from two sides. Rays drawn from the beam are followed over mirrors and through glass to
-/// their first rough surface, and from there straight to the camera. Rays of the camera are followed
-/// over mirrors and through glass to their first rough surface, and from there straight to the laser.
-/// Light that meets rough surfaces one after the other does not count.
+/// It is found from two sides. Rays drawn from the beam are followed over mirrors and through glass
+/// to their first rough surface, and from there straight to the camera. Rays of the camera are
+/// followed over mirrors and through glass to their first rough surface, and from there straight to
+/// the laser. Light that meets rough surfaces one after the other does not count.
 ///
 /// # Validity
 ///
@@ -34,11 +34,11 @@ const MIN_FRACTION: f64 = 1e-5;
 pub struct LaserInspection {
     /// The fates of the light, the largest fraction first.
     pub parts: Vec<LightPart>,
-    /// The part of the laser's power, from 0 to about 1, on what the image shows: rough surfaces seen
-    /// straight, in mirrors or through glass, and lit straight by the laser.
+    /// The part of the laser's power, from 0 to about 1, on what the image shows: rough surfaces
+    /// seen straight, in mirrors or through glass, and lit straight by the laser.
     pub fraction_in_image: f64,
-    /// The corners of the ways of the first 64 rays, from the aperture to their first rough surface, or
-    /// out of the scene.
+    /// The corners of the ways of the first 64 rays, from the aperture to their first rough
+    /// surface, or out of the scene.
     pub ways: Vec<Vec<DVec3>>,
 }
 
@@ -64,7 +64,8 @@ pub struct LightPart {
 pub enum LightFate {
     /// The camera sees what it lights.
     Seen,
-    /// It meets no rough surface: it leaves the scene, ends on a light or stays among mirrors and glass.
+    /// It meets no rough surface: it leaves the scene, ends on a light or stays among mirrors and
+    /// glass.
     Misses,
     /// It meets a one-sided surface from behind, which scatters nothing.
     MeetsBack,
@@ -74,8 +75,8 @@ pub enum LightFate {
     BehindCamera,
     /// It lights what lies beside the image, or beside the part of it that is rendered.
     OutsideImage,
-    /// Something stands between what it lights and the camera: the surface of this index, or a light
-    /// for an index beyond those of the surfaces.
+    /// Something stands between what it lights and the camera: the surface of this index, or a
+    /// light for an index beyond those of the surfaces.
     Hidden {
         /// The index among the surfaces, and the area lights behind them.
         by: usize,
@@ -100,7 +101,8 @@ impl LaserInspection {
 ///
 /// # Errors
 ///
-/// Returns an error if the geometry cannot be built, or if an option of the render is out of its range.
+/// Returns an error if the geometry cannot be built, or if an option of the render is out of its
+/// range.
 pub fn inspect_lasers(scene: &Scene, frame: u32) -> Result<Vec<LaserInspection>, TracerError> {
     let inspector = Inspector {
         scene,
@@ -327,8 +329,8 @@ impl Inspector<'_> {
         power / laser.power()
     }
 
-    /// Returns the power with which a laser lights what a camera ray shows, per solid angle of the ray,
-    /// in W/sr.
+    /// Returns the power with which a laser lights what a camera ray shows, per solid angle of the
+    /// ray, in W/sr.
     fn power_per_solid_angle(&self, laser: &Laser, seen: &Arrival) -> f64 {
         let Some(hit) = &seen.hit else {
             return 0.0;

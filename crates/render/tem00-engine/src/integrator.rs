@@ -26,8 +26,8 @@ use crate::{
     walk::Roulette,
 };
 
-/// Surfaces that a path always leaves again before it may end by chance. In a box of albedo 0.6 a second one takes 0.62 of
-/// the variance for 1.3 times the time.
+/// Surfaces that a path always leaves again before it may end by chance. In a box of albedo 0.6 a
+/// second one takes 0.62 of the variance for 1.3 times the time.
 const ROULETTE: Roulette = Roulette { certain: 2 };
 
 /// Everything that one frame needs to turn camera samples into radiance.
@@ -93,7 +93,8 @@ impl<'a> Integrator<'a> {
         } else {
             Vec::new()
         };
-        // Where all light is that of lasers, the first vertices have found most of it by their connections.
+        // Where all light is that of lasers, the first vertices have found most of it by their
+        // connections.
         let roulette = match scene.lights.is_empty() && !lit_points.is_empty() {
             true => Roulette { certain: 0 },
             false => ROULETTE,
@@ -325,7 +326,8 @@ impl<'a> Integrator<'a> {
             *throughput *= vertex.weight(&event, wavelength);
             largest = largest.max(*throughput);
         }
-        // End long and dark paths by chance, without bias; glass makes a path dark only for a while.
+        // End long and dark paths by chance, without bias; glass makes a path dark only for a
+        // while.
         let compression = path.compression * event.eta_squared;
         let sequence = self.sequence(stream);
         let draw = || sequence.uniform(stream, Use::Survival(path.depth));

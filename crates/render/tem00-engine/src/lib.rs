@@ -2,10 +2,11 @@
 //!
 //! # Conventions
 //!
-//! - Lengths are in metres, powers in watts, radiances in W/(m² sr), all in `f64`; images are `f32`.
+//! - Lengths are in metres, powers in watts, radiances in W/(m² sr), all in `f64`; images are
+//!   `f32`.
 //! - Image points are in pixels, x to the right and y down; the image is upright.
-//! - One frame, the first unless said otherwise, is the reference that the speckle of the others has
-//!   moved and changed from.
+//! - One frame, the first unless said otherwise, is the reference that the speckle of the others
+//!   has moved and changed from.
 //! - The same seed gives the same bits for any number of threads.
 
 mod inspection;

@@ -1,7 +1,7 @@
 //! Light followed from the lasers to the camera.
 //!
-//! The path tracer connects what the camera sees straight to the lasers, so it knows no light that a
-//! mirror or a lens has turned on its way to a surface. Here rays drawn from the phase space of a
+//! The path tracer connects what the camera sees straight to the lasers, so it knows no light that
+//! a mirror or a lens has turned on its way to a surface. Here rays drawn from the phase space of a
 //! beam carry its power. Mirrors and glass send them on; at every rough surface they are connected
 //! to the camera.
 //!

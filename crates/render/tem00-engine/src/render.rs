@@ -34,16 +34,16 @@ pub fn samples_per_frame(scene: &Scene, options: &RenderOptions) -> u64 {
 
 /// Renders one frame, on the threads of the current rayon pool.
 ///
-/// One pass over the image serves all lasers and lights. Without a `speckle` model every speckle factor
-/// is 1. `progress` is told, from any thread, the number of camera samples and light paths done since
-/// its last call; once `cancel` is set, the render stops within some thousand of them per thread. The
-/// result has the same bits for any number of threads.
+/// One pass over the image serves all lasers and lights. Without a `speckle` model every speckle
+/// factor is 1. `progress` is told, from any thread, the number of camera samples and light paths
+/// done since its last call; once `cancel` is set, the render stops within some thousand of them
+/// per thread. The result has the same bits for any number of threads.
 ///
 /// # Errors
 ///
 /// Returns [`RenderError::Cancelled`] if `cancel` was set before the end, and an error if an option
-/// is out of its range, if the geometry cannot be built, or if the layers exceed the memory that the
-/// system has available (Linux).
+/// is out of its range, if the geometry cannot be built, or if the layers exceed the memory that
+/// the system has available (Linux).
 ///
 /// # Panics
 ///

@@ -27,14 +27,16 @@ pub(crate) use self::{
 /// The offsets a and b are random, so each point is uniform over the square and every estimate
 /// unbiased; the generator is drawn for each pixel, so that no direction of an edge is a bad one
 /// throughout an image. Positions in the pixel have whole offsets and lie anywhere in the cell
-/// where column and row cross, which suits edges; those in two neighbouring columns, or rows, mirror each other, so that
-/// light that grows steadily over the pixel is met exactly. All other points are those of the lattice folded in the
-/// middle, which makes every smooth function a periodic one; those of different uses are in random orders.
+/// where column and row cross, which suits edges; those in two neighbouring columns, or rows,
+/// mirror each other, so that light that grows steadily over the pixel is met exactly. All other
+/// points are those of the lattice folded in the middle, which makes every smooth function a
+/// periodic one; those of different uses are in random orders.
 ///
 /// # References
 ///
 /// - N. M. Korobov, *The Approximate Computation of Multiple Integrals*, 1959. Lattices.
-/// - F. J. Hickernell, *Obtaining O(N^(−2+ε)) Convergence for Lattice Quadrature Rules*, 2002. Folding.
+/// - F. J. Hickernell, *Obtaining O(N^(−2+ε)) Convergence for Lattice Quadrature Rules*, 2002.
+///   Folding.
 #[derive(Clone, Debug)]
 pub(crate) struct Sequence {
     /// The number of samples of a pixel.
@@ -77,7 +79,8 @@ pub(crate) enum Use {
 /// The maximum number of times that the least number of samples of a pixel is doubled.
 const DOUBLINGS: u32 = 6;
 
-/// Returns the numbers of samples that a pixel can get. If there are several, the first is that of the pilot.
+/// Returns the numbers of samples that a pixel can get. If there are several, the first is that of
+/// the pilot.
 pub(crate) fn sample_counts(options: &RenderOptions) -> Vec<u32> {
     let count = options.samples_per_pixel;
     let counts = |pilot, least: u32| {
@@ -139,8 +142,8 @@ impl Sequence {
         );
     }
 
-    /// Returns a place in the column that begins at `start`, in 2⁻⁶⁴ of the torus: those in two neighbouring columns
-    /// mirror each other.
+    /// Returns a place in the column that begins at `start`, in 2⁻⁶⁴ of the torus: those in two
+    /// neighbouring columns mirror each other.
     #[inline(always)]
     fn place(&self, start: u64, seed: u64) -> f64 {
         let start = word(start >> 32);
@@ -228,7 +231,8 @@ pub(crate) fn point_in_square(key: u64) -> [f64; 2] {
     words(scattered(key)).map(fraction)
 }
 
-/// Combines the seed of a render with three numbers, as those of a frame and of a pixel's column and row.
+/// Combines the seed of a render with three numbers, as those of a frame and of a pixel's column
+/// and row.
 pub(crate) fn pixel_key(seed: u64, [first, second, third]: [u64; 3]) -> u64 {
     let key = scattered(scattered(seed) ^ first);
     scattered(scattered(key ^ second.rotate_left(16)) ^ third.rotate_left(48))
@@ -283,8 +287,8 @@ fn permuted_bits(mut number: u64, seed: u64, mask: u32) -> u64 {
     number
 }
 
-/// Returns the whole part of a quotient, by a division that vectorises: it is exact, as no quotient of
-/// such numbers is less than 2⁻³³ of itself below a whole number.
+/// Returns the whole part of a quotient, by a division that vectorises: it is exact, as no quotient
+/// of such numbers is less than 2⁻³³ of itself below a whole number.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

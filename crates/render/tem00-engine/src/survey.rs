@@ -33,7 +33,8 @@ pub(crate) struct Survey<'a> {
     /// The motion since the reference frame.
     change: &'a Change,
     seed: u64,
-    /// The maximum number of surfaces that light may meet between laser and camera; `None` for no limit.
+    /// The maximum number of surfaces that light may meet between laser and camera; `None` for no
+    /// limit.
     max_depth: Option<u32>,
     /// The number of cells along the longer side of the image.
     cells: usize,
@@ -42,8 +43,8 @@ pub(crate) struct Survey<'a> {
 /// Tells the random numbers of a survey from those of a render.
 const SEED: u64 = 0x005e_ed0f;
 
-/// Tells whether a frame shows multiple light whose speckle is not simply that of the single light: its paths differ by
-/// a length that counts, by a motion, or by polarisation.
+/// Tells whether a frame shows multiple light whose speckle is not simply that of the single light:
+/// its paths differ by a length that counts, by a motion, or by polarisation.
 pub(crate) fn asks_for_survey(scene: &Scene, frame: u32, options: &RenderOptions) -> bool {
     let is_broad = scene
         .lasers
@@ -65,16 +66,17 @@ const PLANNED_CELLS: usize = 16;
 impl SpecklePlan {
     /// Chooses the patterns for a scene.
     ///
-    /// Each is the [`StackPlan`](tem00_speckle::StackPlan) for the image, the part of the scene that moves into it, and the
-    /// longest way by which the frames carry the pupil: rays find it in every frame. Where the slices of all frames do not
-    /// fit the memory, or do not lie along one line, each frame has slices of its own, a part of a path without end. What
-    /// the scene file sets is kept.
+    /// Each is the [`StackPlan`](tem00_speckle::StackPlan) for the image, the part of the scene
+    /// that moves into it, and the longest way by which the frames carry the pupil: rays find it in
+    /// every frame. Where the slices of all frames do not fit the memory, or do not lie along one
+    /// line, each frame has slices of its own, a part of a path without end. What the scene file
+    /// sets is kept.
     ///
     /// # Errors
     ///
-    /// Returns an error if C exceeds Q/2, if the imaging geometry is not possible, if the speckle of
-    /// a surface is not a sum of patterns, if something moves in more than 262,144 frames, or if the patterns of no frame
-    /// fit the memory that the scene allows.
+    /// Returns an error if C exceeds Q/2, if the imaging geometry is not possible, if the speckle
+    /// of a surface is not a sum of patterns, if something moves in more than 262,144 frames, or if
+    /// the patterns of no frame fit the memory that the scene allows.
     pub fn new(scene: &Scene, seed: u64) -> Result<Self, TracerError> {
         let options = &scene.render;
         Self::with_survey(scene, seed, &|frame, intersector, change| {
@@ -85,8 +87,8 @@ impl SpecklePlan {
     }
 }
 
-/// The groups of light paths of a laser, and the paths in each. A place of the image sees two groups, which are
-/// independent of each other; the places beside it see others.
+/// The groups of light paths of a laser, and the paths in each. A place of the image sees two
+/// groups, which are independent of each other; the places beside it see others.
 const GROUPS: usize = 16;
 const PATHS: usize = 32;
 
@@ -95,8 +97,8 @@ const PROBE: usize = 4;
 
 /// Where paths start.
 ///
-/// A beam narrow against what is seen hides from paths that start at the camera, and what is small in a wide beam from
-/// paths that start at the laser.
+/// A beam narrow against what is seen hides from paths that start at the camera, and what is small
+/// in a wide beam from paths that start at the laser.
 #[derive(Clone, Copy)]
 enum Way {
     FromLaser,
@@ -106,8 +108,9 @@ enum Way {
 /// Of each laser, of each group, of each path: the rough surfaces that it has met.
 type WayPoints<'a> = Vec<Vec<Vec<Vec<WayPoint<'a>>>>>;
 
-/// Returns a note for each laser and surface where multiple light comes from so small a part of another surface that
-/// its own speckle is as coarse as what the camera resolves: the speckle of speckle is left out.
+/// Returns a note for each laser and surface where multiple light comes from so small a part of
+/// another surface that its own speckle is as coarse as what the camera resolves: the speckle of
+/// speckle is left out.
 ///
 /// The reference frame is judged, where the light is not faint.
 ///
@@ -165,8 +168,8 @@ impl<'a> Survey<'a> {
         }
     }
 
-    /// Follows light from the lasers, connects what it meets with points that the camera sees, and returns the multiple
-    /// light found there, if any.
+    /// Follows light from the lasers, connects what it meets with points that the camera sees, and
+    /// returns the multiple light found there, if any.
     pub(crate) fn map(&self) -> Option<MultipleMap> {
         let camera = self.change.camera();
         let lit = self.way_points();
@@ -193,7 +196,8 @@ impl<'a> Survey<'a> {
         MultipleMap::new(lattice, &sums)
     }
 
-    /// Chooses the way in which the light of a laser is found by more paths, in one of `PROBE`² cells.
+    /// Chooses the way in which the light of a laser is found by more paths, in one of `PROBE`²
+    /// cells.
     fn better_way(&self, laser: usize, groups: &[Vec<Vec<WayPoint<'_>>>], lattice: Lattice) -> Way {
         let probed = |cell: &usize| {
             let place = [cell % lattice.columns, cell / lattice.columns];
@@ -295,7 +299,8 @@ impl<'a> Survey<'a> {
         self.scene.surfaces[surface].speckle.polarisation
     }
 
-    /// The light of a group of paths from a laser that arrives over the rough surfaces they have met.
+    /// The light of a group of paths from a laser that arrives over the rough surfaces they have
+    /// met.
     fn multiple(
         &self,
         laser: usize,
@@ -349,8 +354,8 @@ struct SeenPoint<'a> {
 }
 
 impl SeenPoint<'_> {
-    /// Where in the pupil a change of the unit direction from which light arrives moves the field, in pupil diameters:
-    /// its part across the line of sight, the other being along the normal.
+    /// Where in the pupil a change of the unit direction from which light arrives moves the field,
+    /// in pupil diameters: its part across the line of sight, the other being along the normal.
     fn pupil_of(&self, direction: DVec3) -> DVec3 {
         let normal = self.point.normal;
         let along = direction.dot(self.to_pupil) / normal.dot(self.to_pupil);

@@ -17,8 +17,8 @@ pub(crate) struct Vertex<'a> {
 }
 
 impl<'a> Vertex<'a> {
-    /// Creates the point where a path from the camera hits a surface; `None` for a ray along the surface, which sees no
-    /// area of it.
+    /// Creates the point where a path from the camera hits a surface; `None` for a ray along the
+    /// surface, which sees no area of it.
     #[inline(always)]
     pub(crate) fn seen(ray: &Ray, hit: &Hit, material: &'a Material) -> Option<Self> {
         let normal = hit.normal_seen_from(-ray.direction);
@@ -76,8 +76,8 @@ impl<'a> Vertex<'a> {
         self.material.pdf(self.back, wi)
     }
 
-    /// Returns the density of the vertex on its surface, per square metre, if the direction of the ray to it was drawn
-    /// with `pdf`, per steradian.
+    /// Returns the density of the vertex on its surface, per square metre, if the direction of the
+    /// ray to it was drawn with `pdf`, per steradian.
     pub(crate) fn area_pdf(&self, pdf: f64) -> f64 {
         pdf * self.cosine.abs() / self.hit.distance.powi(2)
     }
@@ -87,7 +87,8 @@ impl<'a> Vertex<'a> {
         wi.z * self.back.z > 0.0
     }
 
-    /// Draws a direction from the material, whether or not surface and shading agree about its side.
+    /// Draws a direction from the material, whether or not surface and shading agree about its
+    /// side.
     pub(crate) fn draw(&self, u: [f64; 2], wavelength: f64) -> Option<BsdfSample> {
         self.material.sample(self.back, u, wavelength)
     }
@@ -123,8 +124,8 @@ impl<'a> Vertex<'a> {
         Segment::to_infinity(self.hit.position, self.hit.normal, direction)
     }
 
-    /// Returns the fraction of the power from the direction `back` that goes towards the unit vector `out`, per steradian,
-    /// where light is scattered in these `axes`.
+    /// Returns the fraction of the power from the direction `back` that goes towards the unit
+    /// vector `out`, per steradian, where light is scattered in these `axes`.
     pub(crate) fn sent(&self, back: DVec3, out: DVec3, axes: &LocalFrame, wavelength: f64) -> f64 {
         let [wo, wi] = [out, back].map(|direction| axes.to_local(direction));
         let reflected = self.material.evaluate(wo, wi, wavelength) * wo.z.abs();
@@ -137,8 +138,8 @@ impl<'a> Vertex<'a> {
         self.adjoint_factor(out, [self.back.z, event.wi.z])
     }
 
-    /// Returns what scattering of power towards `out` gains over scattering with the normal of the surface itself, so that
-    /// light carries what a path from the camera would find.
+    /// Returns what scattering of power towards `out` gains over scattering with the normal of the
+    /// surface itself, so that light carries what a path from the camera would find.
     ///
     /// ```text
     /// |i·n_s| |o·n_g| / (|i·n_g| |o·n_s|)     i back along the path, n_s shading, n_g geometric

@@ -1,4 +1,5 @@
-//! Paths through a scene, surface by surface, for a visitor: of light from a laser, or of sight from the camera.
+//! Paths through a scene, surface by surface, for a visitor: of light from a laser, or of sight
+//! from the camera.
 
 use glam::DVec3;
 use tem00_camera::Ray;
@@ -66,7 +67,8 @@ pub(crate) trait Visitor<'a> {
     /// Looks at a path that leaves the scene, or ends on a light.
     fn lose(&mut self, _walker: &Walker, _light: Option<&Hit>) {}
 
-    /// Returns two numbers in [0, 1) that draw the direction in which a path leaves its `depth`-th surface.
+    /// Returns two numbers in [0, 1) that draw the direction in which a path leaves its `depth`-th
+    /// surface.
     fn direction(&mut self, path: usize, depth: u32) -> [f64; 2];
 
     /// Returns a number in [0, 1) that decides if a path leaves its `depth`-th surface.
@@ -74,8 +76,9 @@ pub(crate) trait Visitor<'a> {
 }
 
 impl Roulette {
-    /// Returns the probability with which a path survived its `depth`-th surface, by which what it carries is divided, or
-    /// `None` if it ends there. `left` is the part of its light that is left.
+    /// Returns the probability with which a path survived its `depth`-th surface, by which what it
+    /// carries is divided, or `None` if it ends there. `left` is the part of its light that is
+    /// left.
     pub(crate) fn survived(self, depth: u32, left: f64, draw: impl FnOnce() -> f64) -> Option<f64> {
         if depth <= self.certain {
             return Some(1.0);
@@ -104,8 +107,8 @@ impl Walker {
 }
 
 impl Met<'_> {
-    /// Returns the part of the power that goes on towards the unit vector `out`, per steradian, where light is scattered in
-    /// these `axes`.
+    /// Returns the part of the power that goes on towards the unit vector `out`, per steradian,
+    /// where light is scattered in these `axes`.
     pub(crate) fn sent(&self, out: DVec3, axes: &LocalFrame, wavelength: f64) -> f64 {
         let back = -self.walker.ray.direction;
         self.vertex.sent(back, out, axes, wavelength)

@@ -18,20 +18,20 @@ use crate::{Hit, Refusal, Segment, Shape, hierarchy::Placement};
 
 /// Finds where rays meet shapes.
 ///
-/// A hierarchy of boxes over the scene leads to its shapes, and one of each mesh, which its instances
-/// share, to its triangles. Boxes and triangles are tested in single precision, up to 16 in one
-/// instruction, with tolerances larger than single precision errs; what may be met is tested in
-/// double precision, which decides. So the answers are those of double precision, and the same on
-/// every processor, alone and in batches.
+/// A hierarchy of boxes over the scene leads to its shapes, and one of each mesh, which its
+/// instances share, to its triangles. Boxes and triangles are tested in single precision, up to 16
+/// in one instruction, with tolerances larger than single precision errs; what may be met is tested
+/// in double precision, which decides. So the answers are those of double precision, and the same
+/// on every processor, alone and in batches.
 ///
-/// Batches are faster: 64 rays that follow each other in the list go through the boxes together, and
-/// part where fewer than eight meet the same box.
+/// Batches are faster: 64 rays that follow each other in the list go through the boxes together,
+/// and part where fewer than eight meet the same box.
 ///
 /// # Validity
 ///
 /// Hit points lie on their surface within 2e−15 of the scene's largest coordinate, and along the
-/// ray within that divided by the cosine of incidence. No ray passes between two triangles of a mesh
-/// that share an edge. Rays start within 10⁹ times the size of the smallest mesh.
+/// ray within that divided by the cosine of incidence. No ray passes between two triangles of a
+/// mesh that share an edge. Rays start within 10⁹ times the size of the smallest mesh.
 ///
 /// Time is lost, but nothing else, where a mesh is more than 10⁷ times smaller than the coordinates
 /// of the scene, and among triangles that all lie within 10⁻⁵ of the size of their mesh.
@@ -163,8 +163,8 @@ impl Intersector {
         }
     }
 
-    /// Tells whether a ray's nearest hit hides what lies at `distance` along it, in metres; what lies
-    /// on the surface itself it does not hide.
+    /// Tells whether a ray's nearest hit hides what lies at `distance` along it, in metres; what
+    /// lies on the surface itself it does not hide.
     pub fn hides(&self, hit: &Hit, ray: &Ray, distance: f64) -> bool {
         let height = (distance - hit.distance) * hit.normal.dot(ray.direction).abs();
         height > self.clearance
@@ -259,7 +259,8 @@ fn check(primitives: usize, reach: f64, radius: f64) -> Result<(), Refusal> {
 /// With u = 2⁻⁵³: composing a point from three others costs 7 u √3 `reach`. The next test then sees
 /// that point at the wrong side of the surface by what its corners move in sheared coordinates,
 /// five roundings of distances up to 2√3 `reach` in each of two axes: 25 u `reach`; and by the
-/// weights, four roundings: 14 u `reach`. The sum, 51 u `reach`, is below a quarter of 2⁻⁴⁵ `reach`.
+/// weights, four roundings: 14 u `reach`. The sum, 51 u `reach`, is below a quarter of 2⁻⁴⁵
+/// `reach`.
 fn clearance(reach: f64) -> f64 {
     const STEP: f64 = 256.0 * (f64::EPSILON / 2.0);
     STEP * reach

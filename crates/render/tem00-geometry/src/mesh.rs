@@ -54,8 +54,8 @@ impl TriangleMesh {
     ///
     /// # Errors
     ///
-    /// Returns an error as [`new`](Self::new) does, or if there are not as many normals as vertices,
-    /// or one is not finite.
+    /// Returns an error as [`new`](Self::new) does, or if there are not as many normals as
+    /// vertices, or one is not finite.
     ///
     /// # Examples
     ///

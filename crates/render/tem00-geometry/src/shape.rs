@@ -86,10 +86,11 @@ pub struct Hit {
     /// The unit normal with which light is scattered there.
     ///
     /// On a mesh with vertex normals it is interpolated between them, and turned around where it
-    /// would point to the other side of the triangle than [`normal`](Self::normal). Everywhere else,
-    /// and where the vertex normals cancel or lie in the triangle, it is the normal itself.
+    /// would point to the other side of the triangle than [`normal`](Self::normal). Everywhere
+    /// else, and where the vertex normals cancel or lie in the triangle, it is the normal itself.
     pub shading_normal: DVec3,
-    /// The index of the shape among those given to [`Intersector::build`](crate::Intersector::build).
+    /// The index of the shape among those given to
+    /// [`Intersector::build`](crate::Intersector::build).
     pub surface: usize,
 }
 

@@ -56,7 +56,8 @@ pub fn remove_abandoned(folder: &Path) {
     }
 }
 
-/// Removes a temporary file that no process has locked. One that cannot be removed is no reason to stop.
+/// Removes a temporary file that no process has locked. One that cannot be removed is no reason to
+/// stop.
 fn remove_if_abandoned(path: &Path) {
     if let Ok(file) = OpenOptions::new().write(true).open(path)
         && file.try_lock().is_ok()
@@ -85,8 +86,8 @@ pub fn create_writable_folder(folder: &Path) -> io::Result<()> {
     temporary_file_in(folder)?.close()
 }
 
-/// Makes sure that a file can be written at `path`, without touching what stands there, and removes the
-/// temporary files beside it that a process left when it was killed.
+/// Makes sure that a file can be written at `path`, without touching what stands there, and removes
+/// the temporary files beside it that a process left when it was killed.
 ///
 /// # Errors
 ///

@@ -5,8 +5,8 @@ const FIRST: f64 = 380.0;
 /// The distance between the table's rows, in nanometres.
 const STEP: f64 = 5.0;
 
-/// Returns the CIE 1931 2° colour-matching functions x̄, ȳ, z̄ at a wavelength in metres, and `None`
-/// outside the visible 380–780 nm.
+/// Returns the CIE 1931 2° colour-matching functions x̄, ȳ, z̄ at a wavelength in metres, and
+/// `None` outside the visible 380–780 nm.
 ///
 /// Between the 5 nm rows of the table a cubic (Catmull–Rom) runs through four of them; it stays
 /// within 0.0024 of the tabulated 1 nm values.
@@ -80,8 +80,8 @@ fn catmull_rom([a, b, c, d]: [f64; 4], t: f64) -> f64 {
     b + 0.5 * t * (c - a + t * (2.0 * a - 5.0 * b + 4.0 * c - d + t * (3.0 * (b - c) + d - a)))
 }
 
-/// x̄, ȳ, z̄ of the CIE 1931 2° standard observer from 380 nm to 780 nm in steps of 5 nm (CIE 015:2018,
-/// rounded to six digits).
+/// x̄, ȳ, z̄ of the CIE 1931 2° standard observer from 380 nm to 780 nm in steps of 5 nm (CIE
+/// 015:2018, rounded to six digits).
 const MATCHING_FUNCTIONS: [[f64; 3]; 81] = include!("colour/matching_functions.in");
 
 #[cfg(test)]

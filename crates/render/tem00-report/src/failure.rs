@@ -15,8 +15,8 @@ use crate::excerpt::Excerpt;
 pub enum Failure {
     /// The user gave something that cannot be used. Exit code 2.
     Input(Box<Problem>),
-    /// What the work needs is not there now, whatever the input says: memory, a file that can be read, a folder
-    /// that may be written into and that no other process has. Exit code 2.
+    /// What the work needs is not there now, whatever the input says: memory, a file that can be
+    /// read, a folder that may be written into and that no other process has. Exit code 2.
     Unavailable(Box<Problem>),
     /// The work itself failed. Exit code 1.
     Running(Box<Problem>),
@@ -69,8 +69,8 @@ impl Failure {
         )
     }
 
-    /// Returns a complaint about a scene file, a set-up file or one that they include, with `otherwise`
-    /// for help where the complaint has no position and no help of its own.
+    /// Returns a complaint about a scene file, a set-up file or one that they include, with
+    /// `otherwise` for help where the complaint has no position and no help of its own.
     pub fn file(path: &Path, error: &ConfigError, otherwise: &str) -> Self {
         let help = error.help().map(str::to_owned);
         let path = error.path().unwrap_or(path);
@@ -121,7 +121,8 @@ impl Failure {
         self.problem().map_or("", |problem| &problem.message)
     }
 
-    /// Returns what the work needs and does not find, with a word in front of what it says that it is about.
+    /// Returns what the work needs and does not find, with a word in front of what it says that it
+    /// is about.
     pub fn about(mut self, what: impl core::fmt::Display) -> Self {
         if let Self::Unavailable(problem) = &mut self {
             problem.message = format!("{what}: {}", problem.message);

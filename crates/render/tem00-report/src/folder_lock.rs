@@ -8,12 +8,12 @@ use std::{
     time::Duration,
 };
 
-/// The file in the folder that is locked. The operating system lets go of the lock with the process,
-/// however it ends.
+/// The file in the folder that is locked. The operating system lets go of the lock with the
+/// process, however it ends.
 const NAME: &str = ".tem00.lock";
 
-/// The number of attempts at a shared lock, and the time between them. Those who take it hold it alone
-/// for a moment, to write down what they share.
+/// The number of attempts at a shared lock, and the time between them. Those who take it hold it
+/// alone for a moment, to write down what they share.
 const TRIES: u32 = 40;
 const PAUSE: Duration = Duration::from_millis(25);
 
@@ -77,7 +77,8 @@ impl FolderLock {
                 Err(TryLockError::WouldBlock) => {}
                 Err(TryLockError::Error(error)) => return without_lock(path, error),
             }
-            // Only who holds it alone writes to the file: what it says holds for as long as it is shared.
+            // Only who holds it alone writes to the file: what it says holds for as long as it is
+            // shared.
             match file.try_lock_shared() {
                 Ok(()) if !is_at(&file, &path) => {}
                 Ok(()) if holder(&mut file).1 == work => return Ok(Self::new(path, Some(file))),
@@ -112,7 +113,8 @@ impl Drop for FolderLock {
     }
 }
 
-/// Opens the file, which is made if it is missing, and changes nothing in it: it may be a link to another.
+/// Opens the file, which is made if it is missing, and changes nothing in it: it may be a link to
+/// another.
 fn open(path: &Path) -> io::Result<File> {
     let plain = |error: io::Error| io::Error::from(error.kind());
     let mut options = OpenOptions::new();
@@ -151,7 +153,8 @@ fn is_own(found: &fs::Metadata) -> bool {
     found.is_file()
 }
 
-/// Returns whether the open file is the one that stands at `path`, and no other that a link leads to.
+/// Returns whether the open file is the one that stands at `path`, and no other that a link leads
+/// to.
 #[cfg(unix)]
 fn is_at(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;

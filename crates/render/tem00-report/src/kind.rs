@@ -81,8 +81,8 @@ const IMAGES: [&[u8]; 7] = [
     b"BM",
 ];
 
-/// Returns the failure that a file is of another kind than a command needs, with the command that takes
-/// it; or `otherwise`, if it is of that kind or of none that is known.
+/// Returns the failure that a file is of another kind than a command needs, with the command that
+/// takes it; or `otherwise`, if it is of that kind or of none that is known.
 pub fn wrong_or(path: &Path, needed: Kind, otherwise: impl FnOnce() -> Failure) -> Failure {
     match Kind::of(path).filter(|kind| *kind != needed) {
         None => otherwise(),

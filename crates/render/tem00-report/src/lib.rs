@@ -1,5 +1,5 @@
-//! What the programs of tem00 share: reports as one value for a terminal, JSON and a page, diagrams, image
-//! files, and the manners of a process.
+//! What the programs of tem00 share: reports as one value for a terminal, JSON and a page,
+//! diagrams, image files, and the manners of a process.
 
 #![expect(
     missing_docs,

@@ -19,9 +19,9 @@ const CHUNK: usize = 1 << 16;
 /// A NumPy file (NPY) whose header has been read and whose values follow.
 ///
 /// Versions 1 to 3 of the format are understood, both orders of the values (C and Fortran) and both
-/// byte orders. Real values are `float16`, `float32`, `float64`, `bool` or integers of 8 to 64 bits, complex
-/// ones `complex64` or `complex128`; all are kept in single precision. An array of the shape
-/// (height, width) becomes a grid of height rows; further axes may have the length 1.
+/// byte orders. Real values are `float16`, `float32`, `float64`, `bool` or integers of 8 to 64
+/// bits, complex ones `complex64` or `complex128`; all are kept in single precision. An array of
+/// the shape (height, width) becomes a grid of height rows; further axes may have the length 1.
 ///
 /// Memory is only asked for as the file fills it, whatever its header claims.
 ///
@@ -65,8 +65,8 @@ impl<R: Read> NpyReader<R> {
     ///
     /// # Errors
     ///
-    /// Returns an error if the reader does, or if the file is not a NumPy file, of an unknown version
-    /// or truncated.
+    /// Returns an error if the reader does, or if the file is not a NumPy file, of an unknown
+    /// version or truncated.
     pub fn new(mut reader: R) -> Result<Self, NpyError> {
         let header = Header::read(&mut reader)?;
         Ok(Self { reader, header })
@@ -101,13 +101,15 @@ impl<R: Read> NpyReader<R> {
     ///
     /// # Errors
     ///
-    /// Returns an error if the reader does, if the array does not have two dimensions or is empty, if
-    /// they are not real, if the file ends too early or if the memory is over the limit or refused.
+    /// Returns an error if the reader does, if the array does not have two dimensions or is empty,
+    /// if they are not real, if the file ends too early or if the memory is over the limit or
+    /// refused.
     pub fn into_real(self, memory_limit: u64) -> Result<Grid<f32>, NpyError> {
         self.into_grid(memory_limit)
     }
 
-    /// Reads a two-dimensional array of complex numbers that takes no more than `memory_limit` bytes.
+    /// Reads a two-dimensional array of complex numbers that takes no more than `memory_limit`
+    /// bytes.
     ///
     /// # Errors
     ///

@@ -20,8 +20,8 @@ use crate::{
     folder_lock::{FolderLock, Refused},
 };
 
-/// Returns the name of an input file without folder and ending, or `otherwise` if it has none; that of
-/// standard input, `-`, is `standard_input`.
+/// Returns the name of an input file without folder and ending, or `otherwise` if it has none; that
+/// of standard input, `-`, is `standard_input`.
 pub fn name(input: &Path, otherwise: &str) -> String {
     if is_standard_input(input) {
         return "standard_input".to_owned();
@@ -37,9 +37,9 @@ pub fn folder(asked: Option<&Path>, name: &str) -> PathBuf {
     asked.map_or_else(|| Path::new("out").join(name), Path::to_path_buf)
 }
 
-/// Makes sure, before the work, that files can be written into the folder and that no other process does,
-/// for as long as what is returned lives. Makes the folder if need be, and removes the temporary files
-/// that a process left there when it was killed.
+/// Makes sure, before the work, that files can be written into the folder and that no other process
+/// does, for as long as what is returned lives. Makes the folder if need be, and removes the
+/// temporary files that a process left there when it was killed.
 ///
 /// # Errors
 ///
@@ -85,7 +85,8 @@ pub fn not_writable(folder: &Path, error: &io::Error) -> Failure {
     )
 }
 
-/// Makes a folder within a folder of results, without what killed processes left there, and returns its path.
+/// Makes a folder within a folder of results, without what killed processes left there, and returns
+/// its path.
 ///
 /// # Errors
 ///
@@ -118,8 +119,8 @@ fn in_use(folder: &Path, process: Option<u32>) -> Failure {
     )
 }
 
-/// Writes text for a terminal or a file: what would do something to a terminal is escaped, as names of
-/// files and of surfaces may hold anything.
+/// Writes text for a terminal or a file: what would do something to a terminal is escaped, as names
+/// of files and of surfaces may hold anything.
 #[derive(Debug)]
 pub struct Printable<W>(pub(crate) W);
 
@@ -140,7 +141,8 @@ impl<W: Write> Write for Printable<W> {
     }
 }
 
-/// Removes files of an earlier run that this one does not write: each of the names with each ending.
+/// Removes files of an earlier run that this one does not write: each of the names with each
+/// ending.
 ///
 /// # Errors
 ///
@@ -192,7 +194,8 @@ pub fn check_room(what: &str, bytes: u64, help: &str) -> Result<(), Failure> {
     check_memory(bytes).map_err(|error| Failure::unavailable(format!("{what}: {error}"), help))
 }
 
-/// The maximum number of threads for each that the machine runs at a time: more only wait for each other.
+/// The maximum number of threads for each that the machine runs at a time: more only wait for each
+/// other.
 const THREADS_PER_CORE: usize = 4;
 
 /// Returns the threads that were asked for, or the most that are of use here, which is noted.

@@ -15,8 +15,8 @@ pub use self::{
     heat_map::{HeatMap, Scale, height_colour},
 };
 
-/// Returns whether an item is among the `most` of `count` that are drawn: all are if they are few, and of
-/// many a part that is even over all of them, which multiples of the golden ratio are.
+/// Returns whether an item is among the `most` of `count` that are drawn: all are if they are few,
+/// and of many a part that is even over all of them, which multiples of the golden ratio are.
 pub fn is_drawn(index: usize, count: usize, most: usize) -> bool {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     (GOLDEN * index as f64).fract() * count as f64 <= most as f64
@@ -31,8 +31,8 @@ mod tests {
         let most = 4_000;
         assert!((0..most).all(|index| is_drawn(index, most, most)), "few");
         let count = 200_000;
-        // Of each tenth, as a parameter of ten values has them, a tenth: to a few by the discrepancy
-        // of the golden ratio, 1 + log₂ of the number.
+        // Of each tenth, as a parameter of ten values has them, a tenth: to a few by the
+        // discrepancy of the golden ratio, 1 + log₂ of the number.
         for remainder in 0..10 {
             let tenth = (0..count).filter(|index| index % 10 == remainder);
             let drawn = tenth.filter(|&index| is_drawn(index, count, most)).count();

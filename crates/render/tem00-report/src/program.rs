@@ -37,7 +37,8 @@ pub fn run<P: Parser>(
     }
 }
 
-/// Prints what is wrong with the command line, or the help that was asked for, and returns the exit code.
+/// Prints what is wrong with the command line, or the help that was asked for, and returns the exit
+/// code.
 fn refuse(error: &clap::Error, arguments: &[OsString]) -> u8 {
     // Names of files that a shell fills in may hold anything.
     let is_plain = |argument: &OsString| !argument.to_string_lossy().contains(is_hazard);

@@ -27,10 +27,12 @@ pub use self::{
 ///
 /// Each number is stated once, with its key, its name and its unit:
 ///
-/// - a terminal shows the sections that are not [details](Section::in_detail), the first one last, and then the
-///   verdicts, so that what matters stands above the prompt;
-/// - JSON has every quantity and table under its key, in SI units, and `null` where nothing is known;
-/// - a page shows the verdicts, then the sections with their drawings, in one file that opens offline.
+/// - a terminal shows the sections that are not [details](Section::in_detail), the first one last,
+///   and then the verdicts, so that what matters stands above the prompt;
+/// - JSON has every quantity and table under its key, in SI units, and `null` where nothing is
+///   known;
+/// - a page shows the verdicts, then the sections with their drawings, in one file that opens
+///   offline.
 ///
 /// Whatever it is given as text appears as that text. The same calls give the same bytes.
 #[derive(Clone, Debug)]
@@ -64,7 +66,8 @@ enum Block {
     Table(Table),
     /// An explanation, on pages alone.
     Paragraph(String),
-    /// The text of an SVG file of this program and its caption, on pages alone, and whether the reader may turn it.
+    /// The text of an SVG file of this program and its caption, on pages alone, and whether the
+    /// reader may turn it.
     Drawing {
         svg: String,
         caption: String,
@@ -189,8 +192,8 @@ impl Section {
         }
     }
 
-    /// Adds a picture with its caption, a small one enlarged. `png` is the content of a PNG file of so many
-    /// columns.
+    /// Adds a picture with its caption, a small one enlarged. `png` is the content of a PNG file of
+    /// so many columns.
     pub fn picture(
         &mut self,
         png: Vec<u8>,

@@ -2,15 +2,15 @@
 //!
 //! # Conventions
 //!
-//! - Scene files are TOML in the syntax of [`tem00_config`]: SI units or units in strings, files beside the
-//!   one that names them, errors at line and column.
+//! - Scene files are TOML in the syntax of [`tem00_config`]: SI units or units in strings, files
+//!   beside the one that names them, errors at line and column.
 //! - Coordinates of meshes are multiplied by the length of the file's unit in metres.
 //!
 //! # Main types
 //!
-//! [`read_scene`] and [`parse_scene`] make a [`Scene`](tem00_tracer::Scene); [`SceneFile`] keeps the names
-//! of all files that were read. [`read_mesh`] reads OBJ, PLY, STL and glTF, [`read_radiance_map`] OpenEXR
-//! and PFM.
+//! [`read_scene`] and [`parse_scene`] make a [`Scene`](tem00_tracer::Scene); [`SceneFile`] keeps
+//! the names of all files that were read. [`read_mesh`] reads OBJ, PLY, STL and glTF,
+//! [`read_radiance_map`] OpenEXR and PFM.
 //!
 //! # Scope and non-goals
 //!

@@ -106,8 +106,8 @@ pub(crate) fn read_mesh_with(
 ///
 /// # Errors
 ///
-/// Returns the errors of [`read_mesh`], without the name of a file, and an error if a glTF file keeps
-/// its data in other files.
+/// Returns the errors of [`read_mesh`], without the name of a file, and an error if a glTF file
+/// keeps its data in other files.
 ///
 /// # Examples
 ///
@@ -129,7 +129,8 @@ pub fn read_mesh_bytes(
     Ok(mesh)
 }
 
-/// The bytes that a mesh takes for each of its file: vertices, triangles and the hierarchy of boxes around them.
+/// The bytes that a mesh takes for each of its file: vertices, triangles and the hierarchy of boxes
+/// around them.
 const BYTES_PER_BYTE: u64 = 8;
 
 fn read(

@@ -10,7 +10,8 @@ pub(crate) fn pivot(section: &Section<'_>, default: DVec3) -> Result<DVec3, Prob
     section.or("pivot", default, Value::lengths)
 }
 
-/// Reads how a thing moves, steadily, through keyframes or not at all, turning about a pivot in metres.
+/// Reads how a thing moves, steadily, through keyframes or not at all, turning about a pivot in
+/// metres.
 pub(crate) fn trajectory(section: &Section<'_>, pivot: DVec3) -> Result<Trajectory, Problem> {
     let keyframes = section.tables("keyframe", KEYFRAME_KEYS)?;
     let trajectory = if keyframes.is_empty() {

@@ -10,7 +10,8 @@ use tem00_numerics::{Grid, cast::to_f32};
 
 pub use error::RadianceMapError;
 
-/// Reads a map of radiance, for an [`Environment`](tem00_tracer::Environment), from an OpenEXR or PFM file.
+/// Reads a map of radiance, for an [`Environment`](tem00_tracer::Environment), from an OpenEXR or
+/// PFM file.
 ///
 /// The extension of the file name, in any case, says which. Of colours the luminance is taken: the
 /// channels R, G and B by the chromaticities that an OpenEXR file states, or else those of Rec.

@@ -32,13 +32,13 @@ const SCENE: Format = Format {
 /// Reads a scene file, and with it the files that it includes.
 ///
 /// The format is TOML. Lengths, angles and powers are numbers in SI units, or strings with a unit.
-/// Files are looked for beside the one that names them; those that it includes lie below its folder, see
-/// [`FileAccess::WithinFolder`].
+/// Files are looked for beside the one that names them; those that it includes lie below its
+/// folder, see [`FileAccess::WithinFolder`].
 ///
 /// # Errors
 ///
-/// Returns an error if a file cannot be read, is not valid TOML, or if they do not describe a scene.
-/// It names key, value and what is allowed, and knows its location in its file.
+/// Returns an error if a file cannot be read, is not valid TOML, or if they do not describe a
+/// scene. It names key, value and what is allowed, and knows its location in its file.
 pub fn read_scene(path: &Path) -> Result<Scene, ConfigError> {
     SceneFile::read(path).map(|file| file.scene)
 }
@@ -49,8 +49,8 @@ pub fn read_scene(path: &Path) -> Result<Scene, ConfigError> {
 pub struct SceneFile {
     /// The scene.
     pub scene: Scene,
-    /// Everything that was read: the scene file unless it was standard input, the files that it includes,
-    /// then meshes and environments, each once.
+    /// Everything that was read: the scene file unless it was standard input, the files that it
+    /// includes, then meshes and environments, each once.
     pub files: Vec<PathBuf>,
     /// What was left out of meshes, or is doubtful about them: sentences that begin with the name
     /// of a file.
@@ -67,8 +67,9 @@ impl SceneFile {
         Self::read_with(path, FileAccess::WithinFolder, |_, _| Ok(())).map(|(file, ())| file)
     }
 
-    /// Reads a scene file, and with `further` those of its sections that say what becomes of the image:
-    /// `[sensor]`, `[detector]`, `[calibration]` and `[scan]`. The path `-` is standard input.
+    /// Reads a scene file, and with `further` those of its sections that say what becomes of the
+    /// image: `[sensor]`, `[detector]`, `[calibration]` and `[scan]`. The path `-` is standard
+    /// input.
     ///
     /// # Errors
     ///

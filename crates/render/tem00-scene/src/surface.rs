@@ -83,8 +83,8 @@ fn surface(
     Ok(PlacedSurface { surface, pivot })
 }
 
-/// Returns the surface, or its instances if the file lists some: each is turned about the pivot, then
-/// displaced, and moves about a pivot that it took along.
+/// Returns the surface, or its instances if the file lists some: each is turned about the pivot,
+/// then displaced, and moves about a pivot that it took along.
 fn instances(
     section: &Section<'_>,
     PlacedSurface { surface, pivot }: &PlacedSurface,

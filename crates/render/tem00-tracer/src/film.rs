@@ -17,8 +17,8 @@ use crate::TracerError;
 /// All radiances are in W/(m² sr), averaged over the pixel (by the reconstruction filter), at the
 /// wavelength of their source. The variances are those of a pixel's value from render to render, in
 /// (W/(m² sr))²; they are estimated from the pixel's samples as if these were independent. The
-/// samples are spread more evenly than that, so the variances are upper bounds on average. One sample
-/// alone tells nothing: its variance is infinite.
+/// samples are spread more evenly than that, so the variances are upper bounds on average. One
+/// sample alone tells nothing: its variance is infinite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     /// The layers of each laser, in the order of the scene.
@@ -30,15 +30,15 @@ pub struct Frame {
     /// The distance from the camera to what is seen, along the axis of the camera, in metres: the
     /// mean over the pixel's samples that meet something, and 0 where none does.
     pub depth: Grid<f32>,
-    /// The components x, y and z of the unit normal of what is seen, on the side that is seen and as
-    /// it is shaded: the mean over the pixel's samples, with 0 for those that meet nothing.
+    /// The components x, y and z of the unit normal of what is seen, on the side that is seen and
+    /// as it is shaded: the mean over the pixel's samples, with 0 for those that meet nothing.
     pub normal: [Grid<f32>; 3],
     /// The number of samples that the pixel is made of, those of a pilot left out.
     pub samples: Grid<f32>,
     /// The column and the row of the first pixel in the whole image.
     pub origin: [usize; 2],
-    /// The number of rays that were followed from the camera and, as shadow rays, towards light. Paths
-    /// from the lasers are not counted.
+    /// The number of rays that were followed from the camera and, as shadow rays, towards light.
+    /// Paths from the lasers are not counted.
     pub rays: u64,
 }
 
@@ -52,8 +52,8 @@ pub struct LaserLayers {
     /// Radiance of the light that has met more than one rough surface, before speckle.
     pub multiple: Grid<f32>,
     /// The speckle factor, averaged over the pixel without regard to the light; 1 where the pixel
-    /// sees no rough surface. [`RenderOptions::speckle_in_the_dark`](crate::RenderOptions) can leave it
-    /// at 1 for samples without light, too.
+    /// sees no rough surface. [`RenderOptions::speckle_in_the_dark`](crate::RenderOptions) can
+    /// leave it at 1 for samples without light, too.
     pub speckle: Grid<f32>,
     /// Radiance of all light of the laser, each camera sample multiplied by its speckle factor.
     pub radiance: Grid<f32>,
@@ -61,12 +61,13 @@ pub struct LaserLayers {
     pub variance: Grid<f32>,
     /// The power that the laser brings to the surfaces seen in the image, in watts.
     ///
-    /// It is estimated from the camera's samples: the irradiance at each hit times the area
-    /// that the sample covers there. It is the laser's power when the whole footprint is in the image.
+    /// It is estimated from the camera's samples: the irradiance at each hit times the area that
+    /// the sample covers there. It is the laser's power when the whole footprint is in the image.
     /// Surfaces seen in a mirror or through glass do not count.
     pub power_on_target: f64,
-    /// The standard error of `power_on_target`, as if the samples of a pixel were independent; infinite with one sample in
-    /// a pixel. A spot that few samples hit has a large one, and one that no sample hits has none.
+    /// The standard error of `power_on_target`, as if the samples of a pixel were independent;
+    /// infinite with one sample in a pixel. A spot that few samples hit has a large one, and one
+    /// that no sample hits has none.
     pub power_error: f64,
 }
 
@@ -74,8 +75,8 @@ pub struct LaserLayers {
 #[derive(Debug)]
 pub struct Film {
     frame: Frame,
-    /// The power on target and its variance by strip and laser, summed at the end in the order of the strips, so that
-    /// the sum has the same bits for any number of threads.
+    /// The power on target and its variance by strip and laser, summed at the end in the order of
+    /// the strips, so that the sum has the same bits for any number of threads.
     power: Vec<[f64; 2]>,
 }
 

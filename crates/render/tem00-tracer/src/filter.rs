@@ -127,8 +127,8 @@ impl FilterSampler {
     ///
     /// # Errors
     ///
-    /// Returns an error if the radius is not positive or exceeds 16 pixels, or if the standard deviation
-    /// is below an eighth of it.
+    /// Returns an error if the radius is not positive or exceeds 16 pixels, or if the standard
+    /// deviation is below an eighth of it.
     pub fn new(filter: Filter) -> Result<Self, TracerError> {
         filter.check()?;
         let tabulated = !matches!(filter, Filter::Box { .. });

@@ -4,10 +4,10 @@ use crate::Metal;
 
 /// A process that finishes metal, and how rough it leaves it.
 ///
-/// The ranges are typical ones and no measurements: of the process as it is usually run, not of a part.
-/// Its arithmetic mean deviation Ra says how high a surface is, not how steep: the roughness α of a
-/// material, which makes the width of its lobe, does not follow from it. Neither does the lay that a
-/// tool leaves.
+/// The ranges are typical ones and no measurements: of the process as it is usually run, not of a
+/// part. Its arithmetic mean deviation Ra says how high a surface is, not how steep: the roughness
+/// α of a material, which makes the width of its lobe, does not follow from it. Neither does the
+/// lay that a tool leaves.
 ///
 /// # Examples
 ///
@@ -23,9 +23,10 @@ use crate::Metal;
 ///
 /// # References
 ///
-/// - E. Oberg et al., *Machinery's Handbook*, 25th edition, 1996, p. 708, *Surface Roughness Produced by
-///   Common Production Methods*: a drawn chart, whose ranges of average application are read as they are
-///   listed in *Surface Finish (machining)*, calqlata.com, and *Surface Finish*, meadinfo.org, 2009.
+/// - E. Oberg et al., *Machinery's Handbook*, 25th edition, 1996, p. 708, *Surface Roughness
+///   Produced by Common Production Methods*: a drawn chart, whose ranges of average application are
+///   read as they are listed in *Surface Finish (machining)*, calqlata.com, and *Surface Finish*,
+///   meadinfo.org, 2009.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FinishingProcess {
@@ -62,9 +63,9 @@ impl FinishingProcess {
         process("superfinished", 0.05e-6, 0.2e-6),
     ];
 
-    /// Returns the process and the metal of a surface by its name, such as "milled steel": the process,
-    /// and a [metal by its name](Metal::NAMED). Steel without further words is iron, which reflects much
-    /// alike.
+    /// Returns the process and the metal of a surface by its name, such as "milled steel": the
+    /// process, and a [metal by its name](Metal::NAMED). Steel without further words is iron, which
+    /// reflects much alike.
     pub fn of_surface(name: &str) -> Option<(Self, Metal)> {
         let (process, metal) = name.split_once(' ')?;
         let process = Self::ALL.into_iter().find(|known| known.name == process)?;

@@ -2,24 +2,25 @@
 //!
 //! # Conventions
 //!
-//! - Lengths are in metres, powers in watts, radiances in W/(m² sr), all in `f64`; images are `f32`.
+//! - Lengths are in metres, powers in watts, radiances in W/(m² sr), all in `f64`; images are
+//!   `f32`.
 //! - Image points are in pixels, x to the right and y down; the image is upright.
-//! - One frame, the first unless said otherwise, is the reference that the speckle of the others has
-//!   moved and changed from.
+//! - One frame, the first unless said otherwise, is the reference that the speckle of the others
+//!   has moved and changed from.
 //! - The same seed gives the same bits for any number of threads.
 //!
 //! # Main types
 //!
-//! [`Scene`] describes what is rendered; `tem00-scene` reads one from a file. [`ReferenceSpeckle`] holds its speckle, and
-//! [`render_reference`] renders a [`Frame`] of layers.
+//! [`Scene`] describes what is rendered; `tem00-scene` reads one from a file. [`ReferenceSpeckle`]
+//! holds its speckle, and [`render_reference`] renders a [`Frame`] of layers.
 //!
 //! # Scope and non-goals
 //!
-//! Rectangles, spheres, tubes and meshes; diffuse surfaces, metals, plastic, mirrors and clear glass;
-//! moving objects, lasers and cameras. Each laser is traced at its own wavelength, and other lights are
-//! white. There is no polarisation, no dispersion, and nothing scatters between surfaces. Laser light that
-//! meets mirrors or glass both before and after a rough surface is not found unless lasers are
-//! [sampled](LaserEvents::Sampled). Nothing is read from files.
+//! Rectangles, spheres, tubes and meshes; diffuse surfaces, metals, plastic, mirrors and clear
+//! glass; moving objects, lasers and cameras. Each laser is traced at its own wavelength, and other
+//! lights are white. There is no polarisation, no dispersion, and nothing scatters between
+//! surfaces. Laser light that meets mirrors or glass both before and after a rough surface is not
+//! found unless lasers are [sampled](LaserEvents::Sampled). Nothing is read from files.
 
 mod environment;
 mod error;

@@ -85,8 +85,8 @@ impl Light {
     /// Draws a direction in which light comes to the point `from`, in metres, by two uniform
     /// numbers in [0, 1).
     ///
-    /// Rectangles are drawn uniformly over their area from afar and, nearer than their diagonal, over
-    /// the solid angle that they cover; environments in proportion to their radiance. Returns
+    /// Rectangles are drawn uniformly over their area from afar and, nearer than their diagonal,
+    /// over the solid angle that they cover; environments in proportion to their radiance. Returns
     /// `None` where the light does not reach. Whether the way is free is left to the caller.
     pub fn sample(&self, from: DVec3, u: [f64; 2]) -> Option<LightSample> {
         match self {
@@ -100,8 +100,8 @@ impl Light {
         .filter(|sample| sample.radiance_over_pdf > 0.0)
     }
 
-    /// Returns the density with which [`sample`](Self::sample) draws `direction`, of unit length, at
-    /// the point `from`, in metres; per steradian.
+    /// Returns the density with which [`sample`](Self::sample) draws `direction`, of unit length,
+    /// at the point `from`, in metres; per steradian.
     ///
     /// It is 0 for directions that miss the light, and for a point.
     pub fn pdf(&self, from: DVec3, direction: DVec3) -> f64 {
@@ -116,8 +116,8 @@ impl Light {
         }
     }
 
-    /// Returns the radiance, in W/(m² sr), that comes along a ray of this direction, of unit length,
-    /// which meets the light or, for an environment, nothing at all.
+    /// Returns the radiance, in W/(m² sr), that comes along a ray of this direction, of unit
+    /// length, which meets the light or, for an environment, nothing at all.
     pub fn radiance_along(&self, direction: DVec3) -> f64 {
         match self {
             Self::Point { .. } => 0.0,

@@ -26,10 +26,10 @@ use crate::{Metal, TracerError, metal::fresnel_reflectance};
 
 /// Scattering of light by a surface.
 ///
-/// Directions are unit vectors in a [local frame](crate::LocalFrame) whose z axis is the normal, and
-/// point away from the surface: `wo` to where the light goes, `wi` to where it comes from. What is
-/// carried from `wi` to `wo` is radiance. Wavelengths are in metres, in vacuum; directions are drawn
-/// alike for every wavelength, only what they carry differs.
+/// Directions are unit vectors in a [local frame](crate::LocalFrame) whose z axis is the normal,
+/// and point away from the surface: `wo` to where the light goes, `wi` to where it comes from. What
+/// is carried from `wi` to `wo` is radiance. Wavelengths are in metres, in vacuum; directions are
+/// drawn alike for every wavelength, only what they carry differs.
 ///
 /// Materials are isotropic. All but glass are opaque and alike on both sides: what holds above the
 /// surface holds mirrored below it, unless the material is [`one_sided`](Self::one_sided).
@@ -77,7 +77,8 @@ enum Scattering {
 }
 
 impl Material {
-    /// Returns whether light goes into single directions only, which [`sample`](Self::sample) finds.
+    /// Returns whether light goes into single directions only, which [`sample`](Self::sample)
+    /// finds.
     pub const fn is_specular(&self) -> bool {
         matches!(
             self.scattering,
@@ -109,8 +110,8 @@ impl Material {
 
     /// Returns the bidirectional scattering distribution function, in 1/sr.
     ///
-    /// The cosine of `wi` is not included. The value is 0 for specular materials, and where `wo` and
-    /// `wi` are on different sides of the surface.
+    /// The cosine of `wi` is not included. The value is 0 for specular materials, and where `wo`
+    /// and `wi` are on different sides of the surface.
     pub fn evaluate(&self, wo: DVec3, wi: DVec3, wavelength: f64) -> f64 {
         let Some((wo, wi)) = self.same_side(wo, wi) else {
             return 0.0;

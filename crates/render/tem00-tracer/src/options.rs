@@ -8,8 +8,8 @@ pub enum Method {
     /// From the camera; and from the lasers through mirrors and glass, where the scene has them.
     #[default]
     Path,
-    /// From the lasers to the camera; lights as by the other method. What the camera sees in mirrors
-    /// and through glass has no light of lasers.
+    /// From the lasers to the camera; lights as by the other method. What the camera sees in
+    /// mirrors and through glass has no light of lasers.
     Light,
 }
 
@@ -39,8 +39,8 @@ pub enum LaserEvents {
 /// The way in which area lights and the environment are sampled from a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LightEvents {
-    /// By a point of the light and by a direction of the material, each weighted by how likely it is to
-    /// find what the other finds.
+    /// By a point of the light and by a direction of the material, each weighted by how likely it
+    /// is to find what the other finds.
     #[default]
     Both,
     /// By a point of the light only: fewer rays, but noise where shiny surfaces mirror a light.
@@ -55,22 +55,26 @@ pub enum Sampling {
     /// Every pixel gets [`samples_per_pixel`](RenderOptions::samples_per_pixel) samples.
     #[default]
     Even,
-    /// Pixels get so many on average at most, and more of them where samples differ: at edges, in the light of a
-    /// narrow beam, where rare paths bring light.
+    /// Pixels get so many on average at most, and more of them where samples differ: at edges, in
+    /// the light of a narrow beam, where rare paths bring light.
     ///
-    /// A pilot of a quarter of the samples, 8 at most, tells how much the samples of a pixel and its eight neighbours
-    /// differ: the largest of their standard deviations σ. It takes 2 in every second pixel where a quarter is less than 2.
-    /// Then the pixel gets a number in proportion to σ^⅔, from half of `samples_per_pixel` to 32 times as many. The samples of the pilot are not used for the image,
-    /// so that it is as unbiased as with even samples. What it cannot see, as light that one path in a thousand
-    /// finds, has up to twice the variance. Fewer than 4 samples per pixel are shared evenly.
+    /// A pilot of a quarter of the samples, 8 at most, tells how much the samples of a pixel and
+    /// its eight neighbours differ: the largest of their standard deviations σ. It takes 2 in every
+    /// second pixel where a quarter is less than 2. Then the pixel gets a number in proportion to
+    /// σ^⅔, from half of `samples_per_pixel` to 32 times as many. The samples of the pilot are not
+    /// used for the image, so that it is as unbiased as with even samples. What it cannot see, as
+    /// light that one path in a thousand finds, has up to twice the variance. Fewer than 4 samples
+    /// per pixel are shared evenly.
     Adaptive,
     /// Every pixel gets enough samples for this relative standard error, positive.
     ///
-    /// A pilot of 16 samples in a pixel and in each of its eight neighbours tells the error that a mean of independent
-    /// samples would have; it is raised by a sixth, as the estimate is uncertain. The pixel gets `samples_per_pixel` times
-    /// a power of two, 64 at most, that brings it below this fraction of the pixel's radiance, or of a tenth of the mean
-    /// radiance of the image where the pixel is darker. The samples of the pilot are not used for the image, so that it
-    /// is as unbiased as with even samples. Light that is followed from the lasers does not count.
+    /// A pilot of 16 samples in a pixel and in each of its eight neighbours tells the error that a
+    /// mean of independent samples would have; it is raised by a sixth, as the estimate is
+    /// uncertain. The pixel gets `samples_per_pixel` times a power of two, 64 at most, that brings
+    /// it below this fraction of the pixel's radiance, or of a tenth of the mean radiance of the
+    /// image where the pixel is darker. The samples of the pilot are not used for the image, so
+    /// that it is as unbiased as with even samples. Light that is followed from the lasers does not
+    /// count.
     TargetError(f64),
 }
 
@@ -96,7 +100,8 @@ pub struct RenderOptions {
     pub sampling: Sampling,
     /// The seed of everything random: camera samples, and speckle where its plan takes the same.
     pub seed: u64,
-    /// The maximum number of surfaces that light may meet between source and camera; `None` for no limit.
+    /// The maximum number of surfaces that light may meet between source and camera; `None` for no
+    /// limit.
     pub max_depth: Option<u32>,
     /// The method by which light is followed.
     pub method: Method,
@@ -107,12 +112,12 @@ pub struct RenderOptions {
     /// The filter that weights the samples around a pixel. Light that is followed from the lasers
     /// is averaged over the square of the pixel instead.
     pub filter: Filter,
-    /// The part of the image that is rendered; `None` for all. Its pixels have the same bits as in the
-    /// whole image, unless their samples depend on the light.
+    /// The part of the image that is rendered; `None` for all. Its pixels have the same bits as in
+    /// the whole image, unless their samples depend on the light.
     pub crop: Option<Crop>,
-    /// True if the layer of speckle factors has speckle where a laser sends no light, too; otherwise
-    /// camera samples that find no light of the laser count with a factor of 1 there. Radiances
-    /// are the same, and take less time without.
+    /// True if the layer of speckle factors has speckle where a laser sends no light, too;
+    /// otherwise camera samples that find no light of the laser count with a factor of 1 there.
+    /// Radiances are the same, and take less time without.
     pub speckle_in_the_dark: bool,
 }
 

@@ -1,8 +1,9 @@
 //! The reference integrator: one camera sample at a time, from the lens to the light.
 //!
-//! It is written to be read, and to judge `tem00-engine`, which renders the same scenes fast: all means are the same,
-//! and no code is shared beyond the scene itself. Here meet the beam of a laser, which lights a point, and the speckle,
-//! which multiplies that light by a factor that has moved with the surface.
+//! It is written to be read, and to judge `tem00-engine`, which renders the same scenes fast: all
+//! means are the same, and no code is shared beyond the scene itself. Here meet the beam of a
+//! laser, which lights a point, and the speckle, which multiplies that light by a factor that has
+//! moved with the surface.
 
 mod from_laser;
 mod lights;
@@ -33,14 +34,16 @@ const CERTAIN_SURFACES: u32 = 2;
 
 /// Renders one frame, sample by sample, on the threads of the current rayon pool.
 ///
-/// Every pixel gets the same number of samples. Without `speckle` every factor is 1. `progress` is told the number of
-/// samples done since its last call; once `cancel` is set, the render stops after the rows in work. The result has the
-/// same bits for any number of threads, and its means are those of the engine.
+/// Every pixel gets the same number of samples. Without `speckle` every factor is 1. `progress` is
+/// told the number of samples done since its last call; once `cancel` is set, the render stops
+/// after the rows in work. The result has the same bits for any number of threads, and its means
+/// are those of the engine.
 ///
 /// # Errors
 ///
 /// Returns [`RenderError::Cancelled`] if `cancel` was set before the end, and an error if an option
-/// is out of its range, if the geometry cannot be built, or if the memory for layers or patterns is not available.
+/// is out of its range, if the geometry cannot be built, or if the memory for layers or patterns is
+/// not available.
 ///
 /// # Panics
 ///
@@ -108,14 +111,16 @@ struct Reference<'a> {
 /// A path from the camera.
 struct Path {
     ray: Ray,
-    /// The radiance at the camera by that at the end of the path: of each laser, and behind them of lights.
+    /// The radiance at the camera by that at the end of the path: of each laser, and behind them of
+    /// lights.
     throughput: Vec<f64>,
     /// The number of surfaces met, and of rough ones left.
     depth: u32,
     rough: u32,
     /// The change of radiance by refraction, which is no loss of power.
     compression: f64,
-    /// The density with which the direction was drawn; `None` at the camera and behind mirrors and glass.
+    /// The density with which the direction was drawn; `None` at the camera and behind mirrors and
+    /// glass.
     pdf: Option<f64>,
     rays: u64,
 }
@@ -162,7 +167,8 @@ impl<'a> Reference<'a> {
         (sums, rays)
     }
 
-    /// Follows one sample, adds what it finds to the sums of its pixel, and returns the number of its rays.
+    /// Follows one sample, adds what it finds to the sums of its pixel, and returns the number of
+    /// its rays.
     fn sample(&self, [x, y]: [usize; 2], random: &mut Random, sums: &mut PixelSums) -> u64 {
         // A point of the image and one of the lens make a ray.
         let beside = self.filter.sample(random.pair());
@@ -212,7 +218,8 @@ impl<'a> Reference<'a> {
                 break;
             }
         }
-        // All light of a laser carries the speckle of the first rough surface, seen from the camera.
+        // All light of a laser carries the speckle of the first rough surface, seen from the
+        // camera.
         for (laser, found) in lasers.iter_mut().enumerate() {
             let factor = first_rough.map_or(1.0, |(surface, position, normal)| {
                 self.factor(laser, surface, pixel, position, normal)
@@ -223,8 +230,9 @@ impl<'a> Reference<'a> {
         path.rays
     }
 
-    /// Returns the speckle factor of a laser at a point that the sample at `pixel` sees: looked up where the point
-    /// stood in the reference frame, in the slice that the motion since then leads to.
+    /// Returns the speckle factor of a laser at a point that the sample at `pixel` sees: looked up
+    /// where the point stood in the reference frame, in the slice that the motion since then leads
+    /// to.
     fn factor(&self, laser: usize, surface: usize, pixel: DVec2, p: DVec3, n: DVec3) -> f64 {
         let frame = self.speckle[laser][surface].as_ref();
         frame.map_or(1.0, |frame| frame.factor_at(pixel, p, n))
@@ -245,8 +253,8 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// Connects a rough point to every laser: along the mean energy flow of its beam, which has the irradiance of all
-    /// of it, or along a direction drawn from those in which light arrives.
+    /// Connects a rough point to every laser: along the mean energy flow of its beam, which has the
+    /// irradiance of all of it, or along a direction drawn from those in which light arrives.
     fn connect_to_lasers(
         &self,
         path: &mut Path,
@@ -353,8 +361,9 @@ impl<'a> Reference<'a> {
     }
 }
 
-/// Returns the weight of a direction drawn with the density `pdf` that could have been drawn with the density `other`,
-/// by the power heuristic of E. Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, § 9.2.4.
+/// Returns the weight of a direction drawn with the density `pdf` that could have been drawn with
+/// the density `other`, by the power heuristic of E. Veach, *Robust Monte Carlo Methods for Light
+/// Transport Simulation*, 1997, § 9.2.4.
 fn power_heuristic(pdf: f64, other: f64) -> f64 {
     let ratio = other / pdf;
     1.0 / (1.0 + ratio * ratio)

@@ -15,10 +15,11 @@ const DISTANCE: f64 = 0.5;
 
 /// A plate and its camera.
 ///
-/// The pupil is a lattice of points so far apart that the image repeats with the period of the patch, and wave numbers
-/// are as many whole steps apart as the paths across the patch make whole periods. So no wave sees an edge: even a
-/// patch of 24 speckles with edges would lack 1 % of the light and have 1 % too much contrast. The lattice has another
-/// offset for each surface, so that it counts areas rightly on average.
+/// The pupil is a lattice of points so far apart that the image repeats with the period of the
+/// patch, and wave numbers are as many whole steps apart as the paths across the patch make whole
+/// periods. So no wave sees an edge: even a patch of 24 speckles with edges would lack 1 % of the
+/// light and have 1 % too much contrast. The lattice has another offset for each surface, so that
+/// it counts areas rightly on average.
 pub(crate) struct Bench {
     pub(crate) view: CellGeometry,
     /// Speckles after which the patch repeats, along the gradient of the paths and across it.
@@ -29,8 +30,8 @@ pub(crate) struct Bench {
     pub(crate) step: f64,
 }
 
-/// What a camera does with the light: where its pupil stands, in diameters along both axes, and how far behind the
-/// plane of focus the plate is, in metres.
+/// What a camera does with the light: where its pupil stands, in diameters along both axes, and how
+/// far behind the plane of focus the plate is, in metres.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct View {
     pub(crate) pupil: [f64; 2],
@@ -68,7 +69,8 @@ impl Bench {
         bench
     }
 
-    /// The change of the path from the source over the plate to the pupil, per length on the object across the view.
+    /// The change of the path from the source over the plate to the pupil, per length on the object
+    /// across the view.
     fn path_gradient(&self) -> DVec3 {
         let source = self.view.to_source.normalize();
         let path = |across: DVec3| {
@@ -102,8 +104,9 @@ impl Bench {
         self.size.map(|size| 2 * size)
     }
 
-    /// Scatterers on a lattice, of independent complex Gaussian amplitudes where heights do not make the phases, times a
-    /// factor by the place along the gradient, in speckles from the middle.
+    /// Scatterers on a lattice, of independent complex Gaussian amplitudes where heights do not
+    /// make the phases, times a factor by the place along the gradient, in speckles from the
+    /// middle.
     pub(crate) fn surface(&self, random: &mut Random, lit: impl Fn(f64) -> f64) -> RoughSurface {
         let density = self.heights.sites_per_speckle();
         let [columns, rows] = self.size.map(|size| size * density);
@@ -130,7 +133,8 @@ impl Bench {
         RoughSurface::from_scatterers(scatterers).expect("a surface")
     }
 
-    /// The intensities of a surface in views of it, for wave numbers up to `steps` steps off: `[view][wave number][pixel]`.
+    /// The intensities of a surface in views of it, for wave numbers up to `steps` steps off:
+    /// `[view][wave number][pixel]`.
     pub(crate) fn images(
         &self,
         surface: &RoughSurface,
@@ -192,7 +196,8 @@ impl Bench {
         samples
     }
 
-    /// The Fourier transform of the field in the pupil, with the paths to the point in focus taken off.
+    /// The Fourier transform of the field in the pupil, with the paths to the point in focus taken
+    /// off.
     fn image(&self, field: &[Sample], wave_number: f64, view: &View, transform: &Fft2) -> Vec<f64> {
         let focus = self.view.to_pupil.normalize() * view.defocus;
         let size = self.pixels();
@@ -248,7 +253,8 @@ pub(crate) fn plane_of_incidence(incidence: f64, observation: f64) -> CellGeomet
     }
 }
 
-/// A spectrum as the judge has it, fractions of the power at the wave numbers of a bench, and as the judged.
+/// A spectrum as the judge has it, fractions of the power at the wave numbers of a bench, and as
+/// the judged.
 pub(crate) struct Spectrum {
     pub(crate) name: &'static str,
     pub(crate) weights: Vec<f64>,

@@ -77,7 +77,8 @@ pub(crate) fn spectra(wavelength: f64, step: f64) -> Vec<Spectrum> {
     ]
 }
 
-/// A camera and a source anywhere above the plate, whose paths differ enough over the patch for some nanometres.
+/// A camera and a source anywhere above the plate, whose paths differ enough over the patch for
+/// some nanometres.
 fn random_view(random: &mut Random) -> CellGeometry {
     loop {
         let mut direction = |degrees: f64| {
@@ -108,7 +109,8 @@ fn random_view(random: &mut Random) -> CellGeometry {
 
 const SIZE: [usize; 2] = [20, 8];
 
-/// Compares the contrasts of all lines in a random geometry, in focus and up to three speckles out of it.
+/// Compares the contrasts of all lines in a random geometry, in focus and up to three speckles out
+/// of it.
 fn compare(geometry: u64, random: &mut Random) -> Vec<Comparison> {
     let mut view = random_view(random);
     if geometry % 8 == 7 {
@@ -289,8 +291,9 @@ fn two_wavelengths_share_what_the_law_leaves_of_the_pupil() {
     }
 }
 
-/// The law takes the pupil in wavelengths as constant. Where nothing else tells wave numbers apart, the wavelengths show
-/// by the sizes of their speckles: discs of the radii k and k' share `min/max` of their fields.
+/// The law takes the pupil in wavelengths as constant. Where nothing else tells wave numbers apart,
+/// the wavelengths show by the sizes of their speckles: discs of the radii k and k' share `min/max`
+/// of their fields.
 #[test]
 fn wide_bands_cost_contrast_without_a_tilt_as_the_stated_limit_says() {
     let view = plane_of_incidence(0.0, 0.0);

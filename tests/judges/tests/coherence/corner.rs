@@ -1,4 +1,5 @@
-//! A rough plate that a source lights directly and by way of a rough wall, seen at one place by an ideal lens.
+//! A rough plate that a source lights directly and by way of a rough wall, seen at one place by an
+//! ideal lens.
 
 use core::f64::consts::TAU;
 
@@ -12,7 +13,8 @@ use super::heights::Random;
 /// Distance from the plate to the pupil, in metres.
 pub(crate) const DISTANCE: f64 = 0.2;
 
-/// Speckles from the place seen to the last scatterers of the plate; 0.7 % of the light of a point lie beyond.
+/// Speckles from the place seen to the last scatterers of the plate; 0.7 % of the light of a point
+/// lie beyond.
 const REACH: f64 = 30.0;
 
 /// Points of the pupil along its diameter: the image of the lattice repeats after as many speckles.
@@ -25,7 +27,8 @@ const GOLDEN: f64 = 2.399_963_229_728_653;
 pub(crate) struct Corner {
     pub(crate) view: CellGeometry,
     pub(crate) wall: Wall,
-    /// Distance of a point source from the place seen, in metres; without one the light is collimated.
+    /// Distance of a point source from the place seen, in metres; without one the light is
+    /// collimated.
     pub(crate) source: Option<f64>,
     /// Scatterers of the plate; of the wall.
     pub(crate) sites: [usize; 2],
@@ -92,8 +95,8 @@ impl Corner {
         }
     }
 
-    /// Returns scatterers of the plate with the square roots of the areas for which they stand. They are as dense as
-    /// the image of a point is bright, so that all count alike.
+    /// Returns scatterers of the plate with the square roots of the areas for which they stand.
+    /// They are as dense as the image of a point is bright, so that all count alike.
     fn plate(&self) -> Vec<(DVec3, f64)> {
         let sight = self.view.to_pupil.normalize();
         let (first, second) = sight.any_orthonormal_pair();
@@ -135,7 +138,8 @@ impl Corner {
             .collect()
     }
 
-    /// Sums the waves of all scatterers after a motion of plate and wall, with the lens focused on the place seen.
+    /// Sums the waves of all scatterers after a motion of plate and wall, with the lens focused on
+    /// the place seen.
     pub(crate) fn waves(&self, wave_numbers: &[f64], motion: &RigidMotion) -> Waves {
         let (plate, wall, pupil) = (self.plate(), self.lit_part(), self.pupil());
         let seen = motion.point(DVec3::ZERO);
@@ -145,7 +149,8 @@ impl Corner {
         };
         for &wave_number in wave_numbers {
             let light = self.light(wave_number);
-            // Waves take the same way back: the points of the pupil send out what arrives in phase in focus.
+            // Waves take the same way back: the points of the pupil send out what arrives in phase
+            // in focus.
             let focused = |&position: &DVec3| Scatterer {
                 position,
                 amplitude: turned(-wave_number * position.distance(seen))
@@ -173,8 +178,8 @@ impl Corner {
         waves
     }
 
-    /// Sums, in any unit, the waves of the wall on the plate and those of the plate in the pupil, for the random numbers with which
-    /// [`Waves::fields`] makes its first plate.
+    /// Sums, in any unit, the waves of the wall on the plate and those of the plate in the pupil,
+    /// for the random numbers with which [`Waves::fields`] makes its first plate.
     pub(crate) fn multiple_field(&self, wave_number: f64, random: &mut Random) -> Complex<f64> {
         let light = self.light(wave_number);
         let surface = |places: Vec<DVec3>, amplitudes: Vec<Complex<f64>>| {
@@ -214,7 +219,8 @@ impl Corner {
 }
 
 impl Waves {
-    /// Returns the fields of a wall of independent complex Gaussian amplitudes and of some such plates before it.
+    /// Returns the fields of a wall of independent complex Gaussian amplitudes and of some such
+    /// plates before it.
     pub(crate) fn fields(&self, plates: usize, random: &mut Random) -> Fields {
         let sites = [
             self.single[0].len(),
@@ -257,7 +263,8 @@ impl Fields {
             .collect()
     }
 
-    /// Returns intensities, `[wave number][plate]`, with the multiple light so many times as bright as the single.
+    /// Returns intensities, `[wave number][plate]`, with the multiple light so many times as bright
+    /// as the single.
     pub(crate) fn intensities(&self, ratio: f64, is_depolarised: bool) -> Vec<Vec<f64>> {
         let share = if is_depolarised { 0.5 } else { 1.0 };
         let intensity = |plate: usize, k: usize| {

@@ -37,15 +37,16 @@ impl Random {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Heights {
     Flat,
-    /// Independent normal heights. Each of the four sites of a square speckle has `strata` scatterers, all of them
-    /// from different quantiles: the whole distribution of a dense relief by few scatterers, without the floor
-    /// of `1/N` that N heights drawn independently leave.
+    /// Independent normal heights. Each of the four sites of a square speckle has `strata`
+    /// scatterers, all of them from different quantiles: the whole distribution of a dense relief
+    /// by few scatterers, without the floor of `1/N` that N heights drawn independently leave.
     Dense {
         rms: f64,
         strata: usize,
     },
-    /// Independent normal heights, which make the phases of scatterers of equal amplitude. Squared contrasts are those
-    /// of a dense relief times `1 − 1/N` where all parts of a speckle have the same mean path.
+    /// Independent normal heights, which make the phases of scatterers of equal amplitude. Squared
+    /// contrasts are those of a dense relief times `1 − 1/N` where all parts of a speckle have the
+    /// same mean path.
     Alone {
         rms: f64,
     },
@@ -57,8 +58,8 @@ pub(crate) enum Heights {
 }
 
 impl Heights {
-    /// Sites along a side of a speckle. Two are as good as a continuous surface for independent amplitudes, of
-    /// smooth heights over two speckles, too.
+    /// Sites along a side of a speckle. Two are as good as a continuous surface for independent
+    /// amplitudes, of smooth heights over two speckles, too.
     pub(crate) const fn sites_per_speckle(&self) -> usize {
         match self {
             Self::Flat | Self::Dense { .. } | Self::Alone { .. } => 2,
@@ -127,8 +128,8 @@ fn normal_quantile(fraction: f64) -> f64 {
     table.partition_point(|&below| below < fraction) as f64 * STEP - 6.0
 }
 
-/// Returns normal numbers of variance 1 whose correlation falls as exp(−d²/ℓ²) over a lattice that repeats, ℓ in
-/// lattice points: white noise under a Gaussian.
+/// Returns normal numbers of variance 1 whose correlation falls as exp(−d²/ℓ²) over a lattice that
+/// repeats, ℓ in lattice points: white noise under a Gaussian.
 fn smooth([columns, rows]: [usize; 2], length: f64, random: &mut Random) -> Vec<f64> {
     let mut values: Vec<f64> = (0..columns * rows).map(|_| random.gaussian()).collect();
     for (stride, count) in [(1, columns), (columns, rows)] {

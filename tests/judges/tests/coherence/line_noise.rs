@@ -21,7 +21,8 @@ use super::{
 const WIDTH: f64 = 4.0;
 const STEPS: i32 = 9;
 
-/// Mean squares of the first moments of one surface, of all wave numbers together and of single ones.
+/// Mean squares of the first moments of one surface, of all wave numbers together and of single
+/// ones.
 type Squares = [f64; 2];
 
 /// Returns the moments of the rows of an image about the middle of the line, in pixels.
@@ -43,7 +44,8 @@ fn tall(moments: &[f64]) -> Vec<f64> {
     vec![moments.iter().sum::<f64>() / moments.len() as f64]
 }
 
-/// Returns the root of the ratio of two mean squares, and its error from leaving out one surface at a time.
+/// Returns the root of the ratio of two mean squares, and its error from leaving out one surface at
+/// a time.
 fn ratio(surfaces: &[Squares]) -> Estimate {
     let sum = |i: usize| surfaces.iter().map(|squares| squares[i]).sum::<f64>();
     let total = [sum(0), sum(1)];
@@ -98,8 +100,8 @@ fn lines_of_a_broad_source_scatter_as_the_law_says_and_not_as_their_contrast() {
     }
 }
 
-/// Numbers by the transform of the lens that two discs along the rows share, squared, over all distances of the discs:
-/// the kernel of thin rows.
+/// Numbers by the transform of the lens that two discs along the rows share, squared, over all
+/// distances of the discs: the kernel of thin rows.
 #[test]
 fn long_relief_leaves_a_line_its_noise() {
     const WAVELENGTH: f64 = 450e-9;

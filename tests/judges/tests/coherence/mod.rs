@@ -1,7 +1,8 @@
 //! Speckle of light of finite bandwidth, judged by wave optics from first principles.
 //!
-//! The judge sums the waves of thousands of scatterers with exact distances, one wavelength after the other, and adds
-//! the intensities of the images. It knows nothing of tilts, overlaps of pupils or path spreads.
+//! The judge sums the waves of thousands of scatterers with exact distances, one wavelength after
+//! the other, and adds the intensities of the images. It knows nothing of tilts, overlaps of pupils
+//! or path spreads.
 
 mod bench;
 mod comparison;

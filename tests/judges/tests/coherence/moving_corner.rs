@@ -24,9 +24,9 @@ fn of_pupil(corner: &Corner, across: f64) -> f64 {
     disc_overlap(across / (2.0 * DISTANCE * corner.view.sin_aperture))
 }
 
-/// The correlation of the fields of two frames of the multiple light, against the change of phase of the single light: it
-/// moves across the pupil as if the plate were the source, and the path by way of each place of the wall changes by
-/// another length.
+/// The correlation of the fields of two frames of the multiple light, against the change of phase
+/// of the single light: it moves across the pupil as if the plate were the source, and the path by
+/// way of each place of the wall changes by another length.
 fn multiple(corner: &Corner, motion: &RigidMotion) -> Complex<f64> {
     let to_pupil = corner.view.to_pupil.normalize();
     let pupil = to_pupil * DISTANCE;
@@ -45,8 +45,8 @@ fn multiple(corner: &Corner, motion: &RigidMotion) -> Complex<f64> {
     of_pupil(corner, across.length()) * sum / all
 }
 
-/// The correlation of the fields of two frames of the single light of a far source, before and after a turn in the plane
-/// of incidence and a shift across it.
+/// The correlation of the fields of two frames of the single light of a far source, before and
+/// after a turn in the plane of incidence and a shift across it.
 fn single(corner: &Corner, turn: f64, shift: f64) -> f64 {
     let [cos_in, cos_out] =
         [corner.view.to_source, corner.view.to_pupil].map(|direction| direction.normalize().z);

@@ -25,7 +25,8 @@ const WALL: f64 = 0.9;
 /// The middle of what is seen, half a millimetre from the edge.
 const SEEN: DVec3 = DVec3::new(0.5e-3, 0.0, 0.0);
 
-/// Directions to the laser and to the camera, 50° and 40° from the normal of the floor on the side of the wall.
+/// Directions to the laser and to the camera, 50° and 40° from the normal of the floor on the side
+/// of the wall.
 fn directions() -> [DVec3; 2] {
     [50.0_f64, 40.0].map(|angle| {
         let (sin, cos) = angle.to_radians().sin_cos();
@@ -33,8 +34,8 @@ fn directions() -> [DVec3; 2] {
     })
 }
 
-/// A lens of f/5 whose pupil fills sin u = 0.025, in front of a floor with a wall of 0.7 by 0.7 mm² beside it, in
-/// collimated light.
+/// A lens of f/5 whose pupil fills sin u = 0.025, in front of a floor with a wall of 0.7 by 0.7 mm²
+/// beside it, in collimated light.
 fn corner(line: SpectralLine, polarisation: f64) -> Scene {
     let [to_source, to_camera] = directions();
     let camera = Camera::new(CameraDescription {
@@ -108,7 +109,8 @@ fn covariance(a: &[f64], b: &[f64]) -> f64 {
     products / a.len() as f64
 }
 
-/// Places all over the image, of which the wall is longer by a little only: less of its light reaches the ends.
+/// Places all over the image, of which the wall is longer by a little only: less of its light
+/// reaches the ends.
 fn seen() -> [DVec3; 6] {
     [-0.25e-3, -0.15e-3, -0.05e-3, 0.05e-3, 0.15e-3, 0.25e-3].map(|y| SEEN + y * DVec3::Y)
 }
@@ -118,7 +120,8 @@ fn mean(of_place: impl Fn(DVec3) -> f64) -> f64 {
     seen().map(of_place).iter().sum::<f64>() / 6.0
 }
 
-/// Points of the wall, each with the light that it sends to a place of the floor, over the single light there.
+/// Points of the wall, each with the light that it sends to a place of the floor, over the single
+/// light there.
 fn wall(seen: DVec3) -> Vec<(DVec3, f64)> {
     const STEPS: i32 = 40;
     const SIDE: f64 = 0.7e-3;
@@ -178,8 +181,8 @@ fn line(linewidth: f64) -> SpectralLine {
     line.expect("a line")
 }
 
-/// Over the contrast in light of one wavelength, from which pixels of a third of a speckle take 3 %. Patterns are the same, so
-/// that the ratio of some 14 000 speckles scatters by 0.01.
+/// Over the contrast in light of one wavelength, from which pixels of a third of a speckle take 3
+/// %. Patterns are the same, so that the ratio of some 14 000 speckles scatters by 0.01.
 #[test]
 fn a_rendered_corner_has_the_contrast_of_its_linewidth() {
     for polarisation in [1.0, 0.0] {

@@ -19,8 +19,8 @@ use super::{
     sums::{Moments, assert_agrees, contrast, for_surfaces},
 };
 
-/// Plates before each wall: their single light is independent, and of the multiple light all but what N scatterers have
-/// in common.
+/// Plates before each wall: their single light is independent, and of the multiple light all but
+/// what N scatterers have in common.
 const PLATES: usize = 40;
 
 /// Light of a corner: so many times as much multiple as single light, depolarised or not.
@@ -59,8 +59,8 @@ fn moments(fields: &Fields, lights: &[Light], spectra: &[Spectrum]) -> Vec<Momen
     lights.iter().flat_map(of_light).collect()
 }
 
-/// Returns what the light of a corner has in common with itself: of paths by way of the wall, drawn at random, and of a
-/// tilted plate.
+/// Returns what the light of a corner has in common with itself: of paths by way of the wall, drawn
+/// at random, and of a tilted plate.
 fn coherence(corner: &Corner, line: &SpectralLine) -> MixedLight {
     let mut pairs = PathPairs::default();
     let mut random = Random::new(77);
@@ -90,7 +90,8 @@ fn contrasts_of_law(light: Light, coherence: MixedLight) -> [f64; 2] {
     })
 }
 
-/// A corner of 90°, whose second path is 0.8 mm longer on average and nearly the same over all of the wall.
+/// A corner of 90°, whose second path is 0.8 mm longer on average and nearly the same over all of
+/// the wall.
 pub(crate) fn right_angle() -> Corner {
     Corner {
         view: plane_of_incidence(50.0, 40.0),
@@ -104,7 +105,8 @@ pub(crate) fn right_angle() -> Corner {
     }
 }
 
-/// Returns the waves of a corner and the Gaussian line that they sample, to 3.3 standard deviations on each side.
+/// Returns the waves of a corner and the Gaussian line that they sample, to 3.3 standard deviations
+/// on each side.
 fn in_line(corner: &Corner, linewidth: f64) -> (Waves, Spectrum) {
     const STEPS: i32 = 7;
     let wavelength = corner.view.wavelength;
@@ -137,7 +139,8 @@ fn a_corner_behind_a_laser_of_one_wavelength_is_fully_developed() {
     }
 }
 
-/// The corner has the contrasts of normally distributed delays, 0.82 ± 0.04 mm, to what a tilted cell takes off.
+/// The corner has the contrasts of normally distributed delays, 0.82 ± 0.04 mm, to what a tilted
+/// cell takes off.
 #[test]
 fn a_corner_loses_coherence_with_single_light_before_that_with_itself() {
     let corner = right_angle();
@@ -186,8 +189,8 @@ fn a_corner_sends_the_waves_of_its_lit_surfaces() {
     }
 }
 
-/// Draws an intensity of polarised light: independent patterns of single and of multiple light, of which the first two
-/// interfere by what both share.
+/// Draws an intensity of polarised light: independent patterns of single and of multiple light, of
+/// which the first two interfere by what both share.
 fn draw_recombined(light: Light, coherence: MixedLight, random: &mut Random) -> f64 {
     let (c12, c22) = (coherence.with_single, coherence.within_multiple);
     let multiple = light.ratio / (1.0 + light.ratio);

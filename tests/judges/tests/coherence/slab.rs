@@ -24,7 +24,8 @@ const THICKNESS: f64 = 10.0;
 const BATCH: usize = 250;
 const BATCHES: u64 = 120;
 
-/// Returns the length, in mean free paths, of a random walk through the slab; nothing if it comes back.
+/// Returns the length, in mean free paths, of a random walk through the slab; nothing if it comes
+/// back.
 fn walk(random: &mut Random) -> Option<f64> {
     let (mut depth, mut length, mut cosine) = (0.0, 0.0, 1.0);
     loop {

@@ -16,7 +16,8 @@ use super::{
 /// Plates before each wall.
 const PLATES: usize = 12;
 
-/// A round part of a wall in the direction of a mirror, where the plate looks alike from there and from the camera.
+/// A round part of a wall in the direction of a mirror, where the plate looks alike from there and
+/// from the camera.
 fn small_part(relative_aperture: f64) -> Corner {
     let view = plane_of_incidence(50.0, 40.0);
     let to_wall = view.to_pupil * DVec3::new(-1.0, -1.0, 1.0);

@@ -101,8 +101,8 @@ pub(crate) fn for_surfaces<T: Send>(
     (0..count).into_par_iter().map(one).collect()
 }
 
-/// Asserts that a number found by waves is within a tolerance of a law, and within four standard errors or half a
-/// percent, for the lattices.
+/// Asserts that a number found by waves is within a tolerance of a law, and within four standard
+/// errors or half a percent, for the lattices.
 pub(crate) fn assert_agrees(name: &str, waves: Estimate, law: f64, tolerance: f64) {
     let deviation = (waves.value - law).abs();
     assert!(

@@ -51,7 +51,8 @@ impl Case {
     }
 }
 
-/// The root of the mean of squares of deviations, averaged over neighbouring columns, and its standard error.
+/// The root of the mean of squares of deviations, averaged over neighbouring columns, and its
+/// standard error.
 fn root_mean(deviations: &[Vec<f64>], columns: usize) -> [f64; 2] {
     let squares: Vec<f64> = deviations
         .iter()
@@ -69,8 +70,8 @@ fn root_mean(deviations: &[Vec<f64>], columns: usize) -> [f64; 2] {
     [mean.sqrt(), 0.5 * error / mean.sqrt()]
 }
 
-/// Holds trials and formula to waves at all heights, for single columns and for means of some; `formula` says how far below and
-/// above waves it may be.
+/// Holds trials and formula to waves at all heights, for single columns and for means of some;
+/// `formula` says how far below and above waves it may be.
 fn judge(case: &Case, formula: [f64; 2]) {
     let mut wrong = Vec::new();
     for height in case.heights {
@@ -100,7 +101,8 @@ fn judge(case: &Case, formula: [f64; 2]) {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Holds the heights of a level flat on the reference plane, as `characterise` measures it, to waves and the noise of the sensor.
+/// Holds the heights of a level flat on the reference plane, as `characterise` measures it, to
+/// waves and the noise of the sensor.
 fn judge_characteristics(case: &Case) {
     let setup = case.setup(1);
     let judged = Judged::new(&setup, 0.0);
@@ -169,7 +171,8 @@ const RED: Case = Case {
     images: 100,
 };
 
-/// Green light on a lens at f/5.6, 0.11 m away: speckle of 0.71 pixels, blurred over up to nine of them.
+/// Green light on a lens at f/5.6, 0.11 m away: speckle of 0.71 pixels, blurred over up to nine of
+/// them.
 const GREEN: Case = Case {
     laser: r#"wavelength = "520 nm""#,
     camera: r#"focal_length = "16 mm", f_number = 5.6, pixel_pitch = "4.8 um", distance = "110 mm", angle = "32 deg""#,

@@ -18,7 +18,8 @@ const SAMPLES_PER_SPECKLE: f64 = 4.5;
 /// Speckles at each end of the line that are not looked at.
 const END: f64 = 3.0;
 
-/// The distance at which waves see the part, whatever that of the set-up: magnification, speckle size and blur make the image.
+/// The distance at which waves see the part, whatever that of the set-up: magnification, speckle
+/// size and blur make the image.
 const DISTANCE: f64 = 0.3;
 
 /// What is judged: the line of a set-up at a height.
@@ -61,7 +62,8 @@ impl Judged {
     }
 }
 
-/// A camera that sees such a line, from above, as wide, as far out of focus and with speckle as large.
+/// A camera that sees such a line, from above, as wide, as far out of focus and with speckle as
+/// large.
 pub(super) struct Waves {
     window: ImageWindow,
     light: Illumination,
@@ -109,8 +111,8 @@ impl Waves {
             waist_radius: radius * pixel,
             waist_distance: 1.0,
         });
-        // Independent scatterers so close that the squared pupil function does not see their lattice, out
-        // to 1e-4 of the irradiance.
+        // Independent scatterers so close that the squared pupil function does not see their
+        // lattice, out to 1e-4 of the irradiance.
         let [across, along] = [4.4 * radius, PIXELS as f64 + line.blur];
         let spacing = [(0.5 * radius).min(0.75 * speckle), 0.8 * speckle];
         Self {
@@ -131,7 +133,8 @@ impl Waves {
         }
     }
 
-    /// Returns how far the detector finds the line from where it is, in so many images, column by column.
+    /// Returns how far the detector finds the line from where it is, in so many images, column by
+    /// column.
     pub(super) fn deviations(judged: &Judged, images: u64) -> Vec<Vec<f64>> {
         let waves = Self::of(judged);
         let of_image = |seed| {
@@ -141,7 +144,8 @@ impl Waves {
         (0..images).map(of_image).collect()
     }
 
-    /// Returns what pixels see of one surface, with the line along the rows, and its place across them.
+    /// Returns what pixels see of one surface, with the line along the rows, and its place across
+    /// them.
     ///
     /// `seed` moves the pixels by samples, too.
     fn columns(&self, seed: u64) -> (Grid<f32>, f64) {

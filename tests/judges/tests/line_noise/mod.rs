@@ -1,4 +1,5 @@
-//! Displacement of a laser line by speckle: rendered frames and wave optics against the closed forms.
+//! Displacement of a laser line by speckle: rendered frames and wave optics against the closed
+//! forms.
 
 mod line_by_waves;
 mod rendered_lines;

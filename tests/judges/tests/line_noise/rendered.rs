@@ -23,8 +23,8 @@ fn judge(frames: LineFrames) {
     let first_order = noise.deviation / line.centroid_deviation();
     let law = noise.deviation / line_centroid_deviation(noise.radius, noise.row_height);
     // A column's own power fluctuates: its centroid, a ratio of two quadratic forms of Gaussian
-    // amplitudes, scatters by 0.02 h/w to 0.11 h/w less than first order says. Of samples and of pixels
-    // as coarse as a quarter of a line's half-width there is 1 % more.
+    // amplitudes, scatters by 0.02 h/w to 0.11 h/w less than first order says. Of samples and of
+    // pixels as coarse as a quarter of a line's half-width there is 1 % more.
     let chance = 3.3 * noise.error;
     let allowed = 0.99 - 0.11 / noise.radius - chance..1.01 + chance;
     assert!(
@@ -104,8 +104,9 @@ fn the_wide_centre_of_gravity_is_the_best_detector() {
     let best = noise[0].deviation;
     for (noise, method) in noise.iter().zip(&methods).skip(1) {
         let ratio = noise.deviation / best;
-        // What is looked at is narrower than the line: single speckles draw harder at it, hardest where
-        // three pixels are all, which follow the brightest one. A ratio of two has the error 3 %.
+        // What is looked at is narrower than the line: single speckles draw harder at it, hardest
+        // where three pixels are all, which follow the brightest one. A ratio of two has the error
+        // 3 %.
         let expected = match method {
             LineMethod::LogGaussian | LineMethod::Parabola | LineMethod::LinearInterpolation => {
                 2.0..3.0

@@ -22,10 +22,12 @@ pub(crate) struct LineFrames {
     pub(crate) f_number: f64,
     /// Side of a pixel, in metres: the height of a row that is read across the line.
     pub(crate) pixel_pitch: f64,
-    /// Between the axis of the camera and the laser, which shines squarely onto the plate, in degrees.
+    /// Between the axis of the camera and the laser, which shines squarely onto the plate, in
+    /// degrees.
     pub(crate) angle: f64,
     pub(crate) samples_per_pixel: u32,
-    /// Length of the lines in the image, in speckle sizes: no more than the speckle pattern is wide.
+    /// Length of the lines in the image, in speckle sizes: no more than the speckle pattern is
+    /// wide.
     pub(crate) length: usize,
     /// Lines at different places of one speckle pattern.
     pub(crate) lines: usize,

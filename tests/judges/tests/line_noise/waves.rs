@@ -28,7 +28,8 @@ fn rows_of_pixels(image: &[Row], rows: usize) -> Vec<Row> {
     image.chunks_exact(rows).map(mean).collect()
 }
 
-/// Returns the mean square of the first moments of the rows of each image, in units of the mean power.
+/// Returns the mean square of the first moments of the rows of each image, in units of the mean
+/// power.
 fn moments(images: &[Vec<Row>]) -> Vec<f64> {
     let rows = || images.iter().flatten();
     let powers = rows().map(|row| row.iter().sum::<f64>());

@@ -58,8 +58,8 @@ impl Case {
     }
 }
 
-/// The angle by which a plate in plane waves turns so that its speckle crosses a number of slices: twice
-/// as fast as the plate, 0.3 m away.
+/// The angle by which a plate in plane waves turns so that its speckle crosses a number of slices:
+/// twice as fast as the plate, 0.3 m away.
 fn tilt(slices: f64) -> f64 {
     let diameter = LENS.focal_length / LENS.f_number;
     0.5 * slices / SLICES * diameter / EYE.z
@@ -122,12 +122,12 @@ fn cases() -> Vec<Case> {
     ]
 }
 
-/// The standard error of a displacement found by cross-correlation, in speckles along the way of the
-/// pupil, where it is the larger.
+/// The standard error of a displacement found by cross-correlation, in speckles along the way of
+/// the pupil, where it is the larger.
 ///
 /// The noise of the correlation of two patterns S speckles wide is 0.765/S high, and as narrow as
-/// speckle: it slopes by 0.765 π/S. The peak is γ π²/2 times as curved, or less where the pupils share
-/// a lens 1 − s as wide as they are: (1 − s)² times that.
+/// speckle: it slopes by 0.765 π/S. The peak is γ π²/2 times as curved, or less where the pupils
+/// share a lens 1 − s as wide as they are: (1 − s)² times that.
 fn displacement_error(law: &SpeckleMotion, pupil_diameter: f64, speckles: f64) -> f64 {
     let shift = law.pupil_displacement.map_or(1.0, DVec2::length) / pupil_diameter;
     let slope = 0.765 * PI / speckles;

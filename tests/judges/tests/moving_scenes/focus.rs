@@ -23,7 +23,8 @@ const WIDE: LensData = LensData {
     ..LENS
 };
 
-/// A plate in plane waves that moves by `surface` from frame to frame, and its speckle size in pixels.
+/// A plate in plane waves that moves by `surface` from frame to frame, and its speckle size in
+/// pixels.
 fn moving(lens: LensData, surface: DVec3, frames: u32) -> (Scene, f64) {
     let (to_laser, distance) = (DVec3::Z, None);
     let setting = Setting {
@@ -54,8 +55,8 @@ fn way(pixels: [i32; 2], pixel: f64) -> DVec3 {
 #[test]
 fn motion_that_ends_between_few_slices_leaves_what_the_pupils_share() {
     const SEEDS: u64 = 4;
-    // A tenth of the diameter and a third, four slices to one: 0.14 and 0.05 above the law if the way
-    // between two slices were that between their pupils.
+    // A tenth of the diameter and a third, four slices to one: 0.14 and 0.05 above the law if the
+    // way between two slices were that between their pupils.
     let pixels = [40, 32];
     let surface = way(pixels, PIXEL);
     for part in [0.1, 0.35] {

@@ -1,5 +1,5 @@
-//! Speckle of bodies that move and turn, measured in rendered frames: where it goes, what is left of
-//! it, what is uncovered, and sums of patterns.
+//! Speckle of bodies that move and turn, measured in rendered frames: where it goes, what is left
+//! of it, what is uncovered, and sums of patterns.
 
 mod background;
 mod bodies;

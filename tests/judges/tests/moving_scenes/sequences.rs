@@ -12,13 +12,15 @@ use tem00::{
 
 use super::setting::{LENS, Setting, assert_correlation, speckle};
 
-/// Behind this pitch a speckle spans 6.8 pixels, and a surface whose image moves by as little as 80 pixels has new speckle.
+/// Behind this pitch a speckle spans 6.8 pixels, and a surface whose image moves by as little as 80
+/// pixels has new speckle.
 const PITCH: f64 = 3.45e-6 / 2.0;
 
 /// One pixel on the plate, in metres.
 const PIXEL: f64 = 11.0 * PITCH;
 
-/// Pixels by which the image moves with the surface while the pupil moves by its diameter over the speckle.
+/// Pixels by which the image moves with the surface while the pupil moves by its diameter over the
+/// speckle.
 const DIAMETER: f64 = 80.0;
 
 /// Two frames, and the pixels by which the surface has moved between them, to the right and up.
@@ -60,8 +62,8 @@ fn keyed(poses: impl IntoIterator<Item = (u32, [f64; 2])>) -> Trajectory {
     Trajectory::keyframed(DVec3::ZERO, keyframes).expect("a motion")
 }
 
-/// Compares the correlation of frames with the overlap of the pupils: where the surface has gone, or at rest where that
-/// is far away.
+/// Compares the correlation of frames with the overlap of the pupils: where the surface has gone,
+/// or at rest where that is far away.
 fn judge(name: &str, scene: &Scene, pairs: &[Pair]) {
     let wavelength = scene.lasers[0].wavelength();
     let geometry = scene.camera.imaging_geometry(wavelength).expect("a lens");
@@ -117,7 +119,8 @@ fn frames_of_motions_that_are_not_steady_correlate_by_their_distance() {
     let visits = keyed([(400, [0.0; 2]), (401, [8e3, 0.0]), (402, [0.0; 2])]);
     // Where it began in every 66th frame, which are 16 of 991.
     let swings = keyed((0..=30).map(|i| (33 * i, [if i % 2 == 0 { 0.0 } else { 330.0 }, 0.0])));
-    // A part of 600 pixels that fills the image in three frames of a thousand, 250 diameters from where it began.
+    // A part of 600 pixels that fills the image in three frames of a thousand, 250 diameters from
+    // where it began.
     let passes = keyed([(0, [-2e4, 0.0]), (1000, [2e4, 0.0])]);
     // To the right, up, and back to the left, by a quarter of the pupil a frame.
     let rows = [

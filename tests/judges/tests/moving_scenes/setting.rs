@@ -169,8 +169,8 @@ pub(crate) fn correlation([before, after]: [&Grid<f32>; 2], [right, up]: [i32; 2
     pearson_correlation(&before, &after).expect("bright frames")
 }
 
-/// Asserts that two frames correlate as expected where the surface has moved by so many pixels, with speckles of `size`
-/// pixels.
+/// Asserts that two frames correlate as expected where the surface has moved by so many pixels,
+/// with speckles of `size` pixels.
 #[track_caller]
 pub(crate) fn assert_correlation(
     name: &str,
@@ -202,8 +202,8 @@ pub(crate) fn in_speckles(pixels: DVec2, geometry: &ImagingGeometry) -> DVec2 {
 /// Four standard errors of the correlation of two images of `area` pixels with speckles of `size`
 /// pixels.
 ///
-/// The variance is 0.585 h²/A for independent patterns of the area A. For correlated ones it is of the
-/// same size, at most 1.5² times as large (found for γ = 0.5, where it is largest).
+/// The variance is 0.585 h²/A for independent patterns of the area A. For correlated ones it is of
+/// the same size, at most 1.5² times as large (found for γ = 0.5, where it is largest).
 pub(crate) fn tolerance(area: f64, size: f64) -> f64 {
     4.0 * 1.5 * 0.585_f64.sqrt() * size / area.sqrt()
 }

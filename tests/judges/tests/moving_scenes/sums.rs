@@ -11,8 +11,8 @@ use tem00::{
 
 use super::setting::{LENS, Setting, Step, assert_correlation, speckle};
 
-/// Pixels between samples that count as independent: the first zero of the covariance lies 1.22 speckles
-/// of 6.6 pixels away.
+/// Pixels between samples that count as independent: the first zero of the covariance lies 1.22
+/// speckles of 6.6 pixels away.
 const STRIDE: usize = 9;
 
 fn setting() -> Setting {

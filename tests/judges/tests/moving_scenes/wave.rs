@@ -1,5 +1,5 @@
-//! Rendered speckle against wave optics: the same bodies, once as a pattern that is looked up, once as
-//! the waves of thousands of scatterers with exact distances.
+//! Rendered speckle against wave optics: the same bodies, once as a pattern that is looked up, once
+//! as the waves of thousands of scatterers with exact distances.
 
 use tem00::{
     decorrelation::{DVec2, DVec3, LensData, RigidMotions},
@@ -17,8 +17,8 @@ const PUPIL_TO_IMAGE: f64 = 60e-3;
 const WAVELENGTH: f64 = 650e-9;
 const SPECKLE: f64 = WAVELENGTH * PUPIL_TO_IMAGE / PUPIL_DIAMETER;
 
-/// Samples of a wave-optical image along each side, half a speckle apart, and those in its middle that
-/// are looked at.
+/// Samples of a wave-optical image along each side, half a speckle apart, and those in its middle
+/// that are looked at.
 const SAMPLES: usize = 96;
 const MIDDLE: usize = 56;
 
@@ -176,8 +176,8 @@ fn rendered_speckle_moves_and_decorrelates_as_wave_optics_says() {
         // Each mean errs by a hundredth of a speckle or two.
         let error = (rendered - judged).length();
         assert!(error < 0.06, "{name}: {error:.3} of {far:.2} speckles");
-        // Standard errors 1.15 h/√A/2 of four patterns 28 and 39 speckles wide, together 0.025, four
-        // times.
+        // Standard errors 1.15 h/√A/2 of four patterns 28 and 39 speckles wide, together 0.025,
+        // four times.
         assert!((kept - left).abs() < 0.1, "{name}: {kept} | {left}");
         assert!((0.2..0.95).contains(&left), "{name}: {left} tells nothing");
     }

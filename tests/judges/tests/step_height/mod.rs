@@ -1,5 +1,5 @@
-//! A step of known height, measured from end to end: rendered, exposed, found, triangulated. The height
-//! comes back within the uncertainty that the measurement states of itself.
+//! A step of known height, measured from end to end: rendered, exposed, found, triangulated. The
+//! height comes back within the uncertainty that the measurement states of itself.
 
 mod step_artefact;
 

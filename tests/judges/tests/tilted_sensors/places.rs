@@ -10,11 +10,12 @@ const SEEDS: u64 = 2;
 /// Columns that share no speckle with the next so many, but for those at their edges.
 const BLOCK: usize = 32;
 
-/// How much more of a pattern is left in rendered frames than the law says, at most: off the slices of the
-/// stack, by their blend.
+/// How much more of a pattern is left in rendered frames than the law says, at most: off the slices
+/// of the stack, by their blend.
 const BLEND: f64 = 0.06;
 
-/// How far speckle moves the centre of gravity of the line in each column, to first order, in pixels.
+/// How far speckle moves the centre of gravity of the line in each column, to first order, in
+/// pixels.
 fn places(exposure: &Exposure) -> Vec<f64> {
     let place = |column: usize| {
         let rows = (0..SIZE[1]).map(|row| {

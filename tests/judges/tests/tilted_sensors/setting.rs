@@ -15,7 +15,8 @@ use tem00::{
 /// Columns and rows of the images.
 pub(crate) const SIZE: [usize; 2] = [512, 56];
 
-/// A plate under a laser line, and a camera 100 mm away that looks at the plane of the laser, y = 0, at 45°.
+/// A plate under a laser line, and a camera 100 mm away that looks at the plane of the laser, y =
+/// 0, at 45°.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Setting {
     pub(crate) name: &'static str,

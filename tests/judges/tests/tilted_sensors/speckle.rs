@@ -40,9 +40,9 @@ fn settings() -> Vec<Setting> {
 
 /// The standard error of a displacement found by cross-correlation of two images, in pixels.
 ///
-/// The noise of the correlation of patterns of N speckles is 0.765/√N high and as narrow as speckle: it
-/// slopes by 0.765 π/√N per speckle. The peak is γ π²/2 times as curved, or less where the pupils share
-/// a lens 1 − s as wide as they are: (1 − s)² times that.
+/// The noise of the correlation of patterns of N speckles is 0.765/√N high and as narrow as
+/// speckle: it slopes by 0.765 π/√N per speckle. The peak is γ π²/2 times as curved, or less where
+/// the pupils share a lens 1 − s as wide as they are: (1 − s)² times that.
 fn displacement_error(change: &SpeckleChange, size: [f64; 2]) -> f64 {
     let shift = equivalent_pupil_shift(change.correlation).expect("a correlation");
     let slope = 0.765 * PI / speckles(size).sqrt();
@@ -84,8 +84,8 @@ fn speckle_goes_where_the_scan_says_and_keeps_what_it_says() {
                 (displacement - said.displacement).length() < 4.0 * one,
                 "{name}, {later} later: {displacement:.3} ± {one:.3} px, said to be {said:?}"
             );
-            // The variance is 0.585/N for independent patterns of N speckles, at most 1.5² times that for
-            // correlated ones. Off the slices the blend exceeds the law by up to 0.06.
+            // The variance is 0.585/N for independent patterns of N speckles, at most 1.5² times
+            // that for correlated ones. Off the slices the blend exceeds the law by up to 0.06.
             let one = 1.5 * (0.585 / speckles(size) / SEEDS as f64).sqrt();
             assert!(
                 (left - said.correlation).abs() < 4.0 * one + 0.06,
@@ -110,8 +110,8 @@ fn speckle_in_focus_goes_with_the_image_of_the_surface() {
             let image = scene.camera.project(setting.seen + steps * setting.step);
             image.expect("in sight")
         });
-        // The surface leaves the plane in focus by 70 µm. On average over the way 1/Z is off by 0.007/m, and
-        // speckle moves by 70 µm on the pupil: c W a_P is 1e-8 m, 0.003 pixels.
+        // The surface leaves the plane in focus by 70 µm. On average over the way 1/Z is off by
+        // 0.007/m, and speckle moves by 70 µm on the pupil: c W a_P is 1e-8 m, 0.003 pixels.
         let error = (change.displacement - (after - before)).length();
         assert!(error < 0.003, "z = {z} m: {change:?}, off by {error}");
     }

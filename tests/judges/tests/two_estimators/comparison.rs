@@ -79,9 +79,9 @@ pub(crate) type Layer = fn(&LaserLayers) -> &Grid<f32>;
 
 /// Tests that a layer of two series of images has the same expectation.
 ///
-/// In the whole: a t-test of the sum over the image. In each pixel: a t-test of the differences; the
-/// probabilities must be uniform. Pixels darker than `floor` times the brightest do not count: sums
-/// of few paths are not normally distributed.
+/// In the whole: a t-test of the sum over the image. In each pixel: a t-test of the differences;
+/// the probabilities must be uniform. Pixels darker than `floor` times the brightest do not count:
+/// sums of few paths are not normally distributed.
 pub(crate) fn assert_agree(one: &[Frame], other: &[Frame], layer: Layer, floor: f64) {
     let images = |frames: &[Frame]| -> Vec<Vec<f64>> {
         let values = |frame: &Frame| {

@@ -132,7 +132,8 @@ fn a_ball_of_triangles_with_smooth_normals_is_a_lens_too() {
     assert_focused(&scene, height);
 }
 
-/// A ball of 320 × 160 faces with its middle at the height `centre`, with the normals of the sphere.
+/// A ball of 320 × 160 faces with its middle at the height `centre`, with the normals of the
+/// sphere.
 ///
 /// Facets of 0.6 mm lie up to 3 µm below the sphere, and the normal that is interpolated between
 /// their corners is off by less than 1e-6 rad.

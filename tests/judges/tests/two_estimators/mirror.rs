@@ -154,8 +154,8 @@ fn light_past_a_mirror_and_light_from_it_add_up_to_all() {
 
 #[test]
 fn rays_from_the_camera_find_a_wide_beam_in_a_mirror_as_light_paths_do() {
-    // Down from a mirror at 45°, 50 mm above a plate; the beam is a source 80 mm wide that spreads by
-    // 0.25 rad, which one in fifty rays from the plate meets.
+    // Down from a mirror at 45°, 50 mm above a plate; the beam is a source 80 mm wide that spreads
+    // by 0.25 rad, which one in fifty rays from the plate meets.
     let mut scene = sharp_scene(
         r#"
         [camera]

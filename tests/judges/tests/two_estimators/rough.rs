@@ -54,7 +54,8 @@ fn a_spot_on_a_tilted_plate_looks_the_same_from_both_ends() {
 fn a_spot_out_of_focus_looks_the_same_from_both_ends() {
     let text = tilted_plate(r#"spot = { waist_radius = ["0.6 mm", "0.9 mm"], m_squared = 3 }"#);
     let mut scene = scene_of(&text);
-    // In focus 0.1 m in front of the plate: the spot is blurred over 4 mm, and the sensor is tilted.
+    // In focus 0.1 m in front of the plate: the spot is blurred over 4 mm, and the sensor is
+    // tilted.
     let near = CameraDescription {
         f_number: 3.0,
         focus_distance: 0.2,
@@ -70,7 +71,8 @@ fn a_spot_out_of_focus_looks_the_same_from_both_ends() {
 
 #[test]
 fn beams_and_drawn_directions_light_a_surface_alike() {
-    // A beam that spreads by 0.1 rad from a wide source, so that surfaces see it as a wide area light.
+    // A beam that spreads by 0.1 rad from a wide source, so that surfaces see it as a wide area
+    // light.
     let text = tilted_plate(
         r#"spot = { waist_radius = "8 mm", waist_distance = "0.1 m", m_squared = 4000 }"#,
     );

@@ -22,8 +22,8 @@ use super::{
 const DISTANCE: f64 = 0.3;
 const PUPIL_TO_IMAGE: f64 = 0.06;
 
-/// Sides of patch and image, in speckle sizes. Of the even numbers below 50, it is the one for which
-/// lattice points count the area of a disc best.
+/// Sides of patch and image, in speckle sizes. Of the even numbers below 50, it is the one for
+/// which lattice points count the area of a disc best.
 const WIDTH: usize = 40;
 
 /// Lattice points of the pupil along a side, with a rim to spare.
@@ -33,9 +33,9 @@ const PUPIL: usize = WIDTH + 3;
 ///
 /// The image is that of the rays through a lattice of pupil points, D/[`WIDTH`] apart, so that it
 /// repeats with the period of the patch: what the edge cuts off on one side of an image point is
-/// seen again from the other. So it is the image of a surface without an edge, of which even a patch
-/// of 30 speckles would lack some percent of the light. Displacements by whole steps of the lattice
-/// are exact.
+/// seen again from the other. So it is the image of a surface without an edge, of which even a
+/// patch of 30 speckles would lack some percent of the light. Displacements by whole steps of the
+/// lattice are exact.
 struct Bench {
     pupil_diameter: f64,
     to_source: DVec3,
@@ -344,7 +344,8 @@ fn motion_aside_and_along_the_axis_leaves_what_the_law_says() {
     for ((shift, law), measured) in shifts.iter().zip(laws).zip(&measured) {
         assert_agrees(&format!("{shift:?}"), *measured, law.correlation);
     }
-    // Beside its peak less is left: the product of the laws of either motion is that of neither place.
+    // Beside its peak less is left: the product of the laws of either motion is that of neither
+    // place.
     let product = pupil_overlap_correlation(0.2) * axial_correlation(0.65);
     assert_refutes("product at the peak", measured[0], product);
 }

@@ -121,8 +121,8 @@ impl Case {
     }
 }
 
-/// The middle of the image, where no edge of the patch is seen: an edge that moves otherwise than the
-/// speckle would draw the maximum towards itself.
+/// The middle of the image, where no edge of the patch is seen: an edge that moves otherwise than
+/// the speckle would draw the maximum towards itself.
 fn middle(image: &Field) -> Grid<f32> {
     let intensity = image.intensity();
     let first = (SAMPLES - MIDDLE) / 2;

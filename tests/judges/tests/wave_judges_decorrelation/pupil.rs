@@ -34,8 +34,8 @@ fn speckle_moves_across_the_pupil_as_the_law_says() {
     }
     errors.sort_by(f64::total_cmp);
     assert!(errors.len() >= 24, "{} geometries", errors.len());
-    // What remains is the error of the cross-correlation, about a hundredth of a speckle: 1.4 % of the
-    // shortest displacements, and largest in the beams that the surface moves through.
+    // What remains is the error of the cross-correlation, about a hundredth of a speckle: 1.4 % of
+    // the shortest displacements, and largest in the beams that the surface moves through.
     assert!(errors[errors.len() / 2] < 7e-4, "median of\n{report}");
     assert!(errors[errors.len() - 1] < 2e-2, "worst of\n{report}");
 }

@@ -55,7 +55,8 @@ fn exact_calibrations_leave_no_uncertainty() {
 fn parameters_move_heights_as_the_geometry_says() {
     let high = 5e-3 * DVec3::Z;
     for (name, uncertainty, point, expected) in [
-        // The plane moves by δ along y: the sight at 30° to the plane slides by δ / tan 30° in height.
+        // The plane moves by δ along y: the sight at 30° to the plane slides by δ / tan 30° in
+        // height.
         ("plane offset", 1e-6, DVec3::ZERO, 3.0_f64.sqrt() * 1e-6),
         // A pixel of the principal point is pitch / (m sin 30°).
         ("principal point y", 0.1, DVec3::ZERO, 0.1 * 3.45e-6 * 22.0),

@@ -197,8 +197,8 @@ fn errors_are_as_large_as_their_covariance_says() {
         let uncertainty = calibration.step_uncertainty(points, DVec3::Z).unwrap();
         step += ((points[1].z - points[0].z - heights[1] + heights[0]) / uncertainty).powi(2);
     }
-    // χ² of 4 · 24 and of 24 degrees of freedom, each at 5e-4 on either side. The variance is itself
-    // estimated from 380 degrees of freedom, which widens χ² by half a per cent.
+    // χ² of 4 · 24 and of 24 degrees of freedom, each at 5e-4 on either side. The variance is
+    // itself estimated from 380 degrees of freedom, which widens χ² by half a per cent.
     assert!((56.0..150.0).contains(&parameters), "{parameters}");
     for sum in [height[0], height[1], step] {
         assert!((7.3..54.0).contains(&sum), "{height:?}, {step}");

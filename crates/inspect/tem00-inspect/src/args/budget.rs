@@ -6,12 +6,13 @@ use super::SetupArgs;
 
 /// Compute the height uncertainty of a set-up, and find what dominates it.
 ///
-/// The set-up file holds the values of data sheets: laser line, lens, sensor, angle, surface and detector.
-/// The table on standard output is an uncertainty budget after the GUM: for each source its standard
-/// uncertainty by formulas, and beside it the one found by trials with simulated frames.
+/// The set-up file holds the values of data sheets: laser line, lens, sensor, angle, surface and
+/// detector. The table on standard output is an uncertainty budget after the GUM: for each source
+/// its standard uncertainty by formulas, and beside it the one found by trials with simulated
+/// frames.
 ///
-/// A set-up whose line saturates the sensor or is not found, or whose trials trust the line in fewer than
-/// half of the columns, measures nothing: there is no number, and the exit code is 3.
+/// A set-up whose line saturates the sensor or is not found, or whose trials trust the line in
+/// fewer than half of the columns, measures nothing: there is no number, and the exit code is 3.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = BUDGET_EXAMPLES)]
 pub(crate) struct BudgetArgs {

@@ -10,10 +10,11 @@ use super::lines::DetectorArgs;
 
 /// Calibrate camera and laser plane from photographs of a checkerboard and of the line on it.
 ///
-/// The folder holds pairs of images of the same camera, of 8 to 16 bits: `board_01.png` shows a whole
-/// checkerboard in ordinary light, and `line_01.png` the laser line on it in the same pose; .tif, .jpg,
-/// .bmp, .pgm and .ppm are taken, too. Tilt the board by 15° to 30° about different axes and hold it at different heights. The
-/// first board, by name, is the reference: heights are counted from it.
+/// The folder holds pairs of images of the same camera, of 8 to 16 bits: `board_01.png` shows a
+/// whole checkerboard in ordinary light, and `line_01.png` the laser line on it in the same pose;
+/// .tif, .jpg, .bmp, .pgm and .ppm are taken, too. Tilt the board by 15° to 30° about different
+/// axes and hold it at different heights. The first board, by name, is the reference: heights are
+/// counted from it.
 ///
 /// The table on standard output lists what was found and its standard uncertainty.
 #[derive(Args, Debug)]
@@ -35,7 +36,8 @@ pub(crate) struct CalibrateArgs {
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub(crate) pixel_pitch: f64,
 
-    /// The focal length of the lens, as in "25 mm": the start of the fit, and the distance at which the image is sharp.
+    /// The focal length of the lens, as in "25 mm": the start of the fit, and the distance at which
+    /// the image is sharp.
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub(crate) focal_length: Option<f64>,
 

@@ -6,10 +6,11 @@ use super::SetupArgs;
 
 /// Measure artefacts with a set-up, and report the characteristics that buyers of sensors ask for.
 ///
-/// A level flat, tilted flats, a sphere and grooves of falling width are rendered as the set-up sees them, with its
-/// speckle and the noise of its sensor, and evaluated: amplification, linearity, flatness, noise, spatial resolution,
-/// x-y mapping and fidelity in the terms of ISO 25178-600, and probing size, probing form and flat form in those of
-/// ISO 10360-8. The report has the definition of each.
+/// A level flat, tilted flats, a sphere and grooves of falling width are rendered as the set-up
+/// sees them, with its speckle and the noise of its sensor, and evaluated: amplification,
+/// linearity, flatness, noise, spatial resolution, x-y mapping and fidelity in the terms of ISO
+/// 25178-600, and probing size, probing form and flat form in those of ISO 10360-8. The report has
+/// the definition of each.
 #[derive(Args, Debug)]
 #[command(after_help = CHARACTERISE_EXAMPLES)]
 pub(crate) struct CharacteriseArgs {

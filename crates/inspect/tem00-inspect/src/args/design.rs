@@ -7,9 +7,9 @@ use super::SetupArgs;
 /// Search set-ups for the minimum height uncertainty under constraints.
 ///
 /// The section [design] of the set-up file names the parameters to vary, the constraints and the
-/// objective. All combinations are tried; the table on standard output lists the best that keep every
-/// constraint. If there is none, it says which constraint excludes how many and the nearest set-up, no
-/// best.toml is written, and the exit code is 3.
+/// objective. All combinations are tried; the table on standard output lists the best that keep
+/// every constraint. If there is none, it says which constraint excludes how many and the nearest
+/// set-up, no best.toml is written, and the exit code is 3.
 #[derive(Args, Debug)]
 #[command(after_help = DESIGN_EXAMPLES)]
 pub(crate) struct DesignArgs {

@@ -7,12 +7,12 @@ use tem00_triangulation::{DetectorSettings, LineMethod};
 
 /// Find laser lines in images, to a fraction of a pixel.
 ///
-/// The images come from a camera or from this program: grey or in colours. A line runs from
-/// left to right, and has a position in each column (with --rows from top to bottom, and in each row). For every image
-/// there is a table of all points and a picture of the image with the lines drawn on it; the summary
-/// on standard output says how much of each line was found, how much it scatters from column to column
-/// and how wide it is. If no image has a valid point of a line, or most points are on saturated pixels, the
-/// exit code is 3.
+/// The images come from a camera or from this program: grey or in colours. A line runs from left to
+/// right, and has a position in each column (with --rows from top to bottom, and in each row). For
+/// every image there is a table of all points and a picture of the image with the lines drawn on
+/// it; the summary on standard output says how much of each line was found, how much it scatters
+/// from column to column and how wide it is. If no image has a valid point of a line, or most
+/// points are on saturated pixels, the exit code is 3.
 #[derive(Args, Debug)]
 #[command(after_help = LINES_EXAMPLES)]
 pub(crate) struct LinesArgs {
@@ -35,12 +35,14 @@ pub(crate) struct LinesArgs {
     #[arg(long, value_name = "NAME")]
     pub(crate) channel: Option<String>,
 
-    /// The bits of a grey value, where the camera has fewer than the file: 8, 10, 12, 14 or 16. A pixel is
-    /// saturated at their largest value [default: at that of the file, or where the values end in a pile].
+    /// The bits of a grey value, where the camera has fewer than the file: 8, 10, 12, 14 or 16. A
+    /// pixel is saturated at their largest value [default: at that of the file, or where the values
+    /// end in a pile].
     #[arg(long, value_name = "BITS", value_parser = bits)]
     pub(crate) bits: Option<u32>,
 
-    /// A calibration of `tem00-inspect calibrate`: the tables get points in space and their uncertainties.
+    /// A calibration of `tem00-inspect calibrate`: the tables get points in space and their
+    /// uncertainties.
     #[arg(long, value_name = "FILE.json")]
     pub(crate) calibration: Option<PathBuf>,
 
@@ -57,8 +59,8 @@ pub(crate) struct DetectorArgs {
           value_parser = method())]
     method: LineMethod,
 
-    /// The pixels of a column that an estimate looks at, an odd number [default: 31, or what the method
-    /// needs if that is more].
+    /// The pixels of a column that an estimate looks at, an odd number [default: 31, or what the
+    /// method needs if that is more].
     #[arg(long, value_name = "N")]
     window: Option<usize>,
 

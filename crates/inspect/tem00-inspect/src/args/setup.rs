@@ -31,7 +31,8 @@ pub(crate) struct SetupArgs {
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
 
-    /// Threads to work with, 1 to 1024, four for each core at most; the result does not depend on it [default: all].
+    /// Threads to work with, 1 to 1024, four for each core at most; the result does not depend on
+    /// it [default: all].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
 

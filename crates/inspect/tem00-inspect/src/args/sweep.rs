@@ -7,10 +7,11 @@ use tem00_report::args::IndexRange;
 
 /// Run a command over all combinations of some values, here or on many machines.
 ///
-/// The grid file names a command, its file, the keys that vary and the results to keep. Every combination
-/// is a task with a number. A task that is done leaves a row in the folder and is not done again, unless
-/// the file, its options or its values have changed; rows appear whole or not at all, so that tasks may be
-/// shared among machines that share the folder, in any way, and after any stop. The table is the same.
+/// The grid file names a command, its file, the keys that vary and the results to keep. Every
+/// combination is a task with a number. A task that is done leaves a row in the folder and is not
+/// done again, unless the file, its options or its values have changed; rows appear whole or not at
+/// all, so that tasks may be shared among machines that share the folder, in any way, and after any
+/// stop. The table is the same.
 #[derive(Args, Debug)]
 #[command(after_help = SWEEP_EXAMPLES)]
 pub(crate) struct SweepArgs {
@@ -18,8 +19,8 @@ pub(crate) struct SweepArgs {
     #[arg(value_name = "GRID.toml")]
     pub(crate) grid: PathBuf,
 
-    /// The folder for the rows, the table and the files of all tasks, made if it is missing [default:
-    /// out/<name of the grid>].
+    /// The folder for the rows, the table and the files of all tasks, made if it is missing
+    /// [default: out/<name of the grid>].
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
 
@@ -35,7 +36,8 @@ pub(crate) struct SweepArgs {
     #[arg(long)]
     pub(crate) gather: bool,
 
-    /// Threads to work with, 1 to 1024, four for each core at most; the result does not depend on it [default: all].
+    /// Threads to work with, 1 to 1024, four for each core at most; the result does not depend on
+    /// it [default: all].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
 }

@@ -5,13 +5,13 @@ use tem00_cli::SceneArgs;
 
 /// Render what a triangulation sensor sees, and measure the part from it.
 ///
-/// The scene file is that of `tem00 render`, with a section [sensor] and, if the defaults do not fit,
-/// [detector], [calibration] and [scan]. Its first laser draws the line. Every frame is rendered, exposed,
-/// searched for the line and turned into points with their uncertainties; the frames together make a
-/// point cloud and, if there are several, a height map.
+/// The scene file is that of `tem00 render`, with a section [sensor] and, if the defaults do not
+/// fit, [detector], [calibration] and [scan]. Its first laser draws the line. Every frame is
+/// rendered, exposed, searched for the line and turned into points with their uncertainties; the
+/// frames together make a point cloud and, if there are several, a height map.
 ///
-/// If no point of the line is valid, the frames and the report are written, but there is no number, and the
-/// exit code is 3.
+/// If no point of the line is valid, the frames and the report are written, but there is no number,
+/// and the exit code is 3.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = TRIANGULATE_EXAMPLES)]
 pub(crate) struct TriangulateArgs {

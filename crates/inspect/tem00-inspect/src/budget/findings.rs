@@ -33,8 +33,8 @@ pub(super) struct Answer {
     pub(super) budget: Budget,
     /// The result of trials, unless they were left out.
     pub(super) trials: Option<Simulation>,
-    /// The heights that can be measured, and the combined standard uncertainty there, in metres; none where
-    /// no line is found.
+    /// The heights that can be measured, and the combined standard uncertainty there, in metres;
+    /// none where no line is found.
     pub(super) over_range: Vec<(f64, Option<f64>)>,
     /// What is measured with a set-up that is not known exactly.
     pub(super) measured: Option<Measured>,
@@ -100,14 +100,16 @@ impl Answer {
         }))
     }
 
-    /// Returns the combined standard uncertainty that trials found, with the calibration, in metres.
+    /// Returns the combined standard uncertainty that trials found, with the calibration, in
+    /// metres.
     pub(super) fn combined_by_trials(&self) -> Option<f64> {
         let total = self.trials.as_ref()?.total()?.uncertainty;
         let calibration = self.budget.contribution(UncertaintySource::Calibration);
         Some(total.hypot(calibration))
     }
 
-    /// Returns the ratio of the combined standard uncertainty by trials to that by formulas, and its standard error.
+    /// Returns the ratio of the combined standard uncertainty by trials to that by formulas, and
+    /// its standard error.
     pub(super) fn ratio(&self) -> Option<[f64; 2]> {
         let error = self.trials.as_ref()?.total()?.standard_error;
         let by_trials = self.combined_by_trials()?;

@@ -17,8 +17,8 @@ const SAMPLES: u32 = 1 << 15;
 /// The maximum number of trials of the propagation of distributions.
 const MAX_TRIALS: u64 = 2_000_000;
 
-/// Returns whether an uncertainty is not that of another method: whether their ratio, with its standard error, is farther
-/// from 1 than a twentieth and chance.
+/// Returns whether an uncertainty is not that of another method: whether their ratio, with its
+/// standard error, is farther from 1 than a twentieth and chance.
 pub(super) fn differs([ratio, error]: [f64; 2]) -> bool {
     (ratio - 1.0).abs() > 0.05 + 3.3 * error
 }
@@ -129,8 +129,8 @@ impl Measured {
         sources.zip(self.measurement.inputs().as_slice())
     }
 
-    /// Returns the answer of a method; `None` of a virtual experiment that was left out, or whose lines cannot be
-    /// trusted.
+    /// Returns the answer of a method; `None` of a virtual experiment that was left out, or whose
+    /// lines cannot be trusted.
     pub(super) fn answer(&self, method: Quoted) -> Option<MethodAnswer> {
         Some(match method {
             Quoted::FirstOrder => MethodAnswer {
@@ -197,16 +197,16 @@ impl Measured {
         self.propagation.validate(&self.first_order)
     }
 
-    /// Returns the ratio of the uncertainty in the virtual experiment to that by distributions, and its standard
-    /// error.
+    /// Returns the ratio of the uncertainty in the virtual experiment to that by distributions, and
+    /// its standard error.
     pub(super) fn ratio(&self) -> Option<[f64; 2]> {
         let error = self.experiment.as_ref()?.error()?;
         let by_distributions = self.propagation.uncertainty();
         Some([error.uncertainty, error.standard_error].map(|found| found / by_distributions))
     }
 
-    /// Returns the parts of the variance of the height that its inputs make: in the trials of distributions, or by the law of
-    /// propagation where that is quoted or inputs are correlated.
+    /// Returns the parts of the variance of the height that its inputs make: in the trials of
+    /// distributions, or by the law of propagation where that is quoted or inputs are correlated.
     pub(super) fn parts(&self) -> Vec<(MeasurementInput, f64)> {
         let by_trials = self
             .decomposition
@@ -223,8 +223,8 @@ impl Measured {
         sources.zip(parts).collect()
     }
 
-    /// Returns whether the line is so thin that formulas of its noise do not hold, and that noise counts: for a twentieth of
-    /// the variance.
+    /// Returns whether the line is so thin that formulas of its noise do not hold, and that noise
+    /// counts: for a twentieth of the variance.
     pub(super) fn is_thin(&self) -> bool {
         let sources = self.measurement.sources().iter();
         let noise = sources

@@ -128,8 +128,8 @@ fn numbers(report: &mut Report, answer: Option<&Answer>) {
     report.data("over_range", over_range.collect::<Vec<_>>());
 }
 
-/// Returns what trials found, and the combined uncertainty by them; without an uncertainty, how many columns
-/// have no line that can be trusted.
+/// Returns what trials found, and the combined uncertainty by them; without an uncertainty, how
+/// many columns have no line that can be trusted.
 fn trials(findings: &Findings<'_>) -> serde_json::Value {
     let (trials, combined) = match &findings.answer {
         Ok(answer) => (&answer.trials, answer.combined_by_trials()),

@@ -11,7 +11,8 @@ use tem00_triangulation::{Candidate, DesignFigure, Neighbours};
 use super::{plots, report, search::Design};
 use crate::units;
 
-/// Writes all files into the folder, and returns the report and the names of those that one opens first.
+/// Writes all files into the folder, and returns the report and the names of those that one opens
+/// first.
 pub(super) fn write(
     design: &Design<'_>,
     near: &[Neighbours],

@@ -124,8 +124,8 @@ fn over(design: &Design<'_>, sweep: &Sweep) -> Named {
     }
 }
 
-/// Returns the set-ups that differ from the one shown in this parameter alone, in its order; those that
-/// are not possible have no figures.
+/// Returns the set-ups that differ from the one shown in this parameter alone, in its order; those
+/// that are not possible have no figures.
 fn slice<'a>(
     design: &'a Design<'_>,
     parameter: SetupQuantity,
@@ -151,7 +151,8 @@ fn slice<'a>(
     slice
 }
 
-/// Returns the sources that matter: those that are somewhere a hundredth of the combined uncertainty.
+/// Returns the sources that matter: those that are somewhere a hundredth of the combined
+/// uncertainty.
 fn sources(slice: &[(f64, Option<&DesignFigures>)]) -> Vec<UncertaintySource> {
     let possible = || slice.iter().filter_map(|(_, figures)| *figures);
     let Some(first) = possible().next() else {

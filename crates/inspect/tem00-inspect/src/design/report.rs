@@ -117,8 +117,8 @@ fn list(report: &mut Report, design: &Design<'_>) {
     report.section(heading).table(table.under(key));
 }
 
-/// Returns the figures, those of a listing first. What is varied may be one as well, and has its column
-/// already.
+/// Returns the figures, those of a listing first. What is varied may be one as well, and has its
+/// column already.
 fn figures(design: &Design<'_>) -> Vec<DesignFigure> {
     let others = DesignFigure::ALL
         .into_iter()

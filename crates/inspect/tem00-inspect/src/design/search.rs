@@ -51,7 +51,8 @@ impl<'a> Design<'a> {
         self.outcome.best(1).into_iter().next()
     }
 
-    /// Returns the best set-up, or the nearest if none keeps every constraint; `None` if none is possible.
+    /// Returns the best set-up, or the nearest if none keeps every constraint; `None` if none is
+    /// possible.
     pub(super) fn shown(&self) -> Option<&Candidate> {
         self.winner().or_else(|| self.outcome.nearest())
     }

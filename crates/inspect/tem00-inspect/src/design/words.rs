@@ -29,8 +29,8 @@ pub(super) fn verdict(design: &Design<'_>) -> String {
     }
 }
 
-/// Returns what keeps set-ups out: a line for those that are not possible, and one for each constraint
-/// that excludes any.
+/// Returns what keeps set-ups out: a line for those that are not possible, and one for each
+/// constraint that excludes any.
 pub(super) fn hindrances(design: &Design<'_>) -> Vec<String> {
     let exclusions = design.outcome.exclusions().into_iter();
     let some = exclusions.filter(|exclusion| exclusion.excluded > 0);

@@ -20,9 +20,9 @@ pub(super) struct Places<'a> {
 impl Places<'_> {
     /// Writes the points as a table with commas, in the order of the columns and from the top.
     ///
-    /// With a calibration they have their positions in space, in metres, and the standard uncertainties of
-    /// these: of the calibration and of the line's scatter together. Where there is no point or no
-    /// scatter is known, cells are empty.
+    /// With a calibration they have their positions in space, in metres, and the standard
+    /// uncertainties of these: of the calibration and of the line's scatter together. Where there
+    /// is no point or no scatter is known, cells are empty.
     pub(super) fn write(&self, out: &mut impl Write) -> io::Result<()> {
         let along = if self.rows { "row" } else { "column" };
         write!(
@@ -66,8 +66,8 @@ impl Places<'_> {
     }
 }
 
-/// Returns the point of the laser plane at an image point and, if the scatter of the line is known, the
-/// standard uncertainties of its coordinates.
+/// Returns the point of the laser plane at an image point and, if the scatter of the line is known,
+/// the standard uncertainties of its coordinates.
 fn in_space(
     calibration: &Calibration,
     pixel: DVec2,
@@ -109,7 +109,8 @@ mod tests {
     const DISTANCE: f64 = 0.3;
     const ANGLE: f64 = 0.5;
 
-    /// A camera that looks at the origin under an angle from the laser plane y = 0, at magnification 1/11.
+    /// A camera that looks at the origin under an angle from the laser plane y = 0, at
+    /// magnification 1/11.
     fn calibration() -> Calibration {
         let camera = Camera::new(CameraDescription {
             position: DISTANCE * DVec3::new(0.0, -ANGLE.sin(), ANGLE.cos()),
@@ -173,12 +174,14 @@ mod tests {
         assert_eq!(beyond.matches(',').count(), 14, "{beyond}");
         let cells = row(20).split(',').map(|cell| cell.parse().unwrap_or(0.0));
         let cells: Vec<f64> = cells.collect();
-        // Half a column from the middle, and 0.1 rows below it, at the magnification 1/11 to first order.
+        // Half a column from the middle, and 0.1 rows below it, at the magnification 1/11 to first
+        // order.
         let (x, z) = (0.5 * PITCH * 11.0, -0.1 * PITCH * 11.0 / ANGLE.sin());
         let [.., got_x, got_y, got_z, u_x, u_y, u_z] = cells[..] else {
             panic!("{cells:?}")
         };
-        // The second order is z cos θ / L of the first, 2e-5; places have nine digits behind the point.
+        // The second order is z cos θ / L of the first, 2e-5; places have nine digits behind the
+        // point.
         assert!((got_x - x).abs() < 2e-9, "x = {got_x} for {x}");
         assert!((got_z - z).abs() < 2e-9, "z = {got_z} for {z}");
         assert!(got_y.abs() < 1e-9, "in the laser plane: {got_y}");

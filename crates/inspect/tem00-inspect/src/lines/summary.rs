@@ -64,18 +64,20 @@ impl LineSummary {
     }
 }
 
-/// Returns the standard deviation of values about a smooth curve, or `None` if there are no 17 in a row.
+/// Returns the standard deviation of values about a smooth curve, or `None` if there are no 17 in a
+/// row.
 ///
-/// The smooth curve is the least-squares parabola of the 17 values about each. Of noise of the variance
-/// σ² that is independent from value to value, the residual in the middle has the variance σ² (1 − h)
-/// with the weight h of the middle value in the parabola; noise that neighbours share is underestimated.
+/// The smooth curve is the least-squares parabola of the 17 values about each. Of noise of the
+/// variance σ² that is independent from value to value, the residual in the middle has the variance
+/// σ² (1 − h) with the weight h of the middle value in the parabola; noise that neighbours share is
+/// underestimated.
 ///
 /// ```text
 /// w_i = 3 (3m² + 3m − 1 − 5i²) / ((2m − 1) (2m + 1) (2m + 3))     h = w_0, m = 8
 /// ```
 ///
-/// The weights are those of A. Savitzky and M. J. E. Golay, *Smoothing and Differentiation of Data by
-/// Simplified Least Squares Procedures*, 1964.
+/// The weights are those of A. Savitzky and M. J. E. Golay, *Smoothing and Differentiation of Data
+/// by Simplified Least Squares Procedures*, 1964.
 fn noise_about_parabola(values: &[Option<f64>]) -> Option<f64> {
     let weights = parabola_weights();
     let residuals = values.windows(weights.len()).filter_map(|window| {
@@ -224,8 +226,8 @@ mod tests {
             .collect();
         let noise = noise_about_parabola(&values).expect("there are enough");
         let expected = 1.0 / 12.0_f64.sqrt();
-        // Four standard errors: that of a variance of n uniform values is √(0.8 / n) of it, 0.6 %, and a
-        // little more for the neighbours that residuals share.
+        // Four standard errors: that of a variance of n uniform values is √(0.8 / n) of it, 0.6 %,
+        // and a little more for the neighbours that residuals share.
         assert!(
             (noise / expected - 1.0).abs() < 0.015,
             "{noise} for {expected}"

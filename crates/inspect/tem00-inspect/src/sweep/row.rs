@@ -88,8 +88,8 @@ pub(super) fn cell(value: &Value) -> String {
     }
 }
 
-/// Returns text as a cell, in quotation marks where it needs them, that does nothing to a terminal nor, by an
-/// apostrophe in front of a formula, to a spreadsheet.
+/// Returns text as a cell, in quotation marks where it needs them, that does nothing to a terminal
+/// nor, by an apostrophe in front of a formula, to a spreadsheet.
 pub(super) fn quoted(text: &str) -> String {
     let shown = printable(text);
     let apostrophe = if is_formula(&shown) { "'" } else { "" };
@@ -100,7 +100,8 @@ pub(super) fn quoted(text: &str) -> String {
     }
 }
 
-/// Returns whether a spreadsheet would calculate a cell: `=1+1`, but not a number with or without a unit.
+/// Returns whether a spreadsheet would calculate a cell: `=1+1`, but not a number with or without a
+/// unit.
 fn is_formula(text: &str) -> bool {
     let number = text.trim_end_matches(|c: char| c.is_alphabetic() || " °%".contains(c));
     let is_number = |text: &str| text.parse::<f64>().is_ok();

@@ -11,12 +11,14 @@ use tem00_scan::{BoardPlan, Measurement, ScanError};
 
 use super::{files::Files, job::measurement_failure};
 
-/// Returns the measurement with the calibration that the scene asks for: exact, or estimated from boards
-/// that are rendered and photographed with the same sensor. The photographs are written, for `tem00-inspect calibrate`.
+/// Returns the measurement with the calibration that the scene asks for: exact, or estimated from
+/// boards that are rendered and photographed with the same sensor. The photographs are written, for
+/// `tem00-inspect calibrate`.
 ///
 /// # Errors
 ///
-/// Returns a failure if the boards do not give a calibration, a file cannot be written or the user ends it.
+/// Returns a failure if the boards do not give a calibration, a file cannot be written or the user
+/// ends it.
 pub(super) fn calibrated(
     measurement: Measurement,
     settings: &CalibrationSettings,

@@ -161,8 +161,8 @@ impl Drawings<'_> {
         Ok(())
     }
 
-    /// Returns the valid points along the axes of the part in millimetres or, where they do not move on, of
-    /// the image: columns, profiles and millimetres.
+    /// Returns the valid points along the axes of the part in millimetres or, where they do not
+    /// move on, of the image: columns, profiles and millimetres.
     fn points(&self, of_part: bool) -> Vec<[f64; 3]> {
         let axes = self.job.measurement.axes();
         let profiles = self.measured.profiles.iter().enumerate();
@@ -181,8 +181,8 @@ impl Drawings<'_> {
     }
 }
 
-/// Returns the points of a profile, along the line, with one that is not a number where several columns
-/// are missing.
+/// Returns the points of a profile, along the line, with one that is not a number where several
+/// columns are missing.
 fn with_gaps(points: &[[f64; 3]]) -> impl Iterator<Item = [f64; 3]> {
     const GAP: f64 = 4.0;
     let mut steps: Vec<f64> = points

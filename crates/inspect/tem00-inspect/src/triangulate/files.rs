@@ -119,8 +119,8 @@ impl Files {
         self.write("points.pcd", |file| write_pcd(profiles, file))
     }
 
-    /// Writes a map: its heights and their uncertainties in metres, all its images in 16 bits, and a file of
-    /// surface metrology where its cells have a size.
+    /// Writes a map: its heights and their uncertainties in metres, all its images in 16 bits, and
+    /// a file of surface metrology where its cells have a size.
     ///
     /// One that is not there, or has nothing but holes, leaves none of an earlier run.
     pub(super) fn write_height_map(&self, map: Option<&HeightMap>) -> Result<(), Failure> {
@@ -233,8 +233,8 @@ fn row(point: &MeasuredPoint, height: DVec3) -> String {
     )
 }
 
-/// Returns what the columns and rows of a map are, in metres where they are lengths: the ranges along
-/// both.
+/// Returns what the columns and rows of a map are, in metres where they are lengths: the ranges
+/// along both.
 pub(super) fn ranges(map: &HeightMap) -> [(f64, f64); 2] {
     let [columns, rows] = [map.heights.width(), map.heights.height()].map(|cells| cells as f64);
     match map.raster {

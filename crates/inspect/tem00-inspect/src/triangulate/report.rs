@@ -136,8 +136,8 @@ fn height_map(
             "holes",
             PERCENT.with_digits(3).quantity(map.holes()),
         )
-        // The lower edges of the first cell along the line and along the scan, and the side of a cell; none
-        // for columns and profiles.
+        // The lower edges of the first cell along the line and along the scan, and the side of a
+        // cell; none for columns and profiles.
         .data("origin", origin)
         .data("pitch", pitch)
         .data("images", images);
@@ -219,8 +219,8 @@ fn average(job: &Job<'_>, measured: &Measured) -> Cell {
     )
 }
 
-/// The speckle size in the middle of the image, along rows and columns, and what becomes of speckle from a
-/// frame to the next.
+/// The speckle size in the middle of the image, along rows and columns, and what becomes of speckle
+/// from a frame to the next.
 fn speckle(job: &Job<'_>, measured: &Measured) -> Cell {
     if job.args.common.no_speckle {
         return Cell::missing("left out, as asked");

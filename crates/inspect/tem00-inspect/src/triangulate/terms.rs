@@ -52,7 +52,8 @@ pub(super) struct Terms {
     pub(super) combined: f64,
     /// The expanded uncertainty of a height for a level of confidence of 95 %, in metres.
     pub(super) expanded: f64,
-    /// The median of the points' own expanded uncertainties, and the value that 95 % of them do not exceed.
+    /// The median of the points' own expanded uncertainties, and the value that 95 % of them do not
+    /// exceed.
     pub(super) quantiles: [f64; 2],
 }
 
@@ -81,7 +82,8 @@ const OF_POSITION: [(Option<UncertaintySource>, Variance); 7] = [
 const MUCH: f64 = 0.1;
 
 impl Terms {
-    /// Sums up the terms of all valid points for heights along a direction; `None` if there is none.
+    /// Sums up the terms of all valid points for heights along a direction; `None` if there is
+    /// none.
     pub(super) fn of(profiles: &[Vec<MeasuredPoint>], height: DVec3) -> Option<Self> {
         let all = || profiles.iter().flatten().filter(|point| point.is_valid());
         let found = all().count();
@@ -204,7 +206,8 @@ impl Terms {
     }
 }
 
-/// Returns the least value that so large a part of some does not exceed. They ascend, and there is one at least.
+/// Returns the least value that so large a part of some does not exceed. They ascend, and there is
+/// one at least.
 fn quantile(ascending: &[f64], part: f64) -> f64 {
     let rank = to_usize((part * ascending.len() as f64).ceil());
     ascending[rank.clamp(1, ascending.len()) - 1]

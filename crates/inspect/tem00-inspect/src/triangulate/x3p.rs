@@ -1,4 +1,5 @@
-//! Height maps as X3P (ISO 25178-72): a ZIP archive of a description in XML and the heights in metres.
+//! Height maps as X3P (ISO 25178-72): a ZIP archive of a description in XML and the heights in
+//! metres.
 
 use std::io::{self, Write};
 
@@ -15,10 +16,11 @@ pub(super) struct Lattice {
     pub(super) pitch: f64,
 }
 
-/// Returns the archive of a surface, whose points are the middles of the cells; NaN is a point that was not
-/// measured.
+/// Returns the archive of a surface, whose points are the middles of the cells; NaN is a point that
+/// was not measured.
 ///
-/// The optional record of dates and instruments is left out, so that the same map has the same bytes.
+/// The optional record of dates and instruments is left out, so that the same map has the same
+/// bytes.
 pub(super) fn x3p(heights: &Grid<f32>, lattice: Lattice) -> io::Result<Vec<u8>> {
     let points: Vec<u8> = heights
         .values()

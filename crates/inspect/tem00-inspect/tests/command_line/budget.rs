@@ -100,8 +100,8 @@ fn a_page_has_name_day_checksum_and_every_input_and_the_json_no_day() {
 
 #[test]
 fn a_set_up_that_measures_nothing_has_no_uncertainty() {
-    // A line that saturates; and in the last case the mean of the brightest pixel fills 93 % of the range, and so wide a line has
-    // several grains in a column.
+    // A line that saturates; and in the last case the mean of the brightest pixel fills 93 % of the
+    // range, and so wide a line has several grains in a column.
     for [options, why] in tem00_testkit::rows(
         "--trials 10 --set 'sensor.exposure=1 s' => the line saturates the sensor
         --trials 0 --set 'laser.power=5 W' => lower the exposure
@@ -261,8 +261,8 @@ fn few_readings_are_quoted_with_the_factor_of_students_t() {
     ));
     let found = &record["measurement"];
     assert_eq!(found["quoted"], "first_order", "{found}");
-    // The 0.975 quantile of t for 4, the offset and cot 30°. Noise adds 4 µm to 173 in quadrature, 0.03 %; ends of the
-    // trials are known to a fifth of 50 µm.
+    // The 0.975 quantile of t for 4, the offset and cot 30°. Noise adds 4 µm to 173 in quadrature,
+    // 0.03 %; ends of the trials are known to a fifth of 50 µm.
     let half = 2.776_445 * 1e-4 * 3_f64.sqrt();
     for (index, tolerance) in [(0, 0.002), (1, 0.02)] {
         let [low, high] = ["low", "high"].map(|end| number(&found["answers"][index][end]));

@@ -128,7 +128,8 @@ fn what_a_search_finds_best_has_good_light_in_its_budget() {
         let told = said(folder.path(), &line, 0).out;
         assert_has(&told, &["in the brightest pixel: good\n"]);
         assert!(!told.contains("The light is not right"), "{told}");
-        // The frames of the trials are drawn and exposed: few columns lose their line to bright grains.
+        // The frames of the trials are drawn and exposed: few columns lose their line to bright
+        // grains.
         let record = json(&read(&folder.path().join(name).join("budget.json")));
         assert!(number(&record["trials"]["invalid"]) < 0.1, "{record}");
         let best = read(&folder.path().join(format!("out/{name}/best.toml")));

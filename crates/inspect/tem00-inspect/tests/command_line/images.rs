@@ -24,7 +24,8 @@ pub(super) fn write_line(path: &Path) {
     write_grey(path, |x, y| rounded(4_000.0 * line(x, y)));
 }
 
-/// Finds the lines of `a.png`, checks the numbers of its points and of valid ones, and returns what was said.
+/// Finds the lines of `a.png`, checks the numbers of its points and of valid ones, and returns what
+/// was said.
 #[track_caller]
 fn found(folder: &Path, options: &str, code: i32, valid: usize) -> Said {
     let said = said(folder, &format!("lines a.png -o f {options}"), code);
@@ -40,8 +41,8 @@ fn found(folder: &Path, options: &str, code: i32, valid: usize) -> Said {
 fn saturation_of_lines_is_one_judgement_whatever_the_bits_and_where_they_lie() {
     let folder = folder();
     let file = folder.path().join("a.png");
-    // The largest value and the step of two values: 10, 12 and 14 bits, in the lower and the upper bits of a word, and
-    // values clipped by what a camera computes.
+    // The largest value and the step of two values: 10, 12 and 14 bits, in the lower and the upper
+    // bits of a word, and values clipped by what a camera computes.
     for (largest, step) in [
         (4_095, 1),
         (1_023, 1),

@@ -13,8 +13,8 @@ fn place(x: usize) -> f64 {
     24.0 + 3.0 * (2.0 * PI * x as f64 / 60.0).sin()
 }
 
-/// The grey value in the middle of a pixel, as far from the line as told: a line of 8 pixels full width and
-/// 3000 DN over 100 DN.
+/// The grey value in the middle of a pixel, as far from the line as told: a line of 8 pixels full
+/// width and 3000 DN over 100 DN.
 fn grey(from_middle: f64) -> u16 {
     rounded(100.0 + 3_000.0 * (-2.0 * (from_middle / 4.0).powi(2)).exp())
 }
@@ -59,8 +59,8 @@ fn lines_are_found_in_a_frame() {
     assert_eq!(points.len(), SIZE[0], "a point in each column");
     for (x, point) in points.iter().enumerate() {
         let y: f64 = point[2].parse().expect("a number");
-        // The window of 31 pixels cuts nothing off; grey values are rounded by ½ DN of 3000 at lever
-        // arms of up to 15 pixels: (15 · 0.5 · 31 / √3) / (3000 · 5) at the very most.
+        // The window of 31 pixels cuts nothing off; grey values are rounded by ½ DN of 3000 at
+        // lever arms of up to 15 pixels: (15 · 0.5 · 31 / √3) / (3000 · 5) at the very most.
         assert!((y - place(x)).abs() < 9e-3, "column {x}: {y}");
         let known = (&*point[0], &*point[7], &*point[8]);
         assert_eq!(known, (&*x.to_string(), "1", ""));

@@ -38,7 +38,8 @@ fn what_cannot_be_is_refused_in_words_and_leaves_no_file() {
         images::write_line(&folder.join("frame.png"));
         fs::create_dir(folder.join("folder")).expect("made");
     });
-    // The folder of lines is made before a frame is read, and a map is refused once its points are known.
+    // The folder of lines is made before a frame is read, and a map is refused once its points are
+    // known.
     assert_eq!(files(&folder.path().join("out")), ["lines", "scan"]);
     assert!(files(&folder.path().join("out/lines")).is_empty());
 }

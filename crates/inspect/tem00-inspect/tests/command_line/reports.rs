@@ -35,7 +35,8 @@ fn curves(svg: &str, colour: &str) -> Vec<Vec<[f64; 2]>> {
     points.collect()
 }
 
-/// Adds the words that legends give to colours: after each text without a mark of its own comes that mark.
+/// Adds the words that legends give to colours: after each text without a mark of its own comes
+/// that mark.
 fn legend(svg: &str, meanings: &mut BTreeMap<String, BTreeSet<String>>) {
     for text in svg.split("<text ").skip(1) {
         let Some((label, rest)) = text.split_once("</text>") else {

@@ -161,8 +161,8 @@ fn only_values_that_are_refused_leave_a_row() {
     let folder = with_grid(GRID);
     let path = folder.path();
     let rows = || files(&path.join("out/rows")).len();
-    // What another process leaves or has: a folder that is taken, one through which nothing is written, a file that is
-    // not there.
+    // What another process leaves or has: a folder that is taken, one through which nothing is
+    // written, a file that is not there.
     let taken = path.join("out/tasks/000001");
     fs::create_dir_all(path.join("out/tasks")).expect("made");
     fs::write(&taken, "").expect("written");

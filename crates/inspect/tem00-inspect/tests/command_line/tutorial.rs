@@ -1,11 +1,12 @@
-//! The commands of `docs/tutorial.md` and `docs/certificate.md` do what they say, some on smaller set-ups and scenes.
+//! The commands of `docs/tutorial.md` and `docs/certificate.md` do what they say, some on smaller
+//! set-ups and scenes.
 
 use std::{fs, path::PathBuf};
 
 use super::*;
 
-/// Options that make commands smaller, so that they take seconds: the beginning of a command, and what it gets. The middle of
-/// a line has the noise of all of it.
+/// Options that make commands smaller, so that they take seconds: the beginning of a command, and
+/// what it gets. The middle of a line has the noise of all of it.
 const SMALLER: &str = "
     budget => --trials 20
     design => --set design.vary.f_number.steps=2 --set design.vary.exposure.steps=2 \
@@ -118,8 +119,8 @@ fn figures(page: &str, command: &str, name: &str) -> Vec<f64> {
 /// The names of the rows of a budget begin so.
 const ROWS: &str = "speckle |shot|dark|quant|PRNU|DSNU|detector b|calib|combined";
 
-/// Checks that each line of results is a line of what was printed, perhaps without some columns. The last
-/// two columns of a budget are by trials, which take longer than a test should.
+/// Checks that each line of results is a line of what was printed, perhaps without some columns.
+/// The last two columns of a budget are by trials, which take longer than a test should.
 fn check_results(quoted: &[&str], printed: &str) {
     let by_trials = quoted.iter().any(|line| line.contains("± (µm)"));
     for line in quoted {

@@ -20,9 +20,9 @@ const BRIGHTER: f64 = 1e-3;
 const AIM: f64 = 0.7;
 
 impl BoardPlan {
-    /// Renders the images of a board, as a camera gives them: under a white light, and in that of the
-    /// laser, with its speckle. Each is exposed so that a thousandth of its pixels exceeds 70 % of the
-    /// full scale.
+    /// Renders the images of a board, as a camera gives them: under a white light, and in that of
+    /// the laser, with its speckle. Each is exposed so that a thousandth of its pixels exceeds 70 %
+    /// of the full scale.
     ///
     /// # Errors
     ///
@@ -64,8 +64,8 @@ impl BoardPlan {
     ///
     /// # Errors
     ///
-    /// Returns an error if an image cannot be rendered, does not show its board, or leaves the calibration
-    /// open, or if `cancel` was set.
+    /// Returns an error if an image cannot be rendered, does not show its board, or leaves the
+    /// calibration open, or if `cancel` was set.
     pub fn calibrate(
         &self,
         sensor: &Sensor,
@@ -80,12 +80,12 @@ impl BoardPlan {
         self.calibration(&frames, detector)
     }
 
-    /// Calibrates with the images of all boards, in the order of the poses, as with photographs: corners and
-    /// lines are found in the raw frames. Camera and laser plane are those of the scene, to the errors of
-    /// that.
+    /// Calibrates with the images of all boards, in the order of the poses, as with photographs:
+    /// corners and lines are found in the raw frames. Camera and laser plane are those of the
+    /// scene, to the errors of that.
     ///
-    /// The tilt of the sensor is sought where the camera of the scene has one, and as many coefficients of
-    /// distortion as it has.
+    /// The tilt of the sensor is sought where the camera of the scene has one, and as many
+    /// coefficients of distortion as it has.
     ///
     /// # Errors
     ///
@@ -123,8 +123,8 @@ impl BoardPlan {
     }
 }
 
-/// Estimates camera and laser plane of a scene from rendered images of boards, in the coordinates of the
-/// scene; see [`BoardPlan`].
+/// Estimates camera and laser plane of a scene from rendered images of boards, in the coordinates
+/// of the scene; see [`BoardPlan`].
 ///
 /// # Errors
 ///

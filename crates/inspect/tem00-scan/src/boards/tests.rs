@@ -80,9 +80,10 @@ fn rendered_corners_are_found_where_they_are_projected() {
             assert!(distance < 0.19, "board {i}: {found} instead of {expected}");
         }
     }
-    // Sampling noise: the pixels on the edges scatter by √(1/6 / 16) of the contrast. By a saddle of the
-    // curvature 1 / (π σ²) a position scatters by its square times √π / (8 σ): 0.033 pixel per axis for a
-    // smoothing of 2 pixels. With 140 coordinates the root mean square is 25 % more with 1e-5.
+    // Sampling noise: the pixels on the edges scatter by √(1/6 / 16) of the contrast. By a saddle
+    // of the curvature 1 / (π σ²) a position scatters by its square times √π / (8 σ): 0.033 pixel
+    // per axis for a smoothing of 2 pixels. With 140 coordinates the root mean square is 25 % more
+    // with 1e-5.
     let rms = (sum / (2.0 * 35.0)).sqrt();
     assert!(rms < 0.06, "{rms}");
 }
@@ -130,8 +131,9 @@ fn stage() -> Stage {
 
 #[test]
 fn boards_shift_until_the_line_is_off_their_middle_or_by_a_tenth_of_the_distance() {
-    // A board leans by half of the angle between view and laser plane. A shift s moves its middle from the plane by
-    // s sin of that angle, and the line on it by so much over the cosine of the half.
+    // A board leans by half of the angle between view and laser plane. A shift s moves its middle
+    // from the plane by s sin of that angle, and the line on it by so much over the cosine of the
+    // half.
     let angle = 125_f64.atan2(216.5);
     let by_line = 0.3 * 20e-3 * (0.5 * angle).cos() / angle.sin();
     for (square, expected) in [(5e-3, by_line), (20e-3, 0.1 * 0.125_f64.hypot(0.2165))] {
@@ -148,7 +150,8 @@ fn a_board_is_seen_if_four_pixels_are_left_beside_its_squares() {
     // Across the axis, in the plane in focus, where a pixel is 16 µm (L − f) / f wide.
     let focus = stage.camera.position() - 0.25 * axes.z_axis;
     let pixel = 16e-6 * 242.0 / 8.0;
-    // Half of the image less half of the 8 × 6 squares, which are turned so that one corner leads on each side.
+    // Half of the image less half of the 8 × 6 squares, which are turned so that one corner leads
+    // on each side.
     let turn = 0.2_f64;
     let (right, up) = (
         120.0 * pixel - 20e-3 * turn.cos() - 15e-3 * turn.sin(),

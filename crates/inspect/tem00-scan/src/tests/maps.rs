@@ -63,8 +63,8 @@ fn a_map_of_the_part_has_square_cells() {
     );
 }
 
-/// Profiles that are a whole number of parts of a pitch apart fall into rows evenly, wherever the part
-/// stands and however their places were rounded.
+/// Profiles that are a whole number of parts of a pitch apart fall into rows evenly, wherever the
+/// part stands and however their places were rounded.
 #[test]
 fn rows_of_a_map_have_equally_many_profiles() {
     let axes = [DVec3::X, DVec3::Y, DVec3::Z];

@@ -44,7 +44,8 @@ impl NoiseFreeColumn {
         }
     }
 
-    /// Returns the light of the column, all of it speckled, for a position with these sensitivities.
+    /// Returns the light of the column, all of it speckled, for a position with these
+    /// sensitivities.
     fn light<'a>(&'a self, sensitivities: &'a [f64]) -> ColumnLight<'a> {
         ColumnLight {
             electrons: &self.electrons,
@@ -93,8 +94,8 @@ pub(super) fn brightest(points: Vec<LinePoint>) -> Option<LinePoint> {
         .reduce(|best, next| if next.peak > best.peak { next } else { best })
 }
 
-/// Returns the number of rows that a column needs: the line, the window wherever the line is, and as
-/// much again for the background; but no more than the image has.
+/// Returns the number of rows that a column needs: the line, the window wherever the line is, and
+/// as much again for the background; but no more than the image has.
 pub(super) fn rows(description: &SetupDescription, line: &ImagedLine) -> usize {
     let [_, height] = description.camera.resolution;
     let wide = to_usize((3.0 * line.width).ceil());
@@ -104,8 +105,8 @@ pub(super) fn rows(description: &SetupDescription, line: &ImagedLine) -> usize {
 
 /// Returns all terms of the budget of a line, or `None` if the detector finds none.
 ///
-/// `law` is the standard deviation, in pixels, that speckle gives the centre of gravity of all light in the columns that are averaged, before
-/// the linewidth counts.
+/// `law` is the standard deviation, in pixels, that speckle gives the centre of gravity of all
+/// light in the columns that are averaged, before the linewidth counts.
 pub(super) fn terms(setup: &Setup, line: &ImagedLine, law: f64) -> Option<Vec<BudgetTerm>> {
     let profile = ColumnProfile::new(setup, line);
     let noise = position_noise(setup, line, (&profile, law))?;
@@ -144,8 +145,8 @@ pub(super) fn terms(setup: &Setup, line: &ImagedLine, law: f64) -> Option<Vec<Bu
 
 /// Returns the variances of the position of the line after all averages, in square pixels.
 ///
-/// A speckle pattern times the image of the line tells how detector and window weigh the light; how much speckle moves all
-/// of it is the law of a line that a lens images.
+/// A speckle pattern times the image of the line tells how detector and window weigh the light; how
+/// much speckle moves all of it is the law of a line that a lens images.
 fn position_noise(
     setup: &Setup,
     line: &ImagedLine,
@@ -199,12 +200,14 @@ fn averaged(d: &SetupDescription, noise: PositionNoise) -> PositionNoise {
     noise.with(counts, |variance, count| variance / count)
 }
 
-/// Returns the autocovariance of speckle in the mean of the columns that are averaged, of the first 4000 speckles of them.
+/// Returns the autocovariance of speckle in the mean of the columns that are averaged, of the first
+/// 4000 speckles of them.
 fn autocovariance(d: &SetupDescription, line: &ImagedLine) -> Option<PixelAutocovariance> {
     let [along, across] = line.speckle_size;
     let side = line.sensitive_height;
     let most = |size: f64| to_usize((LONGEST * size).floor().max(1.0));
-    // Farther apart, both see little light or hardly the same speckle: 10⁻³ of its variance or less.
+    // Farther apart, both see little light or hardly the same speckle: 10⁻³ of its variance or
+    // less.
     let reach = to_usize((2.5 * line.width).ceil()) + 2;
     PixelAutocovariance::new(&PixelColumn {
         size: [side / along, side / across],

@@ -25,8 +25,8 @@ const COLUMNS: usize = 128;
 /// Options of the simulation of a set-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SimulationOptions {
-    /// The number of trials, at least 10: each has a position of the line within a pixel, speckle and a
-    /// camera of its own, and as many frames as are averaged.
+    /// The number of trials, at least 10: each has a position of the line within a pixel, speckle
+    /// and a camera of its own, and as many frames as are averaged.
     pub trials: u32,
     /// The seed of everything random.
     pub seed: u64,
@@ -62,8 +62,8 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// The largest fraction of columns without a line that can be trusted from which an uncertainty is still
-    /// estimated: those that are left are the dark half of the speckle.
+    /// The largest fraction of columns without a line that can be trusted from which an uncertainty
+    /// is still estimated: those that are left are the dark half of the speckle.
     pub const MAX_INVALID: f64 = 0.5;
 
     /// Returns the options of the simulation.
@@ -71,29 +71,31 @@ impl Simulation {
         self.options
     }
 
-    /// Returns the standard uncertainty by one source alone, or `None` for the calibration, which is
-    /// not simulated, and where fewer than half of the columns have a line that can be trusted.
+    /// Returns the standard uncertainty by one source alone, or `None` for the calibration, which
+    /// is not simulated, and where fewer than half of the columns have a line that can be trusted.
     pub fn term(&self, source: UncertaintySource) -> Option<MonteCarloEstimate> {
         let found = self.terms.iter().find(|(of, _)| *of == source);
         found.and_then(|(_, estimate)| *estimate)
     }
 
-    /// Returns the standard uncertainty by everything at once but the calibration, or `None` where fewer
-    /// than half of the columns have a line that can be trusted.
+    /// Returns the standard uncertainty by everything at once but the calibration, or `None` where
+    /// fewer than half of the columns have a line that can be trusted.
     pub const fn total(&self) -> Option<MonteCarloEstimate> {
         self.total
     }
 
-    /// Returns the expanded uncertainty of the height for a coverage of 95 %, in metres, by everything at once with a
-    /// normal calibration: that many of the errors are no larger. `None` as for the total.
+    /// Returns the expanded uncertainty of the height for a coverage of 95 %, in metres, by
+    /// everything at once with a normal calibration: that many of the errors are no larger. `None`
+    /// as for the total.
     ///
-    /// Errors of lines of few speckles are not normal: 1.96 standard uncertainties hold 94 to 97 % of them.
+    /// Errors of lines of few speckles are not normal: 1.96 standard uncertainties hold 94 to 97 %
+    /// of them.
     pub const fn expanded(&self) -> Option<f64> {
         self.expanded
     }
 
-    /// Returns the fraction of the columns of all frames in which the detector found no line that can be
-    /// trusted, from 0 to 1.
+    /// Returns the fraction of the columns of all frames in which the detector found no line that
+    /// can be trusted, from 0 to 1.
     pub const fn invalid(&self) -> f64 {
         self.invalid
     }
@@ -103,15 +105,16 @@ impl Simulation {
 struct Trial {
     /// Source by source; the last is everything at once.
     outcomes: [Outcome; SIMULATED + 1],
-    /// The errors of heights by everything at once and the calibration, without their signs, in metres.
+    /// The errors of heights by everything at once and the calibration, without their signs, in
+    /// metres.
     errors: Vec<f64>,
 }
 
 /// Result of a trial with the noise of one source, or of all.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Outcome {
-    /// The mean square deviation, in square pixels, or square metres of heights; `None` without a line that can
-    /// be trusted.
+    /// The mean square deviation, in square pixels, or square metres of heights; `None` without a
+    /// line that can be trusted.
     pub(crate) square: Option<f64>,
     /// The fraction of the columns without one.
     pub(crate) invalid: f64,
@@ -120,21 +123,21 @@ pub(crate) struct Outcome {
 /// The number of the sources that are simulated: all but the last, the calibration.
 const SIMULATED: usize = UncertaintySource::ALL.len() - 1;
 
-/// Finds the uncertainty of a height at the reference plane by trials: frames with speckle, exposed by
-/// the sensor, in which the detector finds the line; and frames with one source of noise alone.
+/// Finds the uncertainty of a height at the reference plane by trials: frames with speckle, exposed
+/// by the sensor, in which the detector finds the line; and frames with one source of noise alone.
 ///
-/// Errors of a single source are counted from the position without noise, those of all at once from the
-/// true position. Columns without a trusted line are left out and [counted](Simulation::invalid); where that
-/// are more than half, there is no estimate.
-/// `progress` is told the number of trials that are done; setting `cancel` ends the work.
+/// Errors of a single source are counted from the position without noise, those of all at once from
+/// the true position. Columns without a trusted line are left out and
+/// [counted](Simulation::invalid); where that are more than half, there is no estimate. `progress`
+/// is told the number of trials that are done; setting `cancel` ends the work.
 ///
 /// The same seed gives the same bits for any number of threads.
 ///
 /// # Errors
 ///
-/// Returns an error if there are fewer than 10 trials or more than 10⁶, if the detector finds no line
-/// even without noise, if averages are so large that their pattern has more than 2²⁵ samples, or if the
-/// work was cancelled.
+/// Returns an error if there are fewer than 10 trials or more than 10⁶, if the detector finds no
+/// line even without noise, if averages are so large that their pattern has more than 2²⁵ samples,
+/// or if the work was cancelled.
 pub fn simulate(
     setup: &Setup,
     options: SimulationOptions,
@@ -246,8 +249,9 @@ impl<'a> Simulator<'a> {
         })
     }
 
-    /// Returns how far the positions that are found in exposed frames are from the true one, averaged over
-    /// columns and frames, in pixels, and the fraction of the columns without a line that can be trusted.
+    /// Returns how far the positions that are found in exposed frames are from the true one,
+    /// averaged over columns and frames, in pixels, and the fraction of the columns without a line
+    /// that can be trusted.
     pub(crate) fn deviations(&self, seed: u64) -> Result<(Vec<f64>, f64), TriangulationError> {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let frames = self.frames(phase(&mut random), random.next_u64());
@@ -343,8 +347,8 @@ fn positions(detector: &LineDetector, frames: &[Grid<f32>]) -> Positions {
     Positions(frames.iter().map(of_frame).collect())
 }
 
-/// Returns the mean square of deviations, each averaged over a group of columns and all frames; without any there is
-/// no line that can be trusted.
+/// Returns the mean square of deviations, each averaged over a group of columns and all frames;
+/// without any there is no line that can be trusted.
 fn outcome_of(deviations: &[f64], invalid: f64) -> Outcome {
     let sum: f64 = deviations.iter().map(|deviation| deviation.powi(2)).sum();
     Outcome {

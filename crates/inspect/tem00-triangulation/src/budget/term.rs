@@ -16,7 +16,8 @@ named! {
         Prnu = "PRNU",
         /// The different dark signal of the pixels.
         Dsnu = "DSNU",
-        /// The systematic error of the detector, which varies with the position of the line in a pixel.
+        /// The systematic error of the detector, which varies with the position of the line in a
+        /// pixel.
         DetectorBias = "detector bias",
         /// The calibration of camera and laser plane.
         Calibration = "calibration",
@@ -76,8 +77,8 @@ pub struct BudgetTerm {
     pub evaluation: Evaluation,
     /// The distribution of the error.
     pub distribution: ErrorDistribution,
-    /// The standard uncertainty of the input quantity after all averages: of the position of the line, in
-    /// pixels, or of a height, in metres, for the calibration.
+    /// The standard uncertainty of the input quantity after all averages: of the position of the
+    /// line, in pixels, or of a height, in metres, for the calibration.
     pub uncertainty: f64,
     /// The change of the height with the input quantity: in metres per pixel, or 1.
     pub sensitivity: f64,

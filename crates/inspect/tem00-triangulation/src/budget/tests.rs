@@ -22,14 +22,14 @@ fn position(budget: &Budget, source: Source) -> f64 {
     found.unwrap().uncertainty
 }
 
-/// The mean over the position of the line in a pixel of Σ (yᵢ − ŷ)² over a window of 2 n + 1 pixels about
-/// the pixel of the line: its own second moment, and the mean square of the position.
+/// The mean over the position of the line in a pixel of Σ (yᵢ − ŷ)² over a window of 2 n + 1 pixels
+/// about the pixel of the line: its own second moment, and the mean square of the position.
 fn squares_of_window(n: f64) -> f64 {
     n * (n + 1.0) * (2.0 * n + 1.0) / 3.0 + (2.0 * n + 1.0) / 12.0
 }
 
-/// The second moment along one axis of the part of an Airy pattern within `reach` of its middle, all in
-/// units of the speckle size: ∫ A(r) r³ k(r) dr, k being what the angles leave of ∫ sin² dφ.
+/// The second moment along one axis of the part of an Airy pattern within `reach` of its middle,
+/// all in units of the speckle size: ∫ A(r) r³ k(r) dr, k being what the angles leave of ∫ sin² dφ.
 fn second_moment_of_airy(reach: f64) -> f64 {
     const STEP: f64 = 0.02;
     let term = |i: u32| {
@@ -58,14 +58,15 @@ fn counted_light(setup: &Setup) -> f64 {
 fn shot_noise_of_a_centre_of_gravity_is_the_bound_and_that_of_the_wings() {
     let setup = setup_of(|_| ());
     let (line, budget) = (setup.line(), Budget::new(&setup).unwrap());
-    // σ² = (W²/16 + 1/12 + σ_A²)/N: a pixel widens a line of the variance W²/16 by its own 1/12, and the lens
-    // by what is in the window of the Airy pattern.
+    // σ² = (W²/16 + 1/12 + σ_A²)/N: a pixel widens a line of the variance W²/16 by its own 1/12,
+    // and the lens by what is in the window of the Airy pattern.
     let h = line.speckle_size[1];
     let lens = h * h * second_moment_of_airy(15.5 / h);
     let variance = line.projected_thickness.powi(2) / 16.0 + 1.0 / 12.0 + lens;
     let bound = (variance / line.column_electrons).sqrt() / counted_light(&setup);
-    // The background is that of 25 pixels away to a fifth, 1e−3 of the light in the window; the window that
-    // follows the noise adds the ends' 1 % of a motion that is no larger than that of the position.
+    // The background is that of 25 pixels away to a fifth, 1e−3 of the light in the window; the
+    // window that follows the noise adds the ends' 1 % of a motion that is no larger than that of
+    // the position.
     assert_relative(position(&budget, Source::ShotNoise), bound, 1.5e-2);
 }
 
@@ -87,8 +88,8 @@ fn noise_of_pixels_counts_by_their_distance_to_the_line() {
         // The background, found from 47 pixels, adds (31²/12)(31²/47)/(31 · 31²/12) · … ≤ 2 · 10⁻³.
         assert_relative(position(&budget, source), electrons * arm, 3e-3);
     }
-    // s² Σ n² y²/N² = s² σ/(4 √π) for a Gaussian of the standard deviation σ, here of a line that is
-    // wide enough for its pixels to be points, of which the wings take 1 % of the light.
+    // s² Σ n² y²/N² = s² σ/(4 √π) for a Gaussian of the standard deviation σ, here of a line that
+    // is wide enough for its pixels to be points, of which the wings take 1 % of the light.
     let wide = setup_of(|d| {
         d.laser.line_thickness = 0.6e-3;
         d.detector.window = 61;
@@ -112,8 +113,8 @@ fn speckle_of_a_wide_centre_of_gravity_is_that_of_all_light_of_a_line_that_a_len
         for height in [0.0, 6e-3] {
             let budget = Budget::at_height(&setup, height).unwrap();
             let found = budget.contribution(Source::Speckle);
-            // Eleven speckles to each side leave 1 % of the light and a fifth of the moments of what is farther
-            // out; the window follows the crest, by another per cent.
+            // Eleven speckles to each side leave 1 % of the light and a fifth of the moments of
+            // what is farther out; the window follows the crest, by another per cent.
             assert_relative(found, budget.line_law(), 2.5e-2);
         }
     }
@@ -233,8 +234,8 @@ fn closed_forms_stand_beside_the_budget() {
     assert_relative(budget.line_law(), law, 0.01);
 }
 
-/// Returns the fraction of columns in which a pixel is saturated, in frames that are drawn without a
-/// detector: speckle, and no noise.
+/// Returns the fraction of columns in which a pixel is saturated, in frames that are drawn without
+/// a detector: speckle, and no noise.
 pub(crate) fn clipped_columns(setup: &Setup) -> f64 {
     let size = [128, 47];
     let image = LineImage::of_setup(setup, size).unwrap();

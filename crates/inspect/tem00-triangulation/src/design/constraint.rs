@@ -29,7 +29,8 @@ macro_rules! figures {
                 }
             }
 
-            /// Returns true if more of it is better: such a figure is bounded from below, others from above.
+            /// Returns true if more of it is better: such a figure is bounded from below, others
+            /// from above.
             pub const fn is_gain(self) -> bool {
                 match self {
                     $(Self::$figure => $gain,)+
@@ -79,13 +80,13 @@ pub struct Constraint {
     pub bound: f64,
 }
 
-/// The part of what the sensor can hold that the mean of the brightest pixel may fill: it leaves room for
-/// noise where there is hardly any speckle.
+/// The part of what the sensor can hold that the mean of the brightest pixel may fill: it leaves
+/// room for noise where there is hardly any speckle.
 const MAX_SATURATION: f64 = 0.9;
 
 impl Constraint {
-    /// The constraints of a search that names none: set-ups that keep them get the light that they need,
-    /// by [`Setup::light_level`](crate::Setup::light_level), whose bounds two of them are.
+    /// The constraints of a search that names none: set-ups that keep them get the light that they
+    /// need, by [`Setup::light_level`](crate::Setup::light_level), whose bounds two of them are.
     pub const LIGHT: [Self; 3] = [
         Self {
             figure: DesignFigure::Saturation,

@@ -15,7 +15,8 @@ pub struct DesignFigures {
     pub dominant: UncertaintySource,
     /// The length of the [measuring range](Setup::measuring_range), in metres.
     pub range: f64,
-    /// The length of the [depth of field](Setup::depth_of_field) of camera and laser line together, in metres of height.
+    /// The length of the [depth of field](Setup::depth_of_field) of camera and laser line together,
+    /// in metres of height.
     pub depth_of_field: f64,
     /// The width of the field, in metres.
     pub field_width: f64,

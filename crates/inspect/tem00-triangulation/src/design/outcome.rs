@@ -77,8 +77,8 @@ impl DesignOutcome {
 
     /// Returns the best set-ups that keep every constraint, at most `count`, the best first.
     ///
-    /// Set-ups whose objectives agree in three digits are as good as each other: of these the one whose
-    /// bright grains fill less of the sensor comes first, then the one that was tried first.
+    /// Set-ups whose objectives agree in three digits are as good as each other: of these the one
+    /// whose bright grains fill less of the sensor comes first, then the one that was tried first.
     pub fn best(&self, count: usize) -> Vec<&Candidate> {
         let allowed = self.candidates.iter();
         let mut allowed: Vec<_> = allowed
@@ -96,9 +96,9 @@ impl DesignOutcome {
             .collect()
     }
 
-    /// Returns the set-ups that no other betters in both the objective and a figure: to have more of
-    /// one costs some of the other. They are taken from those that keep every constraint, or, if there
-    /// is none, from all that are possible, and come in the order of the objective.
+    /// Returns the set-ups that no other betters in both the objective and a figure: to have more
+    /// of one costs some of the other. They are taken from those that keep every constraint, or, if
+    /// there is none, from all that are possible, and come in the order of the objective.
     pub fn front(&self, against: DesignFigure) -> Vec<&Candidate> {
         let (_, allowed) = self.counts();
         let entered = |candidate: &&Candidate| match allowed {

@@ -12,8 +12,8 @@ pub struct Neighbours {
     pub more: Option<DesignFigures>,
 }
 
-/// Returns the figures of a set-up when each of its parameters, one at a time, is smaller and greater
-/// by a part of itself: 0.1 for ±10 %. Those that are 0 are left out: a linewidth.
+/// Returns the figures of a set-up when each of its parameters, one at a time, is smaller and
+/// greater by a part of itself: 0.1 for ±10 %. Those that are 0 are left out: a linewidth.
 pub fn neighbours(description: &SetupDescription, part: f64) -> Vec<Neighbours> {
     let changed = |parameter: SetupQuantity, factor: f64| {
         let mut changed = description.clone();

@@ -39,15 +39,16 @@ impl Sweep {
         Ok(Self { parameter, values })
     }
 
-    /// Creates a sweep over `steps` values from one end to the other, both of them among the values.
+    /// Creates a sweep over `steps` values from one end to the other, both of them among the
+    /// values.
     ///
     /// ```text
     /// linear        x_i = a + (b − a) i / (n − 1)
     /// logarithmic   x_i = a (b / a)^(i / (n − 1))
     /// ```
     ///
-    /// Values between the ends are rounded, in the unit that they are usually written in, to less than a
-    /// hundredth of a step: 5.04 instead of 5.0397.
+    /// Values between the ends are rounded, in the unit that they are usually written in, to less
+    /// than a hundredth of a step: 5.04 instead of 5.0397.
     ///
     /// # Errors
     ///

@@ -8,7 +8,8 @@ use crate::{
     budget::tests::clipped_columns,
 };
 
-/// A line of 0.4 mm, much wider than a speckle, seen by a lens of 25 mm with the magnification 1/11.
+/// A line of 0.4 mm, much wider than a speckle, seen by a lens of 25 mm with the magnification
+/// 1/11.
 fn base() -> SetupDescription {
     let mut base = SetupDescription::default();
     base.laser.line_thickness = 0.4e-3;
@@ -140,7 +141,8 @@ fn a_search_allows_only_what_a_budget_finds_in_good_light() {
         );
         levels.push(level);
         if good {
-            // Of the pixels at the crest of the line 2 % have brighter grains, and a column has some ten.
+            // Of the pixels at the crest of the line 2 % have brighter grains, and a column has
+            // some ten.
             let clipped = clipped_columns(&setup);
             assert!(clipped < 0.1, "{clipped}: {candidate:?}");
         }
@@ -202,8 +204,9 @@ fn a_smaller_pupil_has_more_depth_of_field_and_more_speckle() {
 
 #[test]
 fn speckle_grows_as_the_root_of_the_f_number_for_fine_pixels_and_as_it_for_coarse_ones() {
-    // A speckle of 2 pixels, a line 31 times as wide: diffraction adds less than 1e-3 to its width, and the
-    // law for wide lines is off by less than 1e-3. Then a pixel of 11 speckles, a line of 24 pixels.
+    // A speckle of 2 pixels, a line 31 times as wide: diffraction adds less than 1e-3 to its width,
+    // and the law for wide lines is off by less than 1e-3. Then a pixel of 11 speckles, a line of
+    // 24 pixels.
     let fine = (4e-3, 1e-3, 4e-6, 600, 251, [10.0, 12.0], 0.5..0.65);
     let coarse = (6e-3, 0.01e-3, 20e-6, 480, 99, [2.5, 2.8], 0.9..1.0);
     for (thickness, exposure, pitch, rows, window, numbers, exponents) in [fine, coarse] {
@@ -229,7 +232,8 @@ fn speckle_grows_as_the_root_of_the_f_number_for_fine_pixels_and_as_it_for_coars
         let found = growth(UncertaintySource::Speckle);
         assert_absolute(found, law, 0.01);
         assert!(exponents.contains(&found), "∝ F^{found}");
-        // Light falls as 1 / F² but for the aperture's sine; diffraction widens the line of fine pixels.
+        // Light falls as 1 / F² but for the aperture's sine; diffraction widens the line of fine
+        // pixels.
         let widening = if pitch < 10e-6 { 0.04 } else { 0.01 };
         assert_absolute(growth(UncertaintySource::ShotNoise), 1.0, widening);
     }

@@ -1,6 +1,7 @@
 use super::{FilterOrder, profile::Profile};
 
-/// The zero of the filtered derivative nearest to the greatest pixel, on the side to which it points.
+/// The zero of the filtered derivative nearest to the greatest pixel, on the side to which it
+/// points.
 pub(super) fn zero(profile: &Profile<'_>, order: FilterOrder) -> Option<f64> {
     let filtered = |at: isize| filter(profile, at, order);
     // A window that was moved may have left its greatest pixel.
@@ -20,8 +21,8 @@ pub(super) fn zero(profile: &Profile<'_>, order: FilterOrder) -> Option<f64> {
     })
 }
 
-/// Returns the sum of the pixels above less that of the pixels below one pixel, at a distance from the
-/// greatest one.
+/// Returns the sum of the pixels above less that of the pixels below one pixel, at a distance from
+/// the greatest one.
 fn filter(profile: &Profile<'_>, at: isize, order: FilterOrder) -> f64 {
     let half = (order.taps() / 2).cast_signed();
     (1..=half)

@@ -58,7 +58,8 @@ impl Column {
     /// Finds the lines of a column.
     ///
     /// The background is the median of what lies outside of all windows. If that is fewer than
-    /// [`FEWEST_BACKGROUND`](Self::FEWEST_BACKGROUND) pixels, it is the lowest decile of the column.
+    /// [`FEWEST_BACKGROUND`](Self::FEWEST_BACKGROUND) pixels, it is the lowest decile of the
+    /// column.
     pub(super) fn of(column: &[f32], settings: &DetectorSettings) -> Self {
         let is_known = |i: usize| column[i].is_finite();
         let values = finite(column);
@@ -148,8 +149,8 @@ fn background(
     )
 }
 
-/// The pixels that belong to each line: up to the least smoothed value between it and its neighbours, of
-/// equal ones that next to the middle. That one belongs to neither.
+/// The pixels that belong to each line: up to the least smoothed value between it and its
+/// neighbours, of equal ones that next to the middle. That one belongs to neither.
 fn zones(smoothed: &[f64], centres: &[usize]) -> Vec<Range<usize>> {
     let valley = |pair: &[usize]| {
         let (from, to) = (pair[0], pair[1]);
@@ -177,8 +178,8 @@ pub(super) struct Smoothed {
 }
 
 impl Smoothed {
-    /// Minimum height of a line, in standard deviations of the smoothed noise. Of 10⁵ independent pixels
-    /// of Gaussian noise none reaches it in 9999 of 10 000 cases.
+    /// Minimum height of a line, in standard deviations of the smoothed noise. Of 10⁵ independent
+    /// pixels of Gaussian noise none reaches it in 9999 of 10 000 cases.
     const STAND_OUT: f64 = 6.0;
     /// The lower quartile of |a − b| for two independent standard normal numbers a and b.
     const QUARTILE_OF_DIFFERENCES: f64 = 0.450_6;
@@ -203,9 +204,9 @@ impl Smoothed {
         }
     }
 
-    /// Returns by how much the maximum at `centre` moves per grey value of each pixel that it is made of: the
-    /// vertex of the parabola through it and its neighbours, which it follows in the mean. Nothing at the
-    /// ends of a column.
+    /// Returns by how much the maximum at `centre` moves per grey value of each pixel that it is
+    /// made of: the vertex of the parabola through it and its neighbours, which it follows in the
+    /// mean. Nothing at the ends of a column.
     pub(super) fn motion(&self, centre: usize) -> Vec<(usize, f64)> {
         let neighbours = centre.checked_sub(1).zip(self.values.get(centre + 1));
         let Some((before, &s_after)) = neighbours else {

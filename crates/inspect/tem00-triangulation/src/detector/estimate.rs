@@ -7,8 +7,8 @@ use super::{
 impl Profile<'_> {
     /// Estimates the position of the line, or returns `None` if the method fails.
     ///
-    /// All methods count from the middle of the greatest pixel: an image that is moved by a pixel moves
-    /// the position by just that.
+    /// All methods count from the middle of the greatest pixel: an image that is moved by a pixel
+    /// moves the position by just that.
     pub(super) fn estimate(&self, method: &LineMethod) -> Option<Estimate> {
         let at = |offset: f64| Estimate {
             position: offset,

@@ -60,8 +60,8 @@ impl Gaussian {
         Some(equations)
     }
 
-    /// The estimate, if the pixels hold a line: they tell nothing of one beside them, much thinner than one of them
-    /// or wider than the window, and the fit ran away.
+    /// The estimate, if the pixels hold a line: they tell nothing of one beside them, much thinner
+    /// than one of them or wider than the window, and the fit ran away.
     fn estimate(&self, profile: &Profile<'_>) -> Option<Estimate> {
         let window = profile.line.window.len() as f64;
         let is_wide = self.radius > 0.2 && self.radius < window;

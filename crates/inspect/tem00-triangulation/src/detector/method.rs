@@ -4,8 +4,8 @@ use tem00_numerics::{Refusal, cast::to_usize, check};
 
 /// Estimator of the position of a line in a column.
 ///
-/// Values are above the background b of the column. What an estimate looks at is the window and nothing
-/// else. "Exact" is said of a Gaussian line without noise.
+/// Values are above the background b of the column. What an estimate looks at is the window and
+/// nothing else. "Exact" is said of a Gaussian line without noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LineMethod {
@@ -15,8 +15,8 @@ pub enum LineMethod {
     /// ŷ = Σ (I_i − b) y_i / Σ (I_i − b)
     /// ```
     ///
-    /// Exact but for the light outside of the window. Negative values count as such: cut off, they would
-    /// draw the estimate towards the middle of the window.
+    /// Exact but for the light outside of the window. Negative values count as such: cut off, they
+    /// would draw the estimate towards the middle of the window.
     CentreOfGravity,
     /// The centre of gravity of what lies above a fraction of the peak, over the window.
     ///
@@ -24,8 +24,8 @@ pub enum LineMethod {
     /// ŷ = Σ w_i y_i / Σ w_i      w_i = max(0, I_i − b − t P)
     /// ```
     ///
-    /// P is the greatest of the values. The threshold is subtracted (Thomas et al., MNRAS 371, 323, 2006):
-    /// a pixel that comes in at the threshold does so without a step.
+    /// P is the greatest of the values. The threshold is subtracted (Thomas et al., MNRAS 371, 323,
+    /// 2006): a pixel that comes in at the threshold does so without a step.
     ThresholdedCentreOfGravity {
         /// The threshold t as a fraction of the peak, from 0 to below 1.
         threshold: f64,
@@ -42,19 +42,20 @@ pub enum LineMethod {
     Parabola,
     /// The vertex of the parabola through the logarithms of the greatest pixel and its neighbours.
     ///
-    /// Exact for points. Pixels integrate: at the distance δ of a line from the middle of its pixel the
-    /// estimate is δ (1 − 4 δ²)/(1440 σ⁶) too far out, with σ = w/2 in pixels.
+    /// Exact for points. Pixels integrate: at the distance δ of a line from the middle of its pixel
+    /// the estimate is δ (1 − 4 δ²)/(1440 σ⁶) too far out, with σ = w/2 in pixels.
     LogGaussian,
-    /// Straight flanks of equal slope through the greatest pixel and its neighbours (Naidu & Fisher,
-    /// *A Comparative Analysis of Algorithms for Determining the Peak Position of a Stripe to Sub-Pixel
-    /// Accuracy*, 1991).
+    /// Straight flanks of equal slope through the greatest pixel and its neighbours (Naidu &
+    /// Fisher, *A Comparative Analysis of Algorithms for Determining the Peak Position of a Stripe
+    /// to Sub-Pixel Accuracy*, 1991).
     ///
     /// ```text
     /// ŷ = y + (I₊ − I₋) / (2 (I₀ − min(I₋, I₊)))
     /// ```
     LinearInterpolation,
-    /// The zero of the derivative by a filter of Blais and Rioux (*Real-time numerical peak detector*,
-    /// Signal Processing 11, 145, 1986), the nearest to the greatest pixel of the window.
+    /// The zero of the derivative by a filter of Blais and Rioux (*Real-time numerical peak
+    /// detector*, Signal Processing 11, 145, 1986), the nearest to the greatest pixel of the
+    /// window.
     ///
     /// ```text
     /// g(i) = I_{i−m} + … + I_{i−1} − I_{i+1} − … − I_{i+m}      m half the order
@@ -66,15 +67,15 @@ pub enum LineMethod {
     },
     /// The Gaussian on a constant background that fits best, by least squares.
     ///
-    /// The fitted Gaussian is integrated over the pixels, as a sensor without gaps does it: the estimate is
-    /// exact, and so is the [width](crate::LinePoint::width), which is that of the fit.
+    /// The fitted Gaussian is integrated over the pixels, as a sensor without gaps does it: the
+    /// estimate is exact, and so is the [width](crate::LinePoint::width), which is that of the fit.
     GaussianFit,
-    /// The ridge by Steger (*An unbiased detector of curvilinear structures*, IEEE PAMI 20, 113, 1998),
-    /// with derivatives of a Gaussian.
+    /// The ridge by Steger (*An unbiased detector of curvilinear structures*, IEEE PAMI 20, 113,
+    /// 1998), with derivatives of a Gaussian.
     ///
-    /// In an image it looks along the normal of the ridge and needs the neighbours of the column; in a
-    /// single column it looks along the column. Of a line with a flat top, such as a saturated one, of
-    /// the half width a there is one ridge in the middle for σ ≥ a/√3.
+    /// In an image it looks along the normal of the ridge and needs the neighbours of the column;
+    /// in a single column it looks along the column. Of a line with a flat top, such as a saturated
+    /// one, of the half width a there is one ridge in the middle for σ ≥ a/√3.
     Steger {
         /// The standard deviation σ of the Gaussian, in pixels.
         sigma: f64,
@@ -114,8 +115,8 @@ impl FilterOrder {
 }
 
 impl LineMethod {
-    /// All methods, with the parameters that they have unless told otherwise: a threshold of 0.2, the
-    /// order 4, a σ of 2 pixels.
+    /// All methods, with the parameters that they have unless told otherwise: a threshold of 0.2,
+    /// the order 4, a σ of 2 pixels.
     pub const ALL: [Self; 9] = [
         Self::CentreOfGravity,
         Self::ThresholdedCentreOfGravity { threshold: 0.2 },

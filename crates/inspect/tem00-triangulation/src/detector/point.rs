@@ -7,8 +7,8 @@ pub struct LinePoint {
     pub position: f64,
     /// The full width between the points of 1/e², in pixels.
     ///
-    /// It is twice the width between the points before which 16 and 84 % of the light of the window lie,
-    /// or that of the [fit](crate::LineMethod::GaussianFit).
+    /// It is twice the width between the points before which 16 and 84 % of the light of the window
+    /// lie, or that of the [fit](crate::LineMethod::GaussianFit).
     pub width: f64,
     /// The greatest grey value above the background.
     pub peak: f64,
@@ -18,8 +18,8 @@ pub struct LinePoint {
     pub background: f64,
     /// The reason why the position cannot be trusted, if there is one.
     pub validity: Validity,
-    /// The index of the line of the image that the point belongs to, from 0; in a single column, the
-    /// number of the line from the top.
+    /// The index of the line of the image that the point belongs to, from 0; in a single column,
+    /// the number of the line from the top.
     pub line: usize,
 }
 
@@ -37,10 +37,12 @@ named! {
         Crowded = "crowded",
         /// A pixel of the window is not a finite number; it counts as background.
         Missing = "missing",
-        /// The estimate did not converge or lies outside of the window; the position is that of the peak.
+        /// The estimate did not converge or lies outside of the window; the position is that of the
+        /// peak.
         Failed = "failed",
-        /// An edge of the part cuts the line, of which but a sliver is seen: its position is that of the edge. Or
-        /// there is no line but by noise. Only who knows the line without noise can tell; a detector does not.
+        /// An edge of the part cuts the line, of which but a sliver is seen: its position is that
+        /// of the edge. Or there is no line but by noise. Only who knows the line without noise can
+        /// tell; a detector does not.
         Sliver = "sliver",
     }
 }

@@ -4,27 +4,28 @@ use super::{
     profile::Profile,
 };
 
-/// The change of a pixel, as a fraction of the peak, over which differences are taken. They err by its
-/// square, and by the rounding of the positions divided by it.
+/// The change of a pixel, as a fraction of the peak, over which differences are taken. They err by
+/// its square, and by the rounding of the positions divided by it.
 const CHANGE: f64 = 1e-4;
 
 impl LineDetector {
-    /// Returns by how much the position of the line at `point` moves per grey value of each pixel of the
-    /// column, in pixels per grey value: the sensitivities of its uncertainty.
+    /// Returns by how much the position of the line at `point` moves per grey value of each pixel
+    /// of the column, in pixels per grey value: the sensitivities of its uncertainty.
     ///
     /// ```text
     /// δŷ = Σ g_i δI_i      to first order, for noise δI_i of the pixels; Σ g_i = 0
     /// ```
     ///
-    /// The window follows the maximum of the smoothed column: as it moves, light at one of its ends comes in
-    /// and at the other goes out, which counts where a line has wings or is cut. The pixel that a three-point
-    /// method looks at and the part of the column that is background stay what they are. Pixels of the background count equally, as in a mean: they share
-    /// the negative sum over the window. (Their median scatters 1.25 times as much as a mean.) Methods
-    /// that look at the neighbours of a column take it for one of many that are equal.
+    /// The window follows the maximum of the smoothed column: as it moves, light at one of its ends
+    /// comes in and at the other goes out, which counts where a line has wings or is cut. The pixel
+    /// that a three-point method looks at and the part of the column that is background stay what
+    /// they are. Pixels of the background count equally, as in a mean: they share the negative sum
+    /// over the window. (Their median scatters 1.25 times as much as a mean.) Methods that look at
+    /// the neighbours of a column take it for one of many that are equal.
     ///
-    /// `point` is one that [`detect_column`](Self::detect_column) finds in `column`; the line that is
-    /// nearest to it is looked at. A column without lines has no sensitivities: all are zero. So are
-    /// those of a position that could not be estimated.
+    /// `point` is one that [`detect_column`](Self::detect_column) finds in `column`; the line that
+    /// is nearest to it is looked at. A column without lines has no sensitivities: all are zero. So
+    /// are those of a position that could not be estimated.
     pub fn sensitivities(&self, column: &[f32], point: &LinePoint) -> Vec<f64> {
         let mut sensitivities = vec![0.0; column.len()];
         let mut found = Column::of(column, &self.settings);
@@ -52,8 +53,8 @@ impl LineDetector {
         sensitivities
     }
 
-    /// The motion of the position per pixel that the window moves: the central difference; 0 if it cannot
-    /// be estimated.
+    /// The motion of the position per pixel that the window moves: the central difference; 0 if it
+    /// cannot be estimated.
     fn by_window(&self, above: &[f64], line: &Sighting) -> f64 {
         let half = self.settings.window / 2;
         let position = |centre: usize| {

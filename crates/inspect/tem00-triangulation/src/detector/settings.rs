@@ -10,10 +10,11 @@ pub struct DetectorSettings {
     pub method: LineMethod,
     /// The number of pixels of a column that an estimate looks at, odd, about the peak.
     ///
-    /// Two to three times the full width of the line between the points of 1/e². Outside of twice that
-    /// width lie 6e−5 of the light of a Gaussian, which move the centre of gravity by 5e−4 pixels at most;
-    /// further pixels only add noise. The wings that a lens adds hold 0.13 h/Y of the light outside of ±Y, h
-    /// being the speckle size: a window that moves with the speckle cuts them elsewhere in each column. In a short window a wide speckled line looks like several.
+    /// Two to three times the full width of the line between the points of 1/e². Outside of twice
+    /// that width lie 6e−5 of the light of a Gaussian, which move the centre of gravity by 5e−4
+    /// pixels at most; further pixels only add noise. The wings that a lens adds hold 0.13 h/Y of
+    /// the light outside of ±Y, h being the speckle size: a window that moves with the speckle cuts
+    /// them elsewhere in each column. In a short window a wide speckled line looks like several.
     pub window: usize,
     /// The minimum height of a peak above the background, in grey values.
     pub min_peak: f64,

@@ -6,8 +6,8 @@ use super::{method::kernel_radius, profile::Profile};
 
 /// A Gaussian and its first two derivatives, each integrated over the pixels about its middle.
 ///
-/// The first and the last pixel hold all that lies beyond, so that the sums are those of the functions:
-/// 1, 0 and 0.
+/// The first and the last pixel hold all that lies beyond, so that the sums are those of the
+/// functions: 1, 0 and 0.
 pub(super) struct Kernels {
     radius: isize,
     /// For each pixel from −radius to radius the Gaussian and its derivatives.
@@ -68,8 +68,8 @@ pub(super) fn in_column(profile: &Profile<'_>, sigma: f64) -> Option<f64> {
     ridge(profile, &pixels, &kernels)
 }
 
-/// The ridge of a column among its neighbours: `columns` holds each column as a row, the line is in the
-/// column `x`.
+/// The ridge of a column among its neighbours: `columns` holds each column as a row, the line is in
+/// the column `x`.
 pub(super) fn in_image(
     profile: &Profile<'_>,
     columns: &Grid<f32>,
@@ -96,8 +96,8 @@ pub(super) fn in_image(
     ridge(profile, &pixels, kernels)
 }
 
-/// The position of the strongest ridge of the window, along the column, as a distance from the greatest
-/// pixel; `pixels` holds for each its smoothed value and the derivatives of that along x.
+/// The position of the strongest ridge of the window, along the column, as a distance from the
+/// greatest pixel; `pixels` holds for each its smoothed value and the derivatives of that along x.
 fn ridge(profile: &Profile<'_>, pixels: &[[f64; 3]], kernels: &Kernels) -> Option<f64> {
     let rows = (0_isize..).take(pixels.len());
     let derivatives = |row: isize| {
@@ -128,8 +128,8 @@ fn ridge(profile: &Profile<'_>, pixels: &[[f64; 3]], kernels: &Kernels) -> Optio
 }
 
 impl Derivatives {
-    /// The strength of a ridge through this pixel, and the distance along the column at which it crosses
-    /// the middle of the pixel's column.
+    /// The strength of a ridge through this pixel, and the distance along the column at which it
+    /// crosses the middle of the pixel's column.
     ///
     /// With the unit normal n, the eigenvector of the most negative second derivative:
     ///
@@ -147,7 +147,8 @@ impl Derivatives {
         if curvature >= 0.0 {
             return None;
         }
-        // The first row of (H − λ) n = 0. Both vanish for a line along the column, which never crosses.
+        // The first row of (H − λ) n = 0. Both vanish for a line along the column, which never
+        // crosses.
         let (nx, ny) = (self.xy, curvature - self.xx);
         let length = nx.hypot(ny);
         let t = -(self.x * nx + self.y * ny) / (length * curvature);

@@ -1,7 +1,7 @@
 //! Detectors against closed forms.
 //!
-//! Lines are Gaussians with the standard deviation σ = w/2, in pixels. Their pixels are `f32`: a part of
-//! 6e−8 of the peak is rounding everywhere.
+//! Lines are Gaussians with the standard deviation σ = w/2, in pixels. Their pixels are `f32`: a
+//! part of 6e−8 of the peak is rounding everywhere.
 
 mod bias;
 mod lines_of_an_image;
@@ -71,7 +71,8 @@ fn only(detector: &LineDetector, column: &[f32]) -> LinePoint {
     points[0]
 }
 
-/// Distances of a line from the middle of its greatest pixel, not up to the edge: there two are equal.
+/// Distances of a line from the middle of its greatest pixel, not up to the edge: there two are
+/// equal.
 fn phases() -> impl Iterator<Item = f64> {
     (-9..=9).map(|i| f64::from(i) * 0.05)
 }

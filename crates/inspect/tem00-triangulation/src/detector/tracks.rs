@@ -69,13 +69,13 @@ impl Expected {
 struct Pair<'a> {
     expected: &'a Expected,
     point: usize,
-    /// The distance between the two, in pixels, times the columns since the line was seen: the straight line
-    /// through its last points is the less certain the farther it leads.
+    /// The distance between the two, in pixels, times the columns since the line was seen: the
+    /// straight line through its last points is the less certain the farther it leads.
     distance: f64,
 }
 
-/// All points of a column that may continue a track: first those of tracks that were seen in the column
-/// before, then the nearest.
+/// All points of a column that may continue a track: first those of tracks that were seen in the
+/// column before, then the nearest.
 ///
 /// Where a line has ended, the straight line through its last points leads anywhere, and often over
 /// another line.
@@ -103,8 +103,8 @@ fn near<'a>(expected: &'a [Expected], points: &[LinePoint], gate: f64) -> Vec<Pa
     pairs
 }
 
-/// The tracks without a point that may be hidden: lines closer than half a window are seen as one, which
-/// goes on as another of them. A line that begins hides none.
+/// The tracks without a point that may be hidden: lines closer than half a window are seen as one,
+/// which goes on as another of them. A line that begins hides none.
 fn hidden(
     expected: &[Expected],
     points: &[LinePoint],
@@ -131,8 +131,8 @@ fn hidden(
         .collect()
 }
 
-/// Returns true if a point is of one line alone. Where two lines come close it may be of both, and does not tell
-/// where one goes; lines that have ended do not count beside one that has not.
+/// Returns true if a point is of one line alone. Where two lines come close it may be of both, and
+/// does not tell where one goes; lines that have ended do not count beside one that has not.
 fn is_clear(near: &[Pair<'_>], point: usize) -> bool {
     let of_point = || near.iter().filter(|pair| pair.point == point);
     let followed = of_point().filter(|pair| pair.expected.is_followed).count();
@@ -205,7 +205,8 @@ impl Track {
         self.sum / self.points as f64
     }
 
-    /// Returns the expected position of the line in a column: on the straight line of least squares.
+    /// Returns the expected position of the line in a column: on the straight line of least
+    /// squares.
     fn at(&self, x: f64) -> f64 {
         let count = self.recent.len() as f64;
         let mean = |of: fn(&(f64, f64)) -> f64| self.recent.iter().map(of).sum::<f64>() / count;

@@ -39,8 +39,8 @@ const MAX_SETUPS: u64 = 20_000;
 ///
 /// # Errors
 ///
-/// Returns a problem, placed in the file, if the section is missing, has a key that it may not have, or
-/// a value that cannot be; or if there are more combinations than allowed.
+/// Returns a problem, placed in the file, if the section is missing, has a key that it may not
+/// have, or a value that cannot be; or if there are more combinations than allowed.
 pub fn read_design(
     document: &Document<'_>,
     base: &SetupDescription,

@@ -14,8 +14,9 @@ const KEYS: &[&str] = &[
 
 /// Reads the section `[detector]`: how lines are found.
 ///
-/// What it leaves out, or all of it, is as in [`DetectorSettings::default`]; a window that it leaves out
-/// is as wide as the method needs. The saturation is infinite: the bits of the sensor know it.
+/// What it leaves out, or all of it, is as in [`DetectorSettings::default`]; a window that it
+/// leaves out is as wide as the method needs. The saturation is infinite: the bits of the sensor
+/// know it.
 ///
 /// ```toml
 /// [detector]
@@ -28,7 +29,8 @@ const KEYS: &[&str] = &[
 ///
 /// # Errors
 ///
-/// Returns a problem, placed in the file, if a key is unknown, of another method, or outside its range.
+/// Returns a problem, placed in the file, if a key is unknown, of another method, or outside its
+/// range.
 pub fn read_detector(document: &Document<'_>) -> Result<DetectorSettings, Problem> {
     let default = DetectorSettings::default();
     let Some(section) = document.table("detector", KEYS)? else {

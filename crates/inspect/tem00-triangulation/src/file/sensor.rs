@@ -27,8 +27,8 @@ pub fn read_sensor(
     }
 }
 
-/// Reads the section `[sensor]` of a set-up file, in which the exposure may be "auto": that value is
-/// returned, too, and the exposure time is the typical one.
+/// Reads the section `[sensor]` of a set-up file, in which the exposure may be "auto": that value
+/// is returned, too, and the exposure time is the typical one.
 pub(super) fn read_sensor_or_auto<'a>(
     document: &Document<'a>,
     pixel_pitch: f64,

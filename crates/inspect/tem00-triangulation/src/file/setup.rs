@@ -10,8 +10,8 @@ use crate::{Averages, Setup, SetupDescription, SetupQuantity, TriangulationError
 
 /// Set-up files.
 ///
-/// The section `[design]` is for searches among set-ups, `[certificate]` for who signs a budget, `title` for who reads it:
-/// they are not read with the set-up.
+/// The section `[design]` is for searches among set-ups, `[certificate]` for who signs a budget,
+/// `title` for who reads it: they are not read with the set-up.
 const SETUP: Format = Format {
     noun: "set-up",
     keys: &[
@@ -42,14 +42,14 @@ const AVERAGE: &[&str] = &["columns", "frames", "independent_speckle"];
 ///
 /// # Errors
 ///
-/// Returns an error if the file cannot be read, is not valid TOML, or does not describe a set-up. It
-/// names key, value and what is allowed, and knows its position in the file.
+/// Returns an error if the file cannot be read, is not valid TOML, or does not describe a set-up.
+/// It names key, value and what is allowed, and knows its position in the file.
 pub fn read_setup(path: &Path) -> Result<Setup, ConfigError> {
     read_setup_with(path, FileAccess::WithinFolder, |_, _| Ok(())).map(|(setup, ())| setup)
 }
 
-/// Reads a set-up file, and with `further` what else it has to say: `[design]`. The path `-` is standard
-/// input.
+/// Reads a set-up file, and with `further` what else it has to say: `[design]`. The path `-` is
+/// standard input.
 ///
 /// # Errors
 ///

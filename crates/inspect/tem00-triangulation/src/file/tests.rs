@@ -150,7 +150,8 @@ fn a_written_description_reads_back_as_the_same_bits() {
     comes_back(&written);
 }
 
-/// Contrasts and line noises at 1, 5, 10 and 40 nm, of rows finer than a speckle, by direct quadrature.
+/// Contrasts and line noises at 1, 5, 10 and 40 nm, of rows finer than a speckle, by direct
+/// quadrature.
 #[test]
 fn a_linewidth_lowers_the_noise_of_a_line_less_than_the_contrast() {
     for (wavelength, height, contrasts, noises) in [

@@ -22,11 +22,13 @@ const CORRELATION: &[&str] = &["between", "coefficient"];
 /// height = "5 mm"                    # the greatest of the measuring range without it
 /// ```
 ///
-/// An uncertainty of 0 is as good as none. A normal value with degrees of freedom has a t distribution.
+/// An uncertainty of 0 is as good as none. A normal value with degrees of freedom has a t
+/// distribution.
 ///
 /// # Errors
 ///
-/// Returns a problem, placed in the file, if a table has a key that it may not have, or a value that cannot be.
+/// Returns a problem, placed in the file, if a table has a key that it may not have, or a value
+/// that cannot be.
 pub fn read_uncertainty(
     document: &Document<'_>,
     setup: &Setup,

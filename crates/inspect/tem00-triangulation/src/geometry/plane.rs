@@ -24,8 +24,8 @@ impl LaserPlane {
             })
     }
 
-    /// Returns the plane in which a laser line opens: through its aperture, in metres, along its axis and
-    /// its line direction, both of any length.
+    /// Returns the plane in which a laser line opens: through its aperture, in metres, along its
+    /// axis and its line direction, both of any length.
     ///
     /// # Errors
     ///
@@ -49,7 +49,8 @@ impl LaserPlane {
         self.normal
     }
 
-    /// Returns the distance of a point from the plane, in metres, positive on the side of the normal.
+    /// Returns the distance of a point from the plane, in metres, positive on the side of the
+    /// normal.
     pub fn distance(&self, point: DVec3) -> f64 {
         self.normal.dot(point - self.point)
     }

@@ -16,19 +16,20 @@ pub struct ProfilePoint {
     pub point: UncertainPoint,
     /// The full width of the line between the points of 1/e² in the image, in pixels.
     pub width: f64,
-    /// The grey values above the background, summed over the line: in proportion to the light that the
-    /// surface sends to the camera.
+    /// The grey values above the background, summed over the line: in proportion to the light that
+    /// the surface sends to the camera.
     pub reflectance: f64,
     /// The validity of the position of the line.
     pub validity: Validity,
 }
 
 impl Triangulator {
-    /// Returns the profile that the lines found in an image draw, by column and from the top: the points
-    /// of the laser plane at `(column + 0.5, position)`.
+    /// Returns the profile that the lines found in an image draw, by column and from the top: the
+    /// points of the laser plane at `(column + 0.5, position)`.
     ///
-    /// `uncertainty` tells the standard uncertainty of the position of a point along its column, in pixels.
-    /// Points at which the camera does not see the laser plane, above its horizon, are left out.
+    /// `uncertainty` tells the standard uncertainty of the position of a point along its column, in
+    /// pixels. Points at which the camera does not see the laser plane, above its horizon, are left
+    /// out.
     pub fn profile(
         &self,
         columns: &[Vec<LinePoint>],

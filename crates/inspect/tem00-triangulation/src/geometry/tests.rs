@@ -113,7 +113,8 @@ fn derivatives_are_those_of_the_point() {
         for (axis, derivative) in [DVec2::X, DVec2::Y].into_iter().zip(derivatives) {
             let point = |offset: f64| triangulator.point(pixel + offset * axis).unwrap();
             let difference = (point(step) - point(-step)) / (2.0 * step);
-            // Roundings of 0.3 m by the step, against 4e-5 m: 1e-11; the third derivative adds less.
+            // Roundings of 0.3 m by the step, against 4e-5 m: 1e-11; the third derivative adds
+            // less.
             let error = difference.distance(derivative) / derivative.length();
             assert!(error < 1e-8, "{pixel}: {error:e}");
         }

@@ -21,13 +21,14 @@ pub(super) struct PolychromaticLight {
 /// The number of equal patterns that stand for more, together with those of the surface.
 const PATTERNS: f64 = 16.0;
 
-/// Wave numbers that stand for a line. Each sees the pupil displaced across the line by the tilt of the resolution cell,
-/// and heights of the relief in other phases.
+/// Wave numbers that stand for a line. Each sees the pupil displaced across the line by the tilt of
+/// the resolution cell, and heights of the relief in other phases.
 #[derive(Clone, Debug)]
 pub(super) struct Bandwidth {
     /// Displacements of the pupil in its diameters, with the differences of wave numbers, in rad/m.
     waves: Vec<[f64; 2]>,
-    /// Paths by heights, in metres, with the roots of their fractions of the light. Their fields add.
+    /// Paths by heights, in metres, with the roots of their fractions of the light. Their fields
+    /// add.
     paths: Vec<[f64; 2]>,
 }
 
@@ -35,7 +36,8 @@ pub(super) struct Bandwidth {
 const WAVES: [f64; 2] = [16.0, 96.0];
 const WAVES_PER_PATTERN: f64 = 8.0;
 
-/// The largest displacement of the pupil, in its diameters: farther wings find new speckle there, too.
+/// The largest displacement of the pupil, in its diameters: farther wings find new speckle there,
+/// too.
 const MAX_TILT: f64 = 6.0;
 
 /// The amplitude in the pupil, and the light that it holds.
@@ -86,8 +88,8 @@ impl PolychromaticLight {
 
 /// Returns modes that have a variance, and the fraction of even light beside them.
 ///
-/// Of a variance v below that of n equal patterns, these are in a part √(v n) of the light, and the rest is even: more patterns
-/// would have the same covariance.
+/// Of a variance v below that of n equal patterns, these are in a part √(v n) of the light, and the
+/// rest is even: more patterns would have the same covariance.
 fn enough(modes: Vec<f64>, variance: f64, patterns: f64) -> (Vec<f64>, f64) {
     let count = (PATTERNS / patterns).max(1.0).floor();
     if variance * count >= 1.0 {
@@ -122,8 +124,8 @@ impl Bandwidth {
             .fold(0.0, |most: f64, wave| most.max(wave[0].abs()))
     }
 
-    /// Returns the pupil of each wave number. `strip` makes one from the number of its random stream and its
-    /// displacement.
+    /// Returns the pupil of each wave number. `strip` makes one from the number of its random
+    /// stream and its displacement.
     pub(super) fn pupils(&self, part: u64, strip: impl Fn(u64, f64) -> Pupil) -> Vec<Pupil> {
         let streams = part * self.paths.len() as u64..;
         let of_wave = |&[tilt, kappa]: &[f64; 2]| {

@@ -11,8 +11,8 @@ use tem00_speckle::Complex;
 
 use crate::setup::transfer;
 
-/// Distance from its middle up to which a line has scatterers, in half-widths: 10⁻⁸ of the light lie
-/// beyond.
+/// Distance from its middle up to which a line has scatterers, in half-widths: 10⁻⁸ of the light
+/// lie beyond.
 const REACH: f64 = 3.0;
 
 /// Steps of the table of the lens's transfer function.
@@ -37,7 +37,8 @@ pub(super) struct Strip {
 }
 
 impl Strip {
-    /// Returns the positions of the line where scatterers lie along it: no farther apart than a speckle.
+    /// Returns the positions of the line where scatterers lie along it: no farther apart than a
+    /// speckle.
     ///
     /// Beside the image the line goes on as it ends, to the half of what is there from either side.
     pub(super) fn positions(&self, centre: impl Fn(f64) -> f64) -> Vec<f64> {
@@ -61,11 +62,12 @@ impl Strip {
         2 * half + 1
     }
 
-    /// Returns the amplitude in the pupil, displaced by `tilt` diameters across the line, and the fraction of the light
-    /// of the line that the period of the image holds.
+    /// Returns the amplitude in the pupil, displaced by `tilt` diameters across the line, and the
+    /// fraction of the light of the line that the period of the image holds.
     ///
-    /// Scatterers are half a line or half a speckle apart across the line, from where a sum of normal
-    /// amplitudes is the integral to 10⁻⁸. Those beyond the darkness beside the image are left out.
+    /// Scatterers are half a line or half a speckle apart across the line, from where a sum of
+    /// normal amplitudes is the integral to 10⁻⁸. Those beyond the darkness beside the image are
+    /// left out.
     pub(super) fn pupil(
         &self,
         positions: &[f64],
@@ -109,8 +111,9 @@ impl Strip {
         (pupil, power / positions.len() as f64)
     }
 
-    /// Returns the amplitude in the pupil, displaced by `tilt` diameters across the line, of a surface whose sharp image is
-    /// `light` in parts of pixels, and the mean of that light per pixel of the period.
+    /// Returns the amplitude in the pupil, displaced by `tilt` diameters across the line, of a
+    /// surface whose sharp image is `light` in parts of pixels, and the mean of that light per
+    /// pixel of the period.
     ///
     /// A scatterer lies in the middle of each part.
     pub(super) fn pupil_of_light(
@@ -147,7 +150,8 @@ impl Strip {
         let start = [0, 1].map(|axis| (place(0) - self.first_sample[axis]) / self.period[axis]);
         pupil.for_each_row_mut(|y, amplitudes| {
             for (x, amplitude) in amplitudes.iter_mut().enumerate() {
-                // The image is the transform of the pupil: this is the inverse one, of the other sign.
+                // The image is the transform of the pupil: this is the inverse one, of the other
+                // sign.
                 let at = (mirrored(x, columns, wide), mirrored(y, rows, high));
                 let [fx, fy] = [(x, columns), (y, rows)].map(|(i, n)| i as f64 - (n / 2) as f64);
                 let phase = Complex::cis(TAU * (fx * start[0] + fy * start[1]));
@@ -158,7 +162,8 @@ impl Strip {
         (pupil, electrons / (self.period[0] * self.period[1]))
     }
 
-    /// Returns light in parts of pixels as the lens blurs it without speckle, over the whole period.
+    /// Returns light in parts of pixels as the lens blurs it without speckle, over the whole
+    /// period.
     pub(super) fn blurred(&self, light: &Grid<f32>, parts: usize) -> Grid<f32> {
         let [wide, high] = self.period.map(|side| to_usize(side) * parts);
         let planned = Fft2::with_aperture(wide, high, light.width(), light.height());
@@ -189,7 +194,8 @@ impl Strip {
             .forward(&blurred, |_, _, value| value.re)
     }
 
-    /// Multiplies by the phase of defocus, exp(iπ b ρ²/h) at ρ diameters from the middle of the pupil.
+    /// Multiplies by the phase of defocus, exp(iπ b ρ²/h) at ρ diameters from the middle of the
+    /// pupil.
     fn defocus(&self, pupil: &mut Grid<Complex<f32>>) {
         if self.defocus == 0.0 {
             return;
@@ -257,13 +263,14 @@ impl Strip {
     }
 }
 
-/// The index, in a transform of `length`, of the opposite of the frequency that stands at `index` of a pupil of `side` points.
+/// The index, in a transform of `length`, of the opposite of the frequency that stands at `index`
+/// of a pupil of `side` points.
 fn mirrored(index: usize, side: usize, length: usize) -> usize {
     (side / 2 + length - index) % length
 }
 
-/// Transforms each row, with the frequency zero in the middle: positions along the line become those in
-/// the pupil.
+/// Transforms each row, with the frequency zero in the middle: positions along the line become
+/// those in the pupil.
 fn along(columns: &Grid<Complex<f64>>) -> Grid<Complex<f32>> {
     let (width, height) = (columns.width(), columns.height());
     let mut pupil = Grid::filled(width, height, Complex::default());

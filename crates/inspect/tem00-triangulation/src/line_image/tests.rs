@@ -51,8 +51,9 @@ fn the_mean_of_many_images_is_the_line_that_the_lens_blurs() {
                         .map(|&v| f64::from(v))
                         .sum::<f64>(),
                 ];
-                // 200 images of 12 columns, 7.5 speckles, have 1500 independent positions: 2.6 % each, four
-                // of them. What lies in the darkness beside the image comes in at the other side.
+                // 200 images of 12 columns, 7.5 speckles, have 1500 independent positions: 2.6 %
+                // each, four of them. What lies in the darkness beside the image comes in at the
+                // other side.
                 assert_absolute(found, expected, f64::max(1.0, 0.104 * expected));
             }
         }
@@ -60,8 +61,9 @@ fn the_mean_of_many_images_is_the_line_that_the_lens_blurs() {
             sum.iter().sum::<f64>(),
             mean.values().iter().map(|&v| f64::from(v)).sum(),
         ];
-        // All light of a column but what falls into the darkness: of the wings, 4h/(π³ Y) = 0.9 %, that lie
-        // outside of the image, some come in from the lines after which it repeats. The power of columns fluctuates.
+        // All light of a column but what falls into the darkness: of the wings, 4h/(π³ Y) = 0.9 %,
+        // that lie outside of the image, some come in from the lines after which it repeats. The
+        // power of columns fluctuates.
         let all = 96.0 * 1e4;
         let chance = 4.0 * ((squares - found * found) / IMAGES as f64).sqrt();
         assert!(
@@ -93,12 +95,12 @@ fn speckle_leaves_the_mean_and_has_the_contrast_of_its_pixels() {
         }
     }
     let n = 4.0 * 40_000.0;
-    // A pattern has the mean 1 over its period, which the image fills but for 15 % of its area: the rest
-    // has the mean 1 ± √(0.15/125²).
+    // A pattern has the mean 1 over its period, which the image fills but for 15 % of its area: the
+    // rest has the mean 1 ± √(0.15/125²).
     assert!((sum / n - 1.0).abs() < 6e-3, "mean {}", sum / n);
     let contrast = (squares / n - (sum / n).powi(2)).sqrt();
-    // The spread of C² of one pattern of 125 speckles is 1.53/125; of the contrast, half of that, and
-    // again half for four patterns: 0.3 %. Six samples a speckle add 0.5 %.
+    // The spread of C² of one pattern of 125 speckles is 1.53/125; of the contrast, half of that,
+    // and again half for four patterns: 0.3 %. Six samples a speckle add 0.5 %.
     assert_relative(contrast, expected, 0.015);
 }
 
@@ -131,8 +133,8 @@ fn pixels_of_a_column_go_together_as_their_autocovariance_says() {
                 covariance += factor(y) * factor(y + lag) / (1024.0 * (256 - lag) as f64);
             }
         }
-        // 4 · 256²/(hx hy) = 48000 speckles: 3 standard errors of a product of two are 0.014 at most.
-        // Sampling and the mismatch of 1 % of the sizes add 0.01 at the steepest.
+        // 4 · 256²/(hx hy) = 48000 speckles: 3 standard errors of a product of two are 0.014 at
+        // most. Sampling and the mismatch of 1 % of the sizes add 0.01 at the steepest.
         let expected = theory.covariance(lag);
         assert!(
             (covariance - expected).abs() < 0.024,
@@ -224,7 +226,8 @@ fn a_line_that_is_given_by_its_light_has_the_mean_and_the_noise_of_one_that_is_g
         assert_relative(strip[1].sqrt(), light[1].sqrt(), 0.08);
         let chance = 4.0 * (2.0 * strip[1] / 2500.0).sqrt();
         assert_absolute(strip[0], light[0], chance);
-        // Light that falls beside the image comes in again at the other side but for that in the darkness: 2 %.
+        // Light that falls beside the image comes in again at the other side but for that in the
+        // darkness: 2 %.
         assert_relative(strip[2], light[2], 0.02);
     }
 }
@@ -256,7 +259,8 @@ fn light_without_speckle_is_the_mean_of_light_with_it() {
         let most = f64::from(mean.values().iter().fold(0.0, |a: f32, &b| a.max(b)));
         for y in 0..48 {
             let [found, expected] = [&found, &mean].map(|image| f64::from(image[(48, y)]));
-            // Wings come in from the lines after which the image repeats, and go out at the ends of the line.
+            // Wings come in from the lines after which the image repeats, and go out at the ends of
+            // the line.
             assert_absolute(found, expected, 4e-3 * most);
         }
     }

@@ -36,8 +36,8 @@ fn measurement(quantities: &[(SetupQuantity, f64)]) -> Measurement {
     Measurement::new(&setup, &uncertainty).unwrap()
 }
 
-/// Returns the height, in metres, at which the line of sight from the pupil C meets the plane of the laser, in the
-/// plane x = 0:
+/// Returns the height, in metres, at which the line of sight from the pupil C meets the plane of
+/// the laser, in the plane x = 0:
 ///
 /// ```text
 /// C + t (sin(θ + φ), −cos(θ + φ))     tan φ = (v₀ − v) p / s     s = f L / (L − f)
@@ -127,8 +127,8 @@ fn light_changes_noise_and_no_height() {
     let before = measurement.height_of(&values) - HEIGHT;
     values[0] *= 1.02;
     let after = measurement.height_of(&values) - HEIGHT;
-    // Shot noise falls with the root of the power: 0.99 for 1.02, to first order; dark electrons and the
-    // difference over ± 1 % leave 10⁻⁴.
+    // Shot noise falls with the root of the power: 0.99 for 1.02, to first order; dark electrons
+    // and the difference over ± 1 % leave 10⁻⁴.
     assert!((after / before - 0.99).abs() < 2e-4, "{before}, {after}");
 }
 

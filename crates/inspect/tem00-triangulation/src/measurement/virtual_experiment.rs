@@ -31,19 +31,20 @@ impl VirtualExperiment {
         self.mean
     }
 
-    /// Returns the root mean square error of a height, or `None` where fewer than half of the columns have a line
-    /// that can be trusted.
+    /// Returns the root mean square error of a height, or `None` where fewer than half of the
+    /// columns have a line that can be trusted.
     pub const fn error(&self) -> Option<MonteCarloEstimate> {
         self.error
     }
 
-    /// Returns the symmetric interval of 95 % of all measured heights, in metres; `None` as for the error.
+    /// Returns the symmetric interval of 95 % of all measured heights, in metres; `None` as for the
+    /// error.
     pub const fn interval(&self) -> Option<CoverageInterval> {
         self.interval
     }
 
-    /// Returns the fraction of the columns in which the detector found no line that can be trusted, from 0
-    /// to 1.
+    /// Returns the fraction of the columns in which the detector found no line that can be trusted,
+    /// from 0 to 1.
     pub const fn invalid(&self) -> f64 {
         self.invalid
     }
@@ -56,16 +57,18 @@ struct Heights {
 }
 
 impl Measurement {
-    /// Measures the height many times with set-ups that differ from their description as it is uncertain.
+    /// Measures the height many times with set-ups that differ from their description as it is
+    /// uncertain.
     ///
-    /// Each trial draws a true set-up, exposes simulated frames of the line at the height with all noise, has the
-    /// detector find it, and evaluates the height with the set-up as it is described. `progress` is told the
-    /// number of trials that are done; setting `cancel` ends the work. The same seed gives the same bits for any
-    /// number of threads.
+    /// Each trial draws a true set-up, exposes simulated frames of the line at the height with all
+    /// noise, has the detector find it, and evaluates the height with the set-up as it is
+    /// described. `progress` is told the number of trials that are done; setting `cancel` ends the
+    /// work. The same seed gives the same bits for any number of threads.
     ///
     /// # Errors
     ///
-    /// Returns the errors of [`simulate`](crate::simulate), and one if a set-up that is drawn is not possible.
+    /// Returns the errors of [`simulate`](crate::simulate), and one if a set-up that is drawn is
+    /// not possible.
     pub fn virtual_experiment(
         &self,
         options: SimulationOptions,

@@ -9,9 +9,9 @@ use crate::{SetupDescription, SetupQuantity, TriangulationError, setup::within};
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorDescription {
-    /// The quantum efficiency η at the wavelength of the laser, above 0 and at most 1: electrons per
-    /// photon that falls on the whole area of a pixel, as EMVA 1288 measures it. Fill factor and
-    /// microlenses are in it.
+    /// The quantum efficiency η at the wavelength of the laser, above 0 and at most 1: electrons
+    /// per photon that falls on the whole area of a pixel, as EMVA 1288 measures it. Fill factor
+    /// and microlenses are in it.
     pub quantum_efficiency: f64,
     /// The overall system gain K, in DN per electron.
     pub gain: f64,
@@ -21,9 +21,11 @@ pub struct SensorDescription {
     pub dark_current: f64,
     /// The capacity at saturation, in electrons.
     pub full_well: f64,
-    /// The photo response non-uniformity: the standard deviation of the pixels' response as a fraction.
+    /// The photo response non-uniformity: the standard deviation of the pixels' response as a
+    /// fraction.
     pub prnu: f64,
-    /// The dark signal non-uniformity: the standard deviation of the pixels' dark signal, in electrons.
+    /// The dark signal non-uniformity: the standard deviation of the pixels' dark signal, in
+    /// electrons.
     pub dsnu: f64,
     /// The bits of a grey value: 8, 10, 12, 14 or 16.
     pub bit_depth: u32,
@@ -31,9 +33,9 @@ pub struct SensorDescription {
     pub black_level: f64,
     /// The distance of the pixels' centres, in metres.
     pub pixel_pitch: f64,
-    /// The part of a pixel that is sensitive, above 0 and at most 1: a square about its centre. It tells
-    /// over which part of the image a pixel integrates, not how much light it takes; behind microlenses
-    /// it is 1.
+    /// The part of a pixel that is sensitive, above 0 and at most 1: a square about its centre. It
+    /// tells over which part of the image a pixel integrates, not how much light it takes; behind
+    /// microlenses it is 1.
     pub fill_factor: f64,
     /// The exposure time, in seconds.
     pub exposure_time: f64,
@@ -42,12 +44,13 @@ pub struct SensorDescription {
 }
 
 impl SensorDescription {
-    /// Returns an industrial CMOS sensor with global shutter, as data sheets have them around 2020 for
-    /// pixels of 3.45 µm: 10 500 electrons full well, 2.3 electrons dark noise, 0.5 % PRNU, 1 electron
-    /// DSNU, 3 electrons/s dark current at room temperature, quantum efficiency ½ in the red, 1 ms.
+    /// Returns an industrial CMOS sensor with global shutter, as data sheets have them around 2020
+    /// for pixels of 3.45 µm: 10 500 electrons full well, 2.3 electrons dark noise, 0.5 % PRNU, 1
+    /// electron DSNU, 3 electrons/s dark current at room temperature, quantum efficiency ½ in the
+    /// red, 1 ms.
     ///
-    /// The black level is 1/64 of the range of `bit_depth` bits, and the gain is such that a full well
-    /// is the largest grey value. A bit depth that no sensor has is rejected by
+    /// The black level is 1/64 of the range of `bit_depth` bits, and the gain is such that a full
+    /// well is the largest grey value. A bit depth that no sensor has is rejected by
     /// [`Sensor::new`](crate::Sensor::new), not here.
     pub fn typical(bit_depth: u32) -> Self {
         let (black_level, full_well) = (f64::from(bit_depth).exp2() / 64.0, 10_500.0);

@@ -24,7 +24,8 @@ impl RawFrame {
         self.saturated.values().iter().filter(|&&is| is).count()
     }
 
-    /// Returns the number of pixels whose grey value is 0: the black level is too low for their noise.
+    /// Returns the number of pixels whose grey value is 0: the black level is too low for their
+    /// noise.
     pub fn pixels_at_zero(&self) -> usize {
         self.values
             .values()
@@ -48,14 +49,15 @@ impl RawFrame {
 impl Sensor {
     /// Exposes the sensor once: `electrons` holds the mean numbers of electrons that light frees.
     ///
-    /// In a pixel of the response `1 + PRNU · g` and the offset `DSNU · d`, both normally distributed and
-    /// the same in all frames of one camera, light and dark current free a Poisson distributed number of
-    /// electrons. What exceeds the full well is lost, and the pixel is marked as saturated. The offset and
-    /// the dark noise are added, the sum is amplified, and the grey value is rounded and clipped to its
-    /// bits; a pixel at the largest grey value is marked as saturated, too.
+    /// In a pixel of the response `1 + PRNU · g` and the offset `DSNU · d`, both normally
+    /// distributed and the same in all frames of one camera, light and dark current free a Poisson
+    /// distributed number of electrons. What exceeds the full well is lost, and the pixel is marked
+    /// as saturated. The offset and the dark noise are added, the sum is amplified, and the grey
+    /// value is rounded and clipped to its bits; a pixel at the largest grey value is marked as
+    /// saturated, too.
     ///
-    /// `seed` draws the noise of this frame, the serial number the differences between the pixels. The
-    /// same seeds give the same bits for any number of threads.
+    /// `seed` draws the noise of this frame, the serial number the differences between the pixels.
+    /// The same seeds give the same bits for any number of threads.
     ///
     /// # Errors
     ///

@@ -4,8 +4,8 @@ use super::{RawFrame, Sensor};
 use crate::TriangulationError;
 
 impl Sensor {
-    /// Exposes the sensor to light that is the same in all pixels and frees `electrons` of them on average:
-    /// a frame of a photon transfer series. With 0 it is a dark frame.
+    /// Exposes the sensor to light that is the same in all pixels and frees `electrons` of them on
+    /// average: a frame of a photon transfer series. With 0 it is a dark frame.
     ///
     /// # Errors
     ///

@@ -38,15 +38,17 @@ impl Sensor {
         self.description().gain * electrons / self.temporal_variance(electrons).sqrt()
     }
 
-    /// Returns the mean number of electrons that light frees when a pixel is saturated: when its well is
-    /// full or its grey value the largest, whatever comes first. It is 0 if darkness saturates it.
+    /// Returns the mean number of electrons that light frees when a pixel is saturated: when its
+    /// well is full or its grey value the largest, whatever comes first. It is 0 if darkness
+    /// saturates it.
     pub fn saturation_electrons(&self) -> f64 {
         let d = self.description();
         let digital = (d.largest_value() - d.black_level) / d.gain;
         (d.full_well.min(digital) - self.dark_electrons()).max(0.0)
     }
 
-    /// Returns the irradiance on the sensor at saturation, in W/m², at a vacuum wavelength in metres.
+    /// Returns the irradiance on the sensor at saturation, in W/m², at a vacuum wavelength in
+    /// metres.
     pub fn saturation_irradiance(&self, wavelength: f64) -> f64 {
         self.saturation_electrons() / self.electrons(1.0, wavelength)
     }
@@ -67,7 +69,8 @@ impl Sensor {
         self.saturation_electrons() / self.threshold_electrons()
     }
 
-    /// Returns the energy of the photons of one electron, in joules, at a vacuum wavelength in metres.
+    /// Returns the energy of the photons of one electron, in joules, at a vacuum wavelength in
+    /// metres.
     ///
     /// ```text
     /// h c / (λ η)
@@ -76,10 +79,11 @@ impl Sensor {
         PLANCK_TIMES_LIGHT / (wavelength * self.description().quantum_efficiency)
     }
 
-    /// Returns the grey value from which on a pixel may be saturated, in DN: that of a full well less three
-    /// standard deviations of dark noise and DSNU, or the largest one if that is less.
+    /// Returns the grey value from which on a pixel may be saturated, in DN: that of a full well
+    /// less three standard deviations of dark noise and DSNU, or the largest one if that is less.
     ///
-    /// For those who see grey values only. [`RawFrame::saturated`](crate::RawFrame::saturated) knows.
+    /// For those who see grey values only. [`RawFrame::saturated`](crate::RawFrame::saturated)
+    /// knows.
     pub fn saturation_level(&self) -> f64 {
         let d = self.description();
         let spread = 3.0 * d.dark_noise.hypot(d.dsnu);

@@ -71,7 +71,8 @@ fn the_signal_is_the_noise_at_the_threshold() {
     let sensor = typical();
     let threshold = sensor.threshold_electrons();
     assert_relative(sensor.signal_to_noise_ratio(threshold), 1.0, 1e-12);
-    // Half an electron, and the dark noise with that of the dark current, 0.003, and of rounding, 0.75 e⁻.
+    // Half an electron, and the dark noise with that of the dark current, 0.003, and of rounding,
+    // 0.75 e⁻.
     let gain: f64 = 4_031.0 / 10_500.0;
     let dark = (2.3_f64.powi(2) + 0.003 + 1.0 / (12.0 * gain * gain) + 0.25).sqrt();
     assert_absolute(threshold, 0.5 + dark, 1e-12);

@@ -33,7 +33,8 @@ pub struct SetupDescription {
 }
 
 impl Default for SetupDescription {
-    /// A typical set-up: 650 nm and 5 mW in a line of 0.2 mm, and a lens of 25 mm at f/8 that sees it from 300 mm at 30°.
+    /// A typical set-up: 650 nm and 5 mW in a line of 0.2 mm, and a lens of 25 mm at f/8 that sees
+    /// it from 300 mm at 30°.
     fn default() -> Self {
         Self {
             laser: LaserLineData {
@@ -80,18 +81,19 @@ pub struct LaserLineData {
     pub line_thickness: f64,
     /// The length of the line on the part, in metres.
     pub line_length: f64,
-    /// The distance of the laser plane from the point that the optical axis meets on the reference plane, along y,
-    /// in metres.
+    /// The distance of the laser plane from the point that the optical axis meets on the reference
+    /// plane, along y, in metres.
     pub offset: f64,
-    /// The angle of the laser plane from the upright, in radians: positive if it leans to +y, away from the camera.
+    /// The angle of the laser plane from the upright, in radians: positive if it leans to +y, away
+    /// from the camera.
     pub tilt: f64,
 }
 
 /// What a change of temperature since the calibration does to the geometry, to first order.
 ///
-/// The *base* holds camera and laser: as it expands, the laser plane moves away from the camera by the part
-/// `α ΔT` of their distance L sin θ, and the directions of both stay. The *mount* holds lens and sensor: as it expands,
-/// the image distance grows by that part.
+/// The *base* holds camera and laser: as it expands, the laser plane moves away from the camera by
+/// the part `α ΔT` of their distance L sin θ, and the directions of both stay. The *mount* holds
+/// lens and sensor: as it expands, the image distance grows by that part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SetupEnvironment {
     /// The temperature less that at which the values of the set-up hold, in kelvins.
@@ -103,8 +105,8 @@ pub struct SetupEnvironment {
 }
 
 impl SetupDescription {
-    /// Returns the distance of the laser plane from the optical axis on the reference plane, with the expansion of
-    /// the base, in metres.
+    /// Returns the distance of the laser plane from the optical axis on the reference plane, with
+    /// the expansion of the base, in metres.
     pub(crate) fn laser_offset(&self) -> f64 {
         let base = self.camera.distance * libm::sin(self.camera.angle);
         let SetupEnvironment {
@@ -115,8 +117,8 @@ impl SetupDescription {
         self.laser.offset + base * base_expansion * temperature_change
     }
 
-    /// Returns the pixel pitch that has the same image at the image distance without the expansion of the mount, in
-    /// metres.
+    /// Returns the pixel pitch that has the same image at the image distance without the expansion
+    /// of the mount, in metres.
     pub(crate) fn effective_pixel_pitch(&self) -> f64 {
         let SetupEnvironment {
             temperature_change,
@@ -132,7 +134,8 @@ impl SetupDescription {
         DVec3::new(0.0, self.laser_offset() + beside, height)
     }
 
-    /// Returns the laser line across, a Gaussian beam whose waist on the reference plane is as wide as the line is thick.
+    /// Returns the laser line across, a Gaussian beam whose waist on the reference plane is as wide
+    /// as the line is thick.
     ///
     /// # Errors
     ///
@@ -168,8 +171,8 @@ pub struct SetupCamera {
     pub resolution: [usize; 2],
     /// The distance from the entrance pupil to the line on the reference plane, in metres.
     pub distance: f64,
-    /// The angle θ between the optical axis and the upright, in radians: the angle to the laser plane is
-    /// θ + [`tilt`](LaserLineData::tilt).
+    /// The angle θ between the optical axis and the upright, in radians: the angle to the laser
+    /// plane is θ + [`tilt`](LaserLineData::tilt).
     pub angle: f64,
     /// The row of the image that the optical axis meets, in pixels; the middle without one.
     pub principal_row: Option<f64>,
@@ -221,7 +224,8 @@ impl Default for Averages {
 }
 
 impl SetupSurface {
-    /// Returns the contrast of the speckle in light of one wavelength, before pixels average over it.
+    /// Returns the contrast of the speckle in light of one wavelength, before pixels average over
+    /// it.
     ///
     /// ```text
     /// C = √((1 + P²) / (2 N))      P: degree of polarisation, N: independent patterns
@@ -241,8 +245,8 @@ impl SetupSurface {
 }
 
 impl SetupDescription {
-    /// Returns everything that is wrong number by number, in the order of the sections, or else what is wrong with
-    /// the light.
+    /// Returns everything that is wrong number by number, in the order of the sections, or else
+    /// what is wrong with the light.
     pub(crate) fn violations(&self) -> Vec<TriangulationError> {
         let quantities = SetupQuantity::ALL.iter();
         let checks = quantities.map(|quantity| quantity.check(self));

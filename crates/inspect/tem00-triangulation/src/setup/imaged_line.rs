@@ -17,9 +17,9 @@ const STEP: f64 = 1e-5;
 
 /// The image of the line on a flat surface.
 ///
-/// Its profile along a column is the Gaussian of the line, blurred by the image that the lens makes of a point,
-/// in or out of focus, whose wings fall as 1/y²: outside of ±Y lie 4h/(π³Y) of the light. For its width the
-/// squares of what makes it wide add:
+/// Its profile along a column is the Gaussian of the line, blurred by the image that the lens makes
+/// of a point, in or out of focus, whose wings fall as 1/y²: outside of ±Y lie 4h/(π³Y) of the
+/// light. For its width the squares of what makes it wide add:
 ///
 /// ```text
 /// W² = W_line² + W_lens² + b²
@@ -28,10 +28,10 @@ const STEP: f64 = 1e-5;
 /// b        = D s |1/Z_focus − 1/Z|, the diameter of the disc of defocus, whose 4σ across is b
 /// ```
 ///
-/// The line has its waist on the reference plane, with the Rayleigh range `z_R = π w₀²/λ`, w₀ being half its thickness.
-/// Z is the depth of the surface before the lens, `Z_focus` that in focus at this image point, s the
-/// depth of the sensor behind the lens, D the diameter of the pupil and h = λ s / D the speckle size.
-/// Across the disc of defocus 4σ = b.
+/// The line has its waist on the reference plane, with the Rayleigh range `z_R = π w₀²/λ`, w₀ being
+/// half its thickness. Z is the depth of the surface before the lens, `Z_focus` that in focus at
+/// this image point, s the depth of the sensor behind the lens, D the diameter of the pupil and h =
+/// λ s / D the speckle size. Across the disc of defocus 4σ = b.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImagedLine {
     /// The position along the middle column, in pixels, y down.
@@ -59,16 +59,19 @@ pub struct ImagedLine {
     pub bandwidth: BandwidthEffect,
 }
 
-/// What the linewidth and the extent of the source make of the speckle of a line, over light of one wavelength and a point.
+/// What the linewidth and the extent of the source make of the speckle of a line, over light of one
+/// wavelength and a point.
 ///
 /// # Validity
 ///
-/// That of [`PolychromaticSpeckle`], with the surface square to the light, as everywhere in a set-up.
+/// That of [`PolychromaticSpeckle`], with the surface square to the light, as everywhere in a
+/// set-up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandwidthEffect {
     /// The ratio of the contrast in a point. Pixels larger than a speckle lose less than this.
     pub contrast: f64,
-    /// The ratio of the standard deviation of the position of the line, over the columns that are averaged.
+    /// The ratio of the standard deviation of the position of the line, over the columns that are
+    /// averaged.
     pub line_noise_ratio: f64,
     /// The ratio of the standard deviation of the position of a round spot.
     pub spot_noise_ratio: f64,
@@ -151,16 +154,16 @@ impl ImagedLine {
         (depth > 0.0 && line.height_per_pixel.is_finite()).then_some(line)
     }
 
-    /// Returns the mean number of electrons that light frees in the pixel of a column that begins at
-    /// `start`, in pixels, if the line is at `centre`: the mean of the line over the sensitive part of
-    /// the pixel, of the height a about its middle.
+    /// Returns the mean number of electrons that light frees in the pixel of a column that begins
+    /// at `start`, in pixels, if the line is at `centre`: the mean of the line over the sensitive
+    /// part of the pixel, of the height a about its middle.
     ///
     /// ```text
     /// n = N ∫ exp(−π² W_line² f²/8) T(f) sinc(π a f) cos(2π f (y − c)) df
     /// ```
     ///
-    /// with N electrons in the column, the transfer function T of the lens in or out of focus, and the
-    /// middle y of the pixel.
+    /// with N electrons in the column, the transfer function T of the lens in or out of focus, and
+    /// the middle y of the pixel.
     pub fn pixel_electrons(&self, start: f64, centre: f64) -> f64 {
         let distance = start + 0.5 - centre;
         self.column_electrons * self.profile(distance.abs()).at(distance)
@@ -171,11 +174,11 @@ impl ImagedLine {
         self.profile_over(self.sensitive_height, reach)
     }
 
-    /// Returns the standard deviation, in pixels, that fully developed speckle gives the mean position over so many
-    /// neighbouring columns, each the centre of gravity of all light in it.
+    /// Returns the standard deviation, in pixels, that fully developed speckle gives the mean
+    /// position over so many neighbouring columns, each the centre of gravity of all light in it.
     ///
-    /// To first order in the fluctuations but for defocus, which moves a line by the mean place of its light in the pupil: a column's
-    /// power divides that.
+    /// To first order in the fluctuations but for defocus, which moves a line by the mean place of
+    /// its light in the pupil: a column's power divides that.
     pub(crate) fn centroid_deviation(&self, columns: u32) -> f64 {
         let [along, across] = self.speckle_size;
         let column = self.sensitive_height / along;
@@ -201,8 +204,8 @@ impl ImagedLine {
         LineProfile::new(&line, reach)
     }
 
-    /// Returns the mean number of electrons that light frees in the brightest pixel, for a line in the
-    /// middle of it.
+    /// Returns the mean number of electrons that light frees in the brightest pixel, for a line in
+    /// the middle of it.
     pub(super) fn peak_electrons(&self) -> f64 {
         self.pixel_electrons(-0.5, 0.0)
     }

@@ -9,7 +9,8 @@ named! {
     /// Verdict on the amount of light that the sensor gets.
     #[non_exhaustive]
     LightLevel {
-        /// The line hardly stands out of the dark noise, or is below the least peak of the detector.
+        /// The line hardly stands out of the dark noise, or is below the least peak of the
+        /// detector.
         Dark = "too dark",
         /// All is well.
         Good = "good",
@@ -45,18 +46,19 @@ impl LightLevel {
 pub(crate) const MIN_SIGNAL: f64 = 10.0;
 /// The part of what the sensor can hold that bright grains may fill.
 pub(crate) const MAX_GRAIN_SATURATION: f64 = 1.0;
-/// Height of bright grains above the mean, in standard deviations of speckle: of fully developed speckle
-/// in small pixels 2 % are brighter.
+/// Height of bright grains above the mean, in standard deviations of speckle: of fully developed
+/// speckle in small pixels 2 % are brighter.
 const BRIGHT_GRAINS: f64 = 3.0;
-/// The part of what the sensor can hold that bright grains fill with an exposure that is chosen: it leaves
-/// room for shot noise and for the different response of the pixels.
+/// The part of what the sensor can hold that bright grains fill with an exposure that is chosen: it
+/// leaves room for shot noise and for the different response of the pixels.
 const CHOSEN_GRAIN_SATURATION: f64 = 0.9;
 
 impl Setup {
     /// Returns the verdict on the light that the sensor gets.
     ///
-    /// A line is too dark if its [signal](Self::signal) is below 10, or its peak below the detector's least.
-    /// Bright grains saturate if they fill [more](Self::grain_saturation) than the sensor can hold.
+    /// A line is too dark if its [signal](Self::signal) is below 10, or its peak below the
+    /// detector's least. Bright grains saturate if they fill [more](Self::grain_saturation) than
+    /// the sensor can hold.
     pub fn light_level(&self) -> LightLevel {
         self.light_level_of(self.line())
     }
@@ -80,7 +82,8 @@ impl Setup {
 
     /// Returns the contrast of the speckle in the pixels, which average over it.
     ///
-    /// With a linewidth it is exact for pixels small against a speckle; larger ones have somewhat more.
+    /// With a linewidth it is exact for pixels small against a speckle; larger ones have somewhat
+    /// more.
     pub fn contrast(&self) -> f64 {
         self.contrast_of(self.line())
     }
@@ -91,14 +94,14 @@ impl Setup {
         self.description().surface.contrast() * line.bandwidth.contrast * pixel
     }
 
-    /// Returns the mean number of electrons in the brightest pixel, by light and dark current, for a
-    /// line in the middle of a pixel.
+    /// Returns the mean number of electrons in the brightest pixel, by light and dark current, for
+    /// a line in the middle of a pixel.
     pub fn peak_electrons(&self) -> f64 {
         self.line().peak_electrons() + self.sensor().dark_electrons()
     }
 
-    /// Returns the mean of the brightest pixel as a part of what the sensor can hold or tell, whichever
-    /// is less: the full well, or the range of its grey values.
+    /// Returns the mean of the brightest pixel as a part of what the sensor can hold or tell,
+    /// whichever is less: the full well, or the range of its grey values.
     ///
     /// Speckle makes single pixels brighter than the mean: several times, where pixels are small
     /// against it. See [`grain_saturation`](Self::grain_saturation).
@@ -106,8 +109,8 @@ impl Setup {
         self.saturation_of(self.peak_electrons())
     }
 
-    /// Returns the bright grains of speckle as a part of what the sensor can hold or tell: the brightest
-    /// pixel at three standard deviations of speckle above its mean.
+    /// Returns the bright grains of speckle as a part of what the sensor can hold or tell: the
+    /// brightest pixel at three standard deviations of speckle above its mean.
     pub fn grain_saturation(&self) -> f64 {
         self.grain_saturation_of(self.line())
     }
@@ -117,8 +120,8 @@ impl Setup {
         self.saturation_of(self.sensor().dark_electrons() + grains)
     }
 
-    /// Returns the exposure time, in seconds, with which bright grains fill 0.9 of what the sensor can hold
-    /// or tell, rounded down to two digits.
+    /// Returns the exposure time, in seconds, with which bright grains fill 0.9 of what the sensor
+    /// can hold or tell, rounded down to two digits.
     ///
     /// Light and dark current grow with the time, the black level does not.
     ///
@@ -142,8 +145,8 @@ impl Setup {
         Ok(DURATION.rounded((longest / step).floor() * step, step, "ms"))
     }
 
-    /// Returns the mean light in the brightest pixel in units of the standard deviation of a pixel in the
-    /// dark: by dark noise, dark current and DSNU.
+    /// Returns the mean light in the brightest pixel in units of the standard deviation of a pixel
+    /// in the dark: by dark noise, dark current and DSNU.
     pub fn signal(&self) -> f64 {
         self.signal_of(self.line())
     }

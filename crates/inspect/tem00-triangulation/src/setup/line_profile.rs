@@ -14,13 +14,13 @@ const PERIOD: f64 = 4.0;
 /// m(y) → 2h / (π³ y²)                                              far from the line
 /// ```
 ///
-/// W is the full width of the Gaussian between the points of 1/e², h the speckle size along the column,
-/// b the diameter of the disc of defocus and a the height of the sensitive part of a pixel; the integral of m is 1.
-/// T is the transfer function of the lens (Hopkins 1955), chat(h f) in focus. The wings are those of
-/// the lens: they hold 4h/(π³ Y) of the light outside of ±Y.
+/// W is the full width of the Gaussian between the points of 1/e², h the speckle size along the
+/// column, b the diameter of the disc of defocus and a the height of the sensitive part of a pixel;
+/// the integral of m is 1. T is the transfer function of the lens (Hopkins 1955), chat(h f) in
+/// focus. The wings are those of the lens: they hold 4h/(π³ Y) of the light outside of ±Y.
 ///
-/// The integral is a sum over equal steps of the frequency. Its copies of the line, a period apart, are
-/// so far away that they are but wings, whose sum is known and taken off.
+/// The integral is a sum over equal steps of the frequency. Its copies of the line, a period apart,
+/// are so far away that they are but wings, whose sum is known and taken off.
 #[derive(Clone, Debug)]
 pub(crate) struct LineProfile {
     period: f64,
@@ -68,8 +68,8 @@ impl LineProfile {
         }
     }
 
-    /// Returns the fraction of the light per pixel, averaged over the sensitive part of a pixel whose
-    /// middle is `distance` from that of the line.
+    /// Returns the fraction of the light per pixel, averaged over the sensitive part of a pixel
+    /// whose middle is `distance` from that of the line.
     pub(crate) fn at(&self, distance: f64) -> f64 {
         let angle = 2.0 * PI * distance / self.period;
         let (double, mut before, mut now) = (2.0 * angle.cos(), angle.cos(), 1.0);
@@ -93,8 +93,8 @@ impl LineProfile {
     }
 }
 
-/// The transfer function of a round pupil at the frequency at which its copies lie `shift` diameters apart
-/// and the disc of defocus is `blur` periods wide.
+/// The transfer function of a round pupil at the frequency at which its copies lie `shift`
+/// diameters apart and the disc of defocus is `blur` periods wide.
 pub(crate) fn transfer(shift: f64, blur: f64) -> f64 {
     if blur == 0.0 {
         return disc_overlap(shift);
@@ -127,7 +127,8 @@ mod tests {
         PI / 4.0 * (sum + 4.0 / (PI.powi(4) * ALONG * ALONG))
     }
 
-    /// The same out of focus: the light through each chord of the pupil. `blur` is in speckle sizes.
+    /// The same out of focus: the light through each chord of the pupil. `blur` is in speckle
+    /// sizes.
     fn defocused_line(x: f64, blur: f64) -> f64 {
         let of_chord = |angle: f64| {
             let half = 0.5 * angle.sin();

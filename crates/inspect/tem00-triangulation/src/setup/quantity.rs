@@ -186,7 +186,8 @@ quantities! {
         DarkCurrent: dark_current = Row::new(field!(sensor.dark_current), &ELECTRONS_PER_SECOND)
             .within(|_| (0.0, 1e12), "from 0 to 1e12, in electrons per second")
             .or("`3`").note("electrons per second");
-        // Ten standard deviations below its mean, which no pixel is, the response is still not negative.
+        // Ten standard deviations below its mean, which no pixel is, the response is still not
+        // negative.
         /// from 0 to 0.1: standard deviation of the pixels' responses as a fraction
         Prnu: prnu = Row::new(field!(sensor.prnu), &PLAIN)
             .within(|_| (0.0, 0.1), "from 0 to 0.1, as a fraction").or("`0.005`");

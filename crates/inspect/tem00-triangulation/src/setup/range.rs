@@ -31,7 +31,8 @@ impl Setup {
         let [_, height] = description.camera.resolution;
         let margin = 0.5 * description.detector.window as f64;
         let limit = description.camera.distance * description.camera.angle.cos();
-        // What is higher on the part is higher in the image, unless the laser leans over the camera.
+        // What is higher on the part is higher in the image, unless the laser leans over the
+        // camera.
         let mut rows = [height as f64 - margin, margin];
         if self.line().height_per_pixel < 0.0 {
             rows.reverse();
@@ -43,19 +44,21 @@ impl Setup {
         }
     }
 
-    /// Returns the heights at which the line stays fine, in metres: defocus makes its image at most √2 times as wide as in
-    /// focus, and it spreads on the part to at most √2 times its thickness.
+    /// Returns the heights at which the line stays fine, in metres: defocus makes its image at most
+    /// √2 times as wide as in focus, and it spreads on the part to at most √2 times its thickness.
     ///
     /// ```text
     /// D s |1/Z − 1/L| ≤ W₀      Z = L + y sin θ − z cos θ
     /// |z| ≤ π w₀² cos τ / λ     w₀ = line_thickness / 2
     /// ```
     ///
-    /// with the place y of the laser plane at the height z and its tilt τ. The line has its waist on the reference
-    /// plane: a fine one spreads within its Rayleigh range, which ends the depth of field where the lens does not.
+    /// with the place y of the laser plane at the height z and its tilt τ. The line has its waist
+    /// on the reference plane: a fine one spreads within its Rayleigh range, which ends the depth
+    /// of field where the lens does not.
     ///
-    /// A set-up after Scheimpflug has the whole plane of the laser in focus where that goes through the point that the
-    /// optical axis meets. With an offset y₀ beside it, and the angle φ of the sensor, it is fine where
+    /// A set-up after Scheimpflug has the whole plane of the laser in focus where that goes through
+    /// the point that the optical axis meets. With an offset y₀ beside it, and the angle φ of the
+    /// sensor, it is fine where
     ///
     /// ```text
     /// Z ≥ f (1 + y₀/H + D |y₀| / (W₀ |H| cos φ))      H = L sin(θ + τ) / cos τ
@@ -72,7 +75,8 @@ impl Setup {
         HeightRange { low: -high, high }
     }
 
-    /// That of the lens, without end for a pupil so small that the disc of defocus never grows as wide as the line.
+    /// That of the lens, without end for a pupil so small that the disc of defocus never grows as
+    /// wide as the line.
     pub(super) fn lens_range(&self) -> HeightRange {
         let description = self.description();
         let (sin, cos) = description.camera.angle.sin_cos();

@@ -169,7 +169,8 @@ fn a_line_on_a_leaning_plane_is_blurred_by_its_depth() {
     }
 }
 
-/// The set-up with a laser that leans, by degrees, and stands beside the axis, at an angle of the camera.
+/// The set-up with a laser that leans, by degrees, and stands beside the axis, at an angle of the
+/// camera.
 fn leaning(tilt: f64, offset: f64, angle: f64, scheimpflug: bool) -> Setup {
     setup_of(|d| {
         (d.laser.tilt, d.laser.offset) = (tilt.to_radians(), offset);
@@ -209,7 +210,8 @@ fn a_sensor_after_scheimpflug_has_a_leaning_laser_in_focus_if_it_stands_on_the_a
             assert!(blur < 1e-11, "{tilt}°, {angle}°, {height}: {blur}");
         }
     }
-    // Beside the axis the image of the depth at which the range of the lens ends is blurred by the width of the line.
+    // Beside the axis the image of the depth at which the range of the lens ends is blurred by the
+    // width of the line.
     for (tilt, offset, angle) in [(0.0, 20e-3, 30.0), (0.0, -15e-3, 30.0), (10.0, 30e-3, 40.0)] {
         let mut description = leaning(tilt, offset, angle, true).description().clone();
         description.camera.f_number = 2.0;
@@ -272,7 +274,8 @@ fn a_chosen_exposure_leaves_room_for_bright_grains_and_not_much_more() {
             d.sensor.exposure_time = f64::NAN;
             d.auto_exposure = true;
         });
-        // Grains three standard deviations above the mean, as drawn by nobody: in electrons, and in DN.
+        // Grains three standard deviations above the mean, as drawn by nobody: in electrons, and in
+        // DN.
         let d = setup.description().sensor;
         let dark = d.dark_current * d.exposure_time;
         let mean = setup.line().pixel_electrons(-0.5, 0.0);

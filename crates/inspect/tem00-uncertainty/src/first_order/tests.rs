@@ -27,8 +27,8 @@ fn sensitivities_are_the_derivatives() {
     ];
     let found = found.contributions().iter().zip(expected);
     for ((contribution, c), u) in found.zip(uncertainties) {
-        // Rounding of values of 140 over steps of at least 1/20 of 0.02; over one of 1/20 the second would err
-        // by 4e-5 without extrapolation.
+        // Rounding of values of 140 over steps of at least 1/20 of 0.02; over one of 1/20 the
+        // second would err by 4e-5 without extrapolation.
         assert_absolute(contribution.sensitivity, c, 1e-9);
         assert_absolute(contribution.uncertainty, c.abs() * u, 1e-9);
     }

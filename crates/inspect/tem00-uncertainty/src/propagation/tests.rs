@@ -57,8 +57,8 @@ fn a_normal_input_of_few_readings_has_the_interval_of_students_t() {
         digits: 1,
         ..PropagationOptions::default()
     };
-    // The 0.975 quantiles of scipy.stats.t; a rectangular input keeps its limits, the others the standard deviation
-    // u √(ν / (ν − 2)).
+    // The 0.975 quantiles of scipy.stats.t; a rectangular input keeps its limits, the others the
+    // standard deviation u √(ν / (ν − 2)).
     let rectangular = Input::new(3.0, 2.0, Distribution::Rectangular).unwrap();
     for (input, freedom, quantile, deviation) in [
         (normal, 4.0, 2.776_445, 2_f64.sqrt()),
@@ -193,7 +193,8 @@ fn inputs_that_leave_what_is_possible_are_named() {
             }
         }
     }
-    // An arcsine one ends before, and two that only together leave what is possible are none to blame.
+    // An arcsine one ends before, and two that only together leave what is possible are none to
+    // blame.
     let arcsine = of(Distribution::Arcsine);
     assert!(Propagation::new(&arcsine, root, PropagationOptions::default()).is_ok());
     let both = |x: &[f64]| (12.0 - x[0] - x[1]).sqrt();

@@ -19,12 +19,12 @@ fn geometry() -> ImagingGeometry {
     .unwrap()
 }
 
-/// The law between two states, in the limit of small motions, per metre of a motion of the surface along
-/// the unit vector `a`: in the image, upright, and in the pupil.
+/// The law between two states, in the limit of small motions, per metre of a motion of the surface
+/// along the unit vector `a`: in the image, upright, and in the pupil.
 ///
-/// The surface axes are world axes; the camera is turned by `angles` and sees the point at `to_pupil` in
-/// its own axes. Half the difference of both ways leaves the third order, (1e−6 over the shortest radius)²,
-/// and the rounding of lengths over 1e−6.
+/// The surface axes are world axes; the camera is turned by `angles` and sees the point at
+/// `to_pupil` in its own axes. Half the difference of both ways leaves the third order, (1e−6 over
+/// the shortest radius)², and the rounding of lengths over 1e−6.
 fn law(angles: EulerAngles, emitter: Emitter, to_pupil: DVec3, a: DVec3) -> [DVec2; 2] {
     const STEP: f64 = 1e-6;
     let axes = angles.camera_axes();
@@ -265,8 +265,8 @@ proptest! {
         let a = a.normalize();
         let [_, ours] = law(angles, emitter, DVec3::Z * distance, a);
         let printed = pupil_displacement(angles, emitter, distance, a).unwrap();
-        // Terms up to 1 + d/d_SL ≤ 101 over cos q1 cos q2 ≥ 0.13: their third order, (1e−6 / 0.05)², and
-        // the rounding of d over 1e−6.
+        // Terms up to 1 + d/d_SL ≤ 101 over cos q1 cos q2 ≥ 0.13: their third order, (1e−6 /
+        // 0.05)², and the rounding of d over 1e−6.
         let tolerance = 1e-6 * (1.0 + distance * (1.0 + emitter.distance.abs().recip()));
         prop_assert!((ours - printed).length() <= tolerance, "{} vs {}", ours, printed);
     }

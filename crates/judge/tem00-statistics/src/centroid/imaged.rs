@@ -6,9 +6,9 @@ use tem00_numerics::quadrature::integrate;
 
 use crate::centroid::row_spectrum::Row;
 
-/// Returns the standard deviation of the centroid of a laser line on a rough surface that a lens images,
-/// first order in the fluctuations, for a line of the 1/e² half-width `radius` that is read in rows
-/// of `row_height`; all three are in units of the speckle size h in the image.
+/// Returns the standard deviation of the centroid of a laser line on a rough surface that a lens
+/// images, first order in the fluctuations, for a line of the 1/e² half-width `radius` that is read
+/// in rows of `row_height`; all three are in units of the speckle size h in the image.
 ///
 /// ```text
 /// σ² = (1/2π⁴) ∫∫ sinc²(π p (x − x')/2) √π L erf L dx dx'      over [−1, 1]²
@@ -18,20 +18,22 @@ use crate::centroid::row_spectrum::Row;
 /// ```
 ///
 /// The light of the line interferes in the image as waves do. x and x' are two places in the pupil
-/// along the line, in radii of the pupil; what they have in common across the line, the chord of the outer
-/// one, tells how much of the position of a scatterer on the line is left in the light from both. Already for
-/// lines as wide as a speckle this is the [`line_centroid_deviation`](crate::laws::line_centroid_deviation)
-/// within one per cent. A speckle pattern times the irradiance, [`SpeckledLine`](crate::laws::SpeckledLine),
-/// falls short of it, by 20 % at w = h, 7 % at 2 h and 2 % at 4 h: the lens blurs the line as well.
-/// The function is even in both.
+/// along the line, in radii of the pupil; what they have in common across the line, the chord of
+/// the outer one, tells how much of the position of a scatterer on the line is left in the light
+/// from both. Already for lines as wide as a speckle this is the
+/// [`line_centroid_deviation`](crate::laws::line_centroid_deviation) within one per cent. A speckle
+/// pattern times the irradiance, [`SpeckledLine`](crate::laws::SpeckledLine), falls short of it, by
+/// 20 % at w = h, 7 % at 2 h and 2 % at 4 h: the lens blurs the line as well. The function is even
+/// in both.
 ///
 /// # Validity
 ///
-/// Circular pupil, a Gaussian line in focus on a surface of many scatterers in a speckle, and a detector
-/// that sees all of the line's image; what it cuts off of the rings that a lens leaves beside a line
-/// has a long lever. Beyond the first order, the power of a row fluctuates: simulations of lines as
-/// wide as two speckles and more scatter by up to 3 % less than this law says. Lines narrower than a
-/// speckle scatter by far more, as the centroids of weak rows are nearly free: by a quarter at w = 0.4 h.
+/// Circular pupil, a Gaussian line in focus on a surface of many scatterers in a speckle, and a
+/// detector that sees all of the line's image; what it cuts off of the rings that a lens leaves
+/// beside a line has a long lever. Beyond the first order, the power of a row fluctuates:
+/// simulations of lines as wide as two speckles and more scatter by up to 3 % less than this law
+/// says. Lines narrower than a speckle scatter by far more, as the centroids of weak rows are
+/// nearly free: by a quarter at w = 0.4 h.
 ///
 /// # Examples
 ///
@@ -45,29 +47,30 @@ use crate::centroid::row_spectrum::Row;
 ///
 /// # References
 ///
-/// - Own derivation: the centroid as the mean of the operator i ∂/∂k over the light in the pupil, whose
-///   correlation at a distance of k is the Fourier transform of the line's irradiance.
+/// - Own derivation: the centroid as the mean of the operator i ∂/∂k over the light in the pupil,
+///   whose correlation at a distance of k is the Fourier transform of the line's irradiance.
 pub fn imaged_line_centroid_deviation(radius: f64, row_height: f64) -> f64 {
     defocused_line_centroid_deviation(radius, row_height, 0.0)
 }
 
-/// Returns the standard deviation of the centroid of a laser line that a lens images out of focus: that of
-/// [`imaged_line_centroid_deviation`] for a point that is spread over a disc of the diameter `blur` in
-/// the image, in units of the speckle size h as all lengths.
+/// Returns the standard deviation of the centroid of a laser line that a lens images out of focus:
+/// that of [`imaged_line_centroid_deviation`] for a point that is spread over a disc of the
+/// diameter `blur` in the image, in units of the speckle size h as all lengths.
 ///
 /// ```text
 /// σ² = σ²(b = 0) + (2 b² / 3π²) ∫∫ sinc²(π p (x − x')/2) c⁴ Q(L) dx dx'      over [−1, 1]²
 /// Q(L) = ∫₀¹ exp(−L² t²) (1 − 3t + 2t³) dt      c = √(1 − max(x², x'²)), L = π w c, b = blur
 /// ```
 ///
-/// Out of focus the light through one half of the pupil lies beside that through the other. The line's
-/// centroid therefore moves by b times the centroid, in diameters, of the speckle that the line makes *in the pupil*,
-/// whose correlation length is h/w: a thinner line has larger grains there and more noise. The two
-/// parts are independent.
+/// Out of focus the light through one half of the pupil lies beside that through the other. The
+/// line's centroid therefore moves by b times the centroid, in diameters, of the speckle that the
+/// line makes *in the pupil*, whose correlation length is h/w: a thinner line has larger grains
+/// there and more noise. The two parts are independent.
 ///
 /// # Validity
 ///
-/// That of the line in focus; the blur may be of any size, and the sign of the defocus does not matter.
+/// That of the line in focus; the blur may be of any size, and the sign of the defocus does not
+/// matter.
 ///
 /// # Examples
 ///
@@ -81,7 +84,8 @@ pub fn imaged_line_centroid_deviation(radius: f64, row_height: f64) -> f64 {
 ///
 /// # References
 ///
-/// - Own derivation: the phase π b ρ² of defocus, ρ in diameters of the pupil, under the operator i ∂/∂k of the centroid.
+/// - Own derivation: the phase π b ρ² of defocus, ρ in diameters of the pupil, under the operator i
+///   ∂/∂k of the centroid.
 pub fn defocused_line_centroid_deviation(radius: f64, row_height: f64, blur: f64) -> f64 {
     if radius.is_infinite() {
         return f64::INFINITY;
@@ -100,8 +104,9 @@ pub fn defocused_line_centroid_deviation(radius: f64, row_height: f64, blur: f64
         .sqrt()
 }
 
-/// Returns the contrast of the power that rows of `row_height` get of a laser line of the 1/e² half-width `radius`, in or
-/// out of focus: its standard deviation over its mean. Both lengths are in units of the speckle size h in the image.
+/// Returns the contrast of the power that rows of `row_height` get of a laser line of the 1/e²
+/// half-width `radius`, in or out of focus: its standard deviation over its mean. Both lengths are
+/// in units of the speckle size h in the image.
 ///
 /// ```text
 /// K² = (8/π²) ∫∫ sinc²(π p (x − x')/2) c² q(L) dx dx'      over [−1, 1]²
@@ -109,9 +114,9 @@ pub fn defocused_line_centroid_deviation(radius: f64, row_height: f64, blur: f64
 /// K² → ℓ(p) / (√π w)                     w → ∞, ℓ the speckle length
 /// ```
 ///
-/// A centroid divides by this power. Its part by defocus is a mean over the light in the pupil, whose variance is
-/// 1 + K² times smaller than to first order, as that of the mean place of 1/K² equal and independent modes; the part in
-/// focus is hardly changed.
+/// A centroid divides by this power. Its part by defocus is a mean over the light in the pupil,
+/// whose variance is 1 + K² times smaller than to first order, as that of the mean place of 1/K²
+/// equal and independent modes; the part in focus is hardly changed.
 ///
 /// # Examples
 ///
@@ -138,8 +143,8 @@ pub fn imaged_line_power_contrast(radius: f64, row_height: f64) -> f64 {
         .sqrt()
 }
 
-/// Returns ∫ exp(−L² t²) (1 − t) dt over [0, 1]: the variance of the power of speckle on a chord, L coherence lengths
-/// long, over twice the square of its mean.
+/// Returns ∫ exp(−L² t²) (1 − t) dt over [0, 1]: the variance of the power of speckle on a chord, L
+/// coherence lengths long, over twice the square of its mean.
 fn chord_power(length: f64) -> f64 {
     let squared = length * length;
     if squared < 1e-4 {
@@ -150,8 +155,8 @@ fn chord_power(length: f64) -> f64 {
     flat - 0.5 * (1.0 - (-squared).exp()) / squared
 }
 
-/// Returns ∫ exp(−L² t²) (1 − 3t + 2t³) dt over [0, 1]: the variance of the centroid of speckle on a chord, L coherence
-/// lengths long, over (8/3) of the fourth power of half the chord.
+/// Returns ∫ exp(−L² t²) (1 − 3t + 2t³) dt over [0, 1]: the variance of the centroid of speckle on
+/// a chord, L coherence lengths long, over (8/3) of the fourth power of half the chord.
 fn chord_centroid(length: f64) -> f64 {
     let squared = length * length;
     if squared < 0.01 {
@@ -218,7 +223,8 @@ mod tests {
 
     #[test]
     fn a_point_of_the_line_s_image_out_of_focus_moves_with_the_centroid_of_its_pupil() {
-        // ∫∫ v v' |E(v − v')|² over the common chord of two places u, u' in the pupil, by the midpoint rule.
+        // ∫∫ v v' |E(v − v')|² over the common chord of two places u, u' in the pupil, by the
+        // midpoint rule.
         let (radius, row_height, blur) = (1.3, 0.8, 3.0);
         let steps = 60_i32;
         let places = || (0..steps).map(|i| (f64::from(i) + 0.5) / f64::from(steps) - 0.5);
@@ -259,7 +265,8 @@ mod tests {
 
     #[test]
     fn rows_of_a_thin_line_share_what_chords_have_in_common() {
-        // (4/π)² ∫∫ (2c)² du du' over the shorter chord, for a point of a row: ∫∫ 4 (1/4 − max²) = 1/2.
+        // (4/π)² ∫∫ (2c)² du du' over the shorter chord, for a point of a row: ∫∫ 4 (1/4 − max²) =
+        // 1/2.
         let contrast = imaged_line_power_contrast(1e-5, 0.0);
         assert_relative(contrast * contrast, 8.0 / (PI * PI), 1e-6);
         let [below, above] = [0.01 - 1e-9, 0.01 + 1e-9].map(chord_power);

@@ -10,17 +10,19 @@ use crate::{
     laws::speckle_length,
 };
 
-/// Returns the standard deviation of the centroid of a laser line under speckle, for a line of the 1/e²
-/// half-width `radius` that is much wider than a speckle and read in rows of `row_height`: how far
-/// the line seems to be from where it is. All three are in units of the speckle size h in the image.
+/// Returns the standard deviation of the centroid of a laser line under speckle, for a line of the
+/// 1/e² half-width `radius` that is much wider than a speckle and read in rows of `row_height`: how
+/// far the line seems to be from where it is. All three are in units of the speckle size h in the
+/// image.
 ///
 /// ```text
 /// σ = √(w ℓ(p) / (8 √π))      w = radius, p = row_height along the line, ℓ the speckle length
 /// ```
 ///
-/// The function is even in both. The noise grows with the root of the line's width: a wider line averages over more speckles, but
-/// these have a longer lever. Sums of N equal patterns divide it by √N, light of the degree of
-/// polarisation P multiplies it by √((1 + P²)/2): it is proportional to the contrast.
+/// The function is even in both. The noise grows with the root of the line's width: a wider line
+/// averages over more speckles, but these have a longer lever. Sums of N equal patterns divide it
+/// by √N, light of the degree of polarisation P multiplies it by √((1 + P²)/2): it is proportional
+/// to the contrast.
 ///
 /// # Validity
 ///
@@ -30,7 +32,8 @@ use crate::{
 /// - a line on a rough surface that a lens images obeys the law within 1 % from w = h on, see
 ///   [`imaged_line_centroid_deviation`](crate::laws::imaged_line_centroid_deviation);
 /// - a speckle pattern times the irradiance, as renderers make it, scatters less: within 5 % of the
-///   law from w = 4.2 h on, within 5 % of the [`SpeckledLine`] from 2 h on, within 7 % of that from h on.
+///   law from w = 4.2 h on, within 5 % of the [`SpeckledLine`] from 2 h on, within 7 % of that from
+///   h on.
 ///
 /// # Examples
 ///
@@ -61,9 +64,10 @@ pub fn line_centroid_deviation(radius: f64, row_height: f64) -> f64 {
 ///
 /// # Validity
 ///
-/// The speckle pattern times a Gaussian irradiance, as renderers make it. It is exact for the moment
-/// `Σ y I` over the mean power. A centroid divides by a power that fluctuates itself and scatters
-/// less than first order says: by 7 % at most where w = h, 5 % where it is 2 h and 2.7 % where it is 4 h.
+/// The speckle pattern times a Gaussian irradiance, as renderers make it. It is exact for the
+/// moment `Σ y I` over the mean power. A centroid divides by a power that fluctuates itself and
+/// scatters less than first order says: by 7 % at most where w = h, 5 % where it is 2 h and 2.7 %
+/// where it is 4 h.
 ///
 /// # Examples
 ///
@@ -91,7 +95,8 @@ impl SpeckledLine {
     ///
     /// # Errors
     ///
-    /// Returns an error if the half-width is below 0.01 or the height negative, or either above 10⁶.
+    /// Returns an error if the half-width is below 0.01 or the height negative, or either above
+    /// 10⁶.
     pub fn new(radius: f64, row_height: f64) -> Result<Self, StatisticsError> {
         check("radius", radius, [0.01, 1e6], "from 0.01 to 1e6")?;
         check("row_height", row_height, [0.0, 1e6], "from 0 to 1e6")?;
@@ -102,7 +107,8 @@ impl SpeckledLine {
         })
     }
 
-    /// Returns the line as seen through a window that reaches `half_width` to either side of its middle.
+    /// Returns the line as seen through a window that reaches `half_width` to either side of its
+    /// middle.
     ///
     /// # Errors
     ///
@@ -134,8 +140,8 @@ impl SpeckledLine {
         (2.0 * sum).max(0.0).sqrt() / share
     }
 
-    /// Returns the autocorrelation ∫ g(y) g(y + lag) dy of the weight g = y N(y), N being the normal
-    /// density, over the window.
+    /// Returns the autocorrelation ∫ g(y) g(y + lag) dy of the weight g = y N(y), N being the
+    /// normal density, over the window.
     fn weight_overlap(&self, lag: f64) -> f64 {
         let s = self.spread;
         let reach = (self.window - 0.5 * lag).max(0.0) / s;
@@ -236,8 +242,8 @@ mod tests {
 
     #[test]
     fn wide_lines_have_the_noise_of_the_closed_form() {
-        // The spectrum of a point of a row is ℓ (1 − (3/4) ln(1/f) f² …) near 0, and f² of the order
-        // of 1/w²: 1e-3 from 60 on.
+        // The spectrum of a point of a row is ℓ (1 − (3/4) ln(1/f) f² …) near 0, and f² of the
+        // order of 1/w²: 1e-3 from 60 on.
         for row_height in [0.0, 0.5, 2.0] {
             let exact = SpeckledLine::new(200.0, row_height).expect("a line");
             let wide = line_centroid_deviation(200.0, row_height);

@@ -6,8 +6,8 @@ use crate::{StatisticsError, centroid::row_spectrum::Row};
 
 /// A column of pixels that see speckle.
 ///
-/// All lengths are in units of the speckle size h; behind an elliptical pupil, in units of the speckle
-/// size along the same axis. The first of two numbers is across the column, along the rows.
+/// All lengths are in units of the speckle size h; behind an elliptical pupil, in units of the
+/// speckle size along the same axis. The first of two numbers is across the column, along the rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelColumn {
     /// The width and height of the light-sensitive part of a pixel.
@@ -27,15 +27,15 @@ pub struct PixelColumn {
 /// T(f) = sinc(π s_x f) sin(π N d_x f) / (N sin(π d_x f))      N averaged columns
 /// ```
 ///
-/// with the size s and the pitch d of the pixels. The variance of `Σ g_i E_i`, for pixels that see the
-/// irradiances `E_i` without speckle, is `Σ g_i E_i g_j E_j c_|i−j|`. N incoherent patterns of equal
-/// strength divide the covariance by N; light of the degree of polarisation P multiplies it by
-/// (1 + P²)/2.
+/// with the size s and the pitch d of the pixels. The variance of `Σ g_i E_i`, for pixels that see
+/// the irradiances `E_i` without speckle, is `Σ g_i E_i g_j E_j c_|i−j|`. N incoherent patterns of
+/// equal strength divide the covariance by N; light of the degree of polarisation P multiplies it
+/// by (1 + P²)/2.
 ///
 /// # Validity
 ///
-/// Fully developed speckle behind a circular or elliptical pupil, irradiance that hardly changes within
-/// a pixel. The covariances are exact to 10⁻⁹.
+/// Fully developed speckle behind a circular or elliptical pupil, irradiance that hardly changes
+/// within a pixel. The covariances are exact to 10⁻⁹.
 ///
 /// # Examples
 ///
@@ -60,7 +60,8 @@ pub struct PixelAutocovariance {
     values: Vec<f64>,
 }
 
-/// The longest column and the widest average, in units of h: the time to integrate grows with either.
+/// The longest column and the widest average, in units of h: the time to integrate grows with
+/// either.
 const LONGEST: f64 = 4096.0;
 
 impl PixelAutocovariance {
@@ -91,7 +92,8 @@ impl PixelAutocovariance {
         Ok(Self { values })
     }
 
-    /// Returns the covariance of two pixels of the column that are `lag` apart; beyond the column, 0.
+    /// Returns the covariance of two pixels of the column that are `lag` apart; beyond the
+    /// column, 0.
     pub fn covariance(&self, lag: usize) -> f64 {
         self.values.get(lag).copied().unwrap_or(0.0)
     }
@@ -101,7 +103,8 @@ impl PixelAutocovariance {
         &self.values
     }
 
-    /// Returns the variance of `Σ amplitudes[i] s[i]`, s being the speckle in the pixels of the column.
+    /// Returns the variance of `Σ amplitudes[i] s[i]`, s being the speckle in the pixels of the
+    /// column.
     ///
     /// An amplitude is the irradiance of a pixel times the sensitivity of a result to it.
     ///

@@ -82,8 +82,8 @@ impl Row {
         }
     }
 
-    /// Returns the power spectrum, at a `frequency` across the row, of speckle that is averaged along
-    /// it.
+    /// Returns the power spectrum, at a `frequency` across the row, of speckle that is averaged
+    /// along it.
     ///
     /// ```text
     /// S(f) = (8/π) ∫ chat(√(f² + g²)) T²(g) dg      from 0 to √(1 − f²)
@@ -96,8 +96,8 @@ impl Row {
 
     /// Returns 2 ∫ density(g) T²(g) dg over the frequencies g along the row from 0 to `end`.
     ///
-    /// The density has a kink at 0 that is `kink` wide, from where on the pieces grow, and a root of
-    /// the order 3/2 at the end.
+    /// The density has a kink at 0 that is `kink` wide, from where on the pieces grow, and a root
+    /// of the order 3/2 at the end.
     pub(crate) fn weigh(&self, density: impl Fn(f64) -> f64, kink: f64, end: f64) -> f64 {
         if self.size.is_nan() {
             return f64::NAN;
@@ -138,8 +138,8 @@ impl Row {
         (self.pitch * (self.pixels - 1.0) + self.size).recip()
     }
 
-    /// Returns the squared transfer function of the pixels, that of one times the interference of their
-    /// places; or what is left of it if it is averaged over its oscillation.
+    /// Returns the squared transfer function of the pixels, that of one times the interference of
+    /// their places; or what is left of it if it is averaged over its oscillation.
     fn transfer(&self, frequency: f64, averaged: bool) -> f64 {
         if averaged {
             return 0.5 * (PI * self.size * frequency).powi(-2);
@@ -152,7 +152,8 @@ impl Row {
     }
 }
 
-/// Returns the ends of pieces of `[0, end]` that grow by four from where the integrand first changes.
+/// Returns the ends of pieces of `[0, end]` that grow by four from where the integrand first
+/// changes.
 fn pieces(kink: f64, averaged_from: f64, end: f64) -> impl Iterator<Item = f64> {
     let first = if kink > 0.0 { kink } else { averaged_from };
     let mut next = first.min(averaged_from);
@@ -190,7 +191,8 @@ mod tests {
             const EULER_GAMMA: f64 = 0.577_215_664_901_532_9;
             let logarithm = (4.0 * PI * p).ln() + EULER_GAMMA;
             let high = (4.0 / PI - 16.0 / PI.powi(4) * logarithm / p) / p;
-            // Next are the root of chat at its end, (2πp)^(−5/2)/p², and the cube of chat at 0, 1/p⁴.
+            // Next are the root of chat at its end, (2πp)^(−5/2)/p², and the cube of chat at 0,
+            // 1/p⁴.
             let tolerance = (2.0 * PI * p).powf(-2.5) / p + p.powi(-3) / 1e3 + 1e-10;
             assert_relative(speckle_length(p), high, tolerance);
         }

@@ -5,8 +5,8 @@ use tem00_numerics::{
     quadrature::{integrate, integrate_from_root},
 };
 
-/// Returns the standard deviation of the centroid of a round Gaussian spot of the 1/e² radius `radius`
-/// along one axis, under speckle; both are in units of the speckle size h.
+/// Returns the standard deviation of the centroid of a round Gaussian spot of the 1/e² radius
+/// `radius` along one axis, under speckle; both are in units of the speckle size h.
 ///
 /// ```text
 /// σ² = 16 π² s⁴ ∫₀¹ ρ³ chat(ρ) exp(−4π² s² ρ²) dρ      s = radius / 2
@@ -39,8 +39,8 @@ pub fn gaussian_spot_centroid_deviation(radius: f64) -> f64 {
     (sum / (PI * PI)).sqrt()
 }
 
-/// Returns the standard deviation of the centroid of a uniform round spot of the given `radius` along
-/// one axis, under speckle; both are in units of the speckle size h.
+/// Returns the standard deviation of the centroid of a uniform round spot of the given `radius`
+/// along one axis, under speckle; both are in units of the speckle size h.
 ///
 /// ```text
 /// σ² = (4/π²) ∫₀¹ chat(ρ) J₂²(2π a ρ) / ρ dρ      a = radius
@@ -48,8 +48,8 @@ pub fn gaussian_spot_centroid_deviation(radius: f64) -> f64 {
 /// ```
 ///
 /// The limit is the uncertainty of Dorsch: on the surface, `h/π = λ / (2π sin u)`. Spots of a few
-/// speckles are better off by their blurred edge, as much as 23 % at a radius of two. First order in
-/// the fluctuations. The function is even.
+/// speckles are better off by their blurred edge, as much as 23 % at a radius of two. First order
+/// in the fluctuations. The function is even.
 ///
 /// # Examples
 ///
@@ -73,7 +73,8 @@ pub fn disc_spot_centroid_deviation(radius: f64) -> f64 {
     let overlap = |u: f64| disc_overlap(u / edge) / u;
     let near = |u: f64| libm::jn(2, u).powi(2) * overlap(u);
     let far = |u: f64| (1.0 + 1.875 / (u * u)) / (PI * u) * overlap(u);
-    // The root of chat stands at the far end; it is taken away where the end is mirrored to the start.
+    // The root of chat stands at the far end; it is taken away where the end is mirrored to the
+    // start.
     let mirrored = |f: &dyn Fn(f64) -> f64, start: f64, longest: f64| {
         let width = edge - start;
         integrate_from_root(|u| f(edge - u), [0.0, width], longest / (2.0 * width))
@@ -125,8 +126,8 @@ mod tests {
 
     #[test]
     fn frequencies_and_lags_of_a_disc_agree() {
-        // ∫ x (x + r cos φ) over the lens that two discs of radius a share, averaged over φ: with the
-        // middle of the lens as origin, (⟨x²⟩ + ⟨y²⟩)/2 − r²/8 of its area A: by quadrature.
+        // ∫ x (x + r cos φ) over the lens that two discs of radius a share, averaged over φ: with
+        // the middle of the lens as origin, (⟨x²⟩ + ⟨y²⟩)/2 − r²/8 of its area A: by quadrature.
         let lens = |a: f64, r: f64| {
             let half = 0.5 * r;
             let slice = |y: f64| {

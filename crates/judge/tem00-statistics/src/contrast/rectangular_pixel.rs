@@ -16,7 +16,8 @@ use crate::{airy_autocovariance, laws::translation_contrast};
 ///
 /// The size is that of the light-sensitive area: the pitch of the pixels and the gaps between them
 /// do not matter. Pixels of one speckle size by two see the contrast 0.559. The function is even in
-/// either size, and without a height it is the [`translation_contrast`](crate::laws::translation_contrast).
+/// either size, and without a height it is the
+/// [`translation_contrast`](crate::laws::translation_contrast).
 ///
 /// The approximation that only looks at the coherence area `A_c = (4/π) h²`,
 ///
@@ -242,8 +243,8 @@ mod tests {
 
     #[test]
     fn gaussian_filter_has_its_closed_form() {
-        // With z = (2π spread)²/2: C² = (2/z) (1 − e⁻ᶻ (I₀(z) + I₁(z))), by parts; the derivative of
-        // I₀ is I₁.
+        // With z = (2π spread)²/2: C² = (2/z) (1 − e⁻ᶻ (I₀(z) + I₁(z))), by parts; the derivative
+        // of I₀ is I₁.
         let scaled_i1 = |z: f64| {
             let step = 1e-4;
             let value = |z: f64| scaled_bessel_i0(z);

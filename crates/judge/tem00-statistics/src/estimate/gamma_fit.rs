@@ -7,8 +7,8 @@ use crate::{GammaIntensity, Moments, StatisticsError, estimate::moments::Scaled}
 /// # Independence
 ///
 /// Mean and shape hold for any samples, the standard error for independent ones of a Gamma law:
-/// take [`decorrelated_samples`](crate::estimate::decorrelated_samples). A hypothesis test of the samples
-/// against the law fitted to them overstates the agreement.
+/// take [`decorrelated_samples`](crate::estimate::decorrelated_samples). A hypothesis test of the
+/// samples against the law fitted to them overstates the agreement.
 ///
 /// # Examples
 ///

@@ -168,8 +168,8 @@ impl Contrast {
         })
     }
 
-    /// Returns the interval that holds the contrast of the ensemble with the probability `level`, from
-    /// its lower to its upper end.
+    /// Returns the interval that holds the contrast of the ensemble with the probability `level`,
+    /// from its lower to its upper end.
     ///
     /// ```text
     /// C exp(± z s_C / C)         s_C the standard error, z the normal quantile: 1.96 for 0.95

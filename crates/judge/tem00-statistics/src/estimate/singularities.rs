@@ -18,15 +18,16 @@ pub struct Singularity {
 /// Finds the phase singularities of a sampled field, cell by cell, in the order of its rows.
 ///
 /// The charge of a cell is the number of turns of the phase along its four corners. It is counted
-/// in integers, so that the charge inside any closed path is exactly the turns along that path; over
-/// a [`Periodic`](Boundary::Periodic) field the charges add up to exactly 0. Cells of a
+/// in integers, so that the charge inside any closed path is exactly the turns along that path;
+/// over a [`Periodic`](Boundary::Periodic) field the charges add up to exactly 0. Cells of a
 /// [`Finite`](Boundary::Finite) field have all corners inside.
 ///
 /// # Bias
 ///
-/// Where the field is nearly zero between two samples its phase seems to jump, and a pair of opposite
-/// charges in neighbouring cells appears that is not there: of speckles h ≥ 3 samples large too many
-/// are found by the share 1.5/h², by simulation. Two of opposite charge in one cell cancel.
+/// Where the field is nearly zero between two samples its phase seems to jump, and a pair of
+/// opposite charges in neighbouring cells appears that is not there: of speckles h ≥ 3 samples
+/// large too many are found by the share 1.5/h², by simulation. Two of opposite charge in one cell
+/// cancel.
 ///
 /// # Independence
 ///
@@ -126,9 +127,9 @@ fn crossing(a: Complex<f32>, b: Complex<f32>) -> i8 {
 /// # Independence
 ///
 /// Singularities repel like charges and attract opposite ones, and their number spreads less than
-/// that of independent points. The standard error, `√(0.56 count) / cells`, holds for fully developed
-/// speckle behind a circular pupil in a field many speckles across; the factor was found by
-/// simulation.
+/// that of independent points. The standard error, `√(0.56 count) / cells`, holds for fully
+/// developed speckle behind a circular pupil in a field many speckles across; the factor was found
+/// by simulation.
 ///
 /// # Examples
 ///

@@ -72,8 +72,8 @@ impl SpeckleSize {
         })
     }
 
-    /// Measures the speckle size along one axis from an autocovariance, with zero lag at `(0, 0)`, in
-    /// pixels: also of speckle that the image does not resolve, or not hold, along the other.
+    /// Measures the speckle size along one axis from an autocovariance, with zero lag at `(0, 0)`,
+    /// in pixels: also of speckle that the image does not resolve, or not hold, along the other.
     ///
     /// # Errors
     ///

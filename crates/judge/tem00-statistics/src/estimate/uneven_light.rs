@@ -17,13 +17,15 @@ const SIGMAS: f64 = 4.5;
 /// 0.005, an annulus with an opening of one half 0.03, of nine tenths 0.07.
 const SIDE_LOBES: f64 = 0.08;
 
-/// Largest share of the variance that chance may hide where light is called even: that of some hundred speckles.
+/// Largest share of the variance that chance may hide where light is called even: that of some
+/// hundred speckles.
 const HIDDEN: f64 = 0.25;
 
 /// Lag at which finer grains are looked for, in speckle sizes.
 const FINE_LAG: f64 = 0.125;
 
-/// Share of the variance from which on grains are finer than the law of the speckle, which leaves 0.008 at most.
+/// Share of the variance from which on grains are finer than the law of the speckle, which leaves
+/// 0.008 at most.
 const FINE_SHARE: f64 = 0.02;
 
 /// Evenness of the light over an image, as far as its autocovariance tells.
@@ -36,12 +38,14 @@ pub enum Evenness {
     },
     /// The light is not even.
     Uneven(UnevenLight),
-    /// Too few speckles to tell their grains from the shape of the light, which may have set the size.
+    /// Too few speckles to tell their grains from the shape of the light, which may have set the
+    /// size.
     FewSpeckles {
         /// The width and the height of the image, in speckle sizes.
         across: [f64; 2],
     },
-    /// Grains much finer than the speckle size: noise, or the speckle itself, where the light has set the size.
+    /// Grains much finer than the speckle size: noise, or the speckle itself, where the light has
+    /// set the size.
     FinerGrains {
         /// The share of the variance that they make.
         share: f64,
@@ -55,8 +59,8 @@ pub enum Evenness {
 pub struct UnevenLight {
     /// The inner and the outer radius of the ring of lags that shows it most, in speckle sizes.
     pub lags: [f64; 2],
-    /// The mean autocovariance over that ring, in units of the variance of the image: about the share
-    /// of the variance that the shape of the light makes.
+    /// The mean autocovariance over that ring, in units of the variance of the image: about the
+    /// share of the variance that the shape of the light makes.
     pub covariance: f64,
     /// The most that side lobes and chance make of speckle in even light there.
     pub limit: f64,
@@ -65,8 +69,8 @@ pub struct UnevenLight {
 impl Evenness {
     /// Judges the light by the autocovariance of a finite image, with zero lag at `(0, 0)`.
     ///
-    /// The lags are averaged over rings from 1.5 to 3 speckle sizes, from 3 to 6, and so on up to half
-    /// of the image. In even light that average is 0, with the standard deviation
+    /// The lags are averaged over rings from 1.5 to 3 speckle sizes, from 3 to 6, and so on up to
+    /// half of the image. In even light that average is 0, with the standard deviation
     ///
     /// ```text
     /// √2 (4/π) / √(n a)         n the speckle sizes h² in the image, a the ring's area in h²
@@ -76,10 +80,11 @@ impl Evenness {
     /// first ring and half as much in each further one. `size` is the speckle size, or `None` where
     /// pixels are larger than speckles.
     ///
-    /// Light that makes more than half of the variance sets the speckle size itself, and no ring shows it. A
-    /// smooth profile is then no more than a few such sizes wide: below six along an axis, or a hundred in all, there
-    /// are too few. Finer structure leaves the speckle as a fall of the autocovariance c near zero lag, where speckle of
-    /// the size h ≥ 8 pixels has a parabola:
+    /// Light that makes more than half of the variance sets the speckle size itself, and no ring
+    /// shows it. A smooth profile is then no more than a few such sizes wide: below six along an
+    /// axis, or a hundred in all, there are too few. Finer structure leaves the speckle as a fall
+    /// of the autocovariance c near zero lag, where speckle of the size h ≥ 8 pixels has a
+    /// parabola:
     ///
     /// ```text
     /// share = 1 − (4 c(h/8) − c(h/4)) / 3        along x or y, the smaller
@@ -124,7 +129,8 @@ impl Evenness {
     }
 }
 
-/// Returns the share of the variance in grains finer than the speckle size, and the lag within which they decorrelate.
+/// Returns the share of the variance in grains finer than the speckle size, and the lag within
+/// which they decorrelate.
 fn finer_grains(lags: &Grid<f32>, size: [f64; 2]) -> Option<(f64, usize)> {
     let lag = size.map(|size| FINE_LAG * size);
     if lag[0].min(lag[1]) < 1.0 {
@@ -163,8 +169,8 @@ const fn whole(lag: f64) -> i32 {
     lag as i32
 }
 
-/// An image divided by its mean over a square about each pixel: speckle in uneven light, without the
-/// light.
+/// An image divided by its mean over a square about each pixel: speckle in uneven light, without
+/// the light.
 ///
 /// ```text
 /// R(x) = I(x) / m(x)        m the mean over window × window pixels about x, as far as they exist
@@ -172,14 +178,15 @@ const fn whole(lag: f64) -> i32 {
 ///
 /// # Bias
 ///
-/// The local mean follows the pattern, the more the smaller the window is, and takes from it the share
+/// The local mean follows the pattern, the more the smaller the window is, and takes from it the
+/// share
 ///
 /// ```text
 /// s = (4/π) h² ⟨1/n⟩        ⟨1/n⟩ the average over the image of 1 by the pixels in the window
 /// ```
 ///
-/// of the variance. With δ = I − 1 and η = m − 1 of a sum of fully developed patterns, whose cumulants
-/// are ⟨δη⟩ = ⟨η²⟩ = C² s and ⟨δ²η⟩ = 2 C⁴ s, the contrast of R is
+/// of the variance. With δ = I − 1 and η = m − 1 of a sum of fully developed patterns, whose
+/// cumulants are ⟨δη⟩ = ⟨η²⟩ = C² s and ⟨δ²η⟩ = 2 C⁴ s, the contrast of R is
 ///
 /// ```text
 /// C' = C (1 − (1 + C²) s / 2)        to first order in s
@@ -191,8 +198,8 @@ const fn whole(lag: f64) -> i32 {
 ///
 /// # Validity
 ///
-/// Windows of six speckle sizes and more, s ≤ 0.035, over which the light varies little: what it bends
-/// is left, `w² e″ / 24 e` along each axis for a light e and a window of the width w.
+/// Windows of six speckle sizes and more, s ≤ 0.035, over which the light varies little: what it
+/// bends is left, `w² e″ / 24 e` along each axis for a light e and a window of the width w.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlatImage {
     values: Grid<f32>,
@@ -202,13 +209,13 @@ pub struct FlatImage {
 }
 
 impl FlatImage {
-    /// Divides `image` by its mean over `window` × `window` pixels; an even window counts as one pixel
-    /// wider.
+    /// Divides `image` by its mean over `window` × `window` pixels; an even window counts as one
+    /// pixel wider.
     ///
     /// # Errors
     ///
-    /// Returns an error if the window is smaller than two pixels or larger than the image, a pixel is
-    /// not finite, or a local mean is not positive.
+    /// Returns an error if the window is smaller than two pixels or larger than the image, a pixel
+    /// is not finite, or a local mean is not positive.
     pub fn new(image: &Grid<f32>, window: usize) -> Result<Self, StatisticsError> {
         let size = (image.width(), image.height());
         if window < 2 || window > size.0.min(size.1) {
@@ -421,7 +428,8 @@ mod tests {
             ),
         ];
         for (name, light) in &lights {
-            // Grains of 1.5 pixels, as weak as in blood that flows: they make 0.2 to 7 % of the variance.
+            // Grains of 1.5 pixels, as weak as in blood that flows: they make 0.2 to 7 % of the
+            // variance.
             let image = Grid::from_fn(WIDTH, HEIGHT, |x, y| {
                 light[(x, y)] * (1.0 + 0.08 * (grains[(x, y)] - 1.0))
             });
@@ -447,8 +455,8 @@ mod tests {
             match evenness(&image) {
                 Evenness::FinerGrains { share, lag } => {
                     assert!(found && lag == 2, "{part}: {share} within {lag}");
-                    // The variance of 20 speckles across spreads by 1.53 / 20, here 3.3 σ; they leave 0.0013 at two
-                    // pixels themselves.
+                    // The variance of 20 speckles across spreads by 1.53 / 20, here 3.3 σ; they
+                    // leave 0.0013 at two pixels themselves.
                     let tolerance = 0.25 * part + 0.002;
                     assert!((share - part).abs() < tolerance, "{part}: {share}");
                 }
@@ -486,8 +494,8 @@ mod tests {
             }
             for change in changes {
                 let change = Moments::from_samples(&change).unwrap();
-                // Windows of 6 and 10 speckle sizes, cut at the edges: s is 0.045 and 0.019, and the
-                // second order some 2 s².
+                // Windows of 6 and 10 speckle sizes, cut at the edges: s is 0.045 and 0.019, and
+                // the second order some 2 s².
                 let second_order = if window_size == 24 { 4e-3 } else { 1.5e-3 };
                 let tolerance = 4.0 * change.standard_error() + second_order;
                 assert!(

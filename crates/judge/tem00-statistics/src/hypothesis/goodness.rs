@@ -8,14 +8,15 @@ const BINS: u32 = 20;
 
 /// Agreement of samples, rounded or not, with a law.
 ///
-/// Samples are compared on the scale of the law's distribution function, where they are even in
-/// [0, 1] if they follow it. Rounded samples lie evenly within the cell of their level, which law and
+/// Samples are compared on the scale of the law's distribution function, where they are even in [0,
+/// 1] if they follow it. Rounded samples lie evenly within the cell of their level, which law and
 /// samples therefore fill alike: what is compared are the shares of the samples up to the edges of
 /// the levels. Compared as they are, few grey levels would be a deviation from any continuous law.
 ///
 /// # Independence
 ///
-/// The samples are independent: take [`decorrelated_samples`](crate::estimate::decorrelated_samples).
+/// The samples are independent: take
+/// [`decorrelated_samples`](crate::estimate::decorrelated_samples).
 ///
 /// # Validity
 ///
@@ -92,8 +93,8 @@ impl GoodnessOfFit {
 
     /// Tests after Kolmogorov and Smirnov, as [`kolmogorov_smirnov`](crate::kolmogorov_smirnov).
     ///
-    /// The distance of rounded samples is that at the edges of the levels, or larger by up to half of
-    /// one sample's fraction of its cell.
+    /// The distance of rounded samples is that at the edges of the levels, or larger by up to half
+    /// of one sample's fraction of its cell.
     ///
     /// # Errors
     ///
@@ -102,9 +103,9 @@ impl GoodnessOfFit {
         kolmogorov_smirnov(&self.places, |place| place)
     }
 
-    /// Tests after Pearson, as [`chi_squared`](crate::chi_squared), in up to 20 bins of about the same
-    /// probability. `constraints` counts 1 for the total and 1 for each parameter of the law that
-    /// was fitted.
+    /// Tests after Pearson, as [`chi_squared`](crate::chi_squared), in up to 20 bins of about the
+    /// same probability. `constraints` counts 1 for the total and 1 for each parameter of the law
+    /// that was fitted.
     ///
     /// # Errors
     ///

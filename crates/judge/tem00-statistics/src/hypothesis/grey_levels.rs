@@ -1,5 +1,5 @@
-/// Values nearer than this fraction of the greater are the same level: averages of colour channels are
-/// rounded to `f32`, 16 bits are 16 times as far apart.
+/// Values nearer than this fraction of the greater are the same level: averages of colour channels
+/// are rounded to `f32`, 16 bits are 16 times as far apart.
 const SAME: f64 = 1.0 / (1 << 20) as f64;
 
 /// The most steps up to the largest value: averages over three channels of 16 bits.
@@ -163,8 +163,8 @@ impl GreyLevels {
         (2.0 * (0.5 * self.step / rounded).hypot(1.0) - 1.0).sqrt()
     }
 
-    /// Returns the samples in ascending order, those of each level spread evenly over its cell: over
-    /// none where the cell has no end.
+    /// Returns the samples in ascending order, those of each level spread evenly over its cell:
+    /// over none where the cell has no end.
     ///
     /// Fits of a continuous law want samples that differ.
     pub fn spread(&self, samples: &[f64]) -> Vec<f64> {

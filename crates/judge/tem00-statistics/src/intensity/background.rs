@@ -21,8 +21,8 @@ use crate::{
 /// # Validity
 ///
 /// The background has one phase and one intensity over the area considered, and the polarisation
-/// and coherence of the speckle, which is fully developed by itself. A surface whose phase varies by
-/// less than some radians adds a part that is not circular, which is left out.
+/// and coherence of the speckle, which is fully developed by itself. A surface whose phase varies
+/// by less than some radians adds a part that is not circular, which is left out.
 ///
 /// # Examples
 ///

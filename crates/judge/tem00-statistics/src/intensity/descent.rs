@@ -2,7 +2,8 @@ use core::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2};
 
 use num_complex::Complex;
 
-/// The factor `(scale / (p − pole))^count` of a Laplace transform, with its pole at zero or left of it.
+/// The factor `(scale / (p − pole))^count` of a Laplace transform, with its pole at zero or left of
+/// it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Factor {
     pub(crate) pole: f64,
@@ -18,10 +19,10 @@ pub(crate) struct Factor {
 /// ```
 ///
 /// On the real axis right of all poles φ has one minimum, the saddle of the integrand. The path of
-/// steepest descent from there, φ = φ₀ − τ², goes round all poles, as all other saddles lie on the real
-/// axis between them. Along it the integrand is exp(−τ²) times a smooth function, which
-/// the trapezoidal rule sums to 1e−13, and nothing cancels: poles may coincide, nearly coincide or
-/// lie far apart, and the result keeps its digits however small it is. The time taken grows with the
+/// steepest descent from there, φ = φ₀ − τ², goes round all poles, as all other saddles lie on the
+/// real axis between them. Along it the integrand is exp(−τ²) times a smooth function, which the
+/// trapezoidal rule sums to 1e−13, and nothing cancels: poles may coincide, nearly coincide or lie
+/// far apart, and the result keeps its digits however small it is. The time taken grows with the
 /// number of factors.
 pub(crate) fn inverse_laplace_transform(factors: &[Factor], time: f64) -> f64 {
     let Some(first) = factors.first() else {
@@ -32,7 +33,8 @@ pub(crate) fn inverse_laplace_transform(factors: &[Factor], time: f64) -> f64 {
         .map(|f| (first.pole - f.pole) * time)
         .collect();
     let saddle = saddle(factors, &behind);
-    // The distances of all poles from the saddle: those of the first in units of each, and its square.
+    // The distances of all poles from the saddle: those of the first in units of each, and its
+    // square.
     let ratios = behind.iter().map(|behind| saddle / (saddle + behind));
     let norm: f64 = factors
         .iter()
@@ -112,8 +114,8 @@ fn saddle(factors: &[Factor], behind: &[f64]) -> f64 {
 const STEP: f64 = 0.15;
 const STEPS: u32 = 42;
 
-/// (1/π) Im ∫₀^∞ exp(−τ²) dy/dτ dτ along the path, with the distance y from the saddle in units in which
-/// φ falls as y²/2 on either side.
+/// (1/π) Im ∫₀^∞ exp(−τ²) dy/dτ dτ along the path, with the distance y from the saddle in units in
+/// which φ falls as y²/2 on either side.
 fn path_integral(terms: &[Term]) -> f64 {
     let zero = Complex::new(0.0, 0.0);
     // The last three points.

@@ -137,7 +137,8 @@ fn is_negligible(x: f64, power: i32) -> bool {
     (2.0 / (PI * x)).sqrt().powi(power) < 1e-14
 }
 
-/// Returns the zero number `index` ≥ 1 of J₀ by Newton's method, from its expansion for large zeros.
+/// Returns the zero number `index` ≥ 1 of J₀ by Newton's method, from its expansion for large
+/// zeros.
 fn bessel_zero(index: u32) -> f64 {
     let beta = (f64::from(index) - 0.25) * PI;
     let mut zero = beta + 0.125 / beta;
@@ -248,7 +249,8 @@ mod tests {
 
     #[test]
     fn density_is_the_integral_of_kluyver() {
-        // The tail falls as ω^(−N/2 + ½): beyond 400 √8 there is 3e−8, beyond 60 √16 less than 1e−12.
+        // The tail falls as ω^(−N/2 + ½): beyond 400 √8 there is 3e−8, beyond 60 √16 less than
+        // 1e−12.
         for (count, end, tolerance) in [(8, 400.0, 1e-6), (16, 60.0, 1e-9), (40, 6.0, 1e-13)] {
             let law = PhasorSum::new(usize::from(count)).unwrap();
             for intensity in [0.0, 0.3, 1.1, 2.7, 7.5] {

@@ -22,8 +22,9 @@ use crate::{
 ///
 /// Each pattern is fully developed. Weights may be equal, nearly equal or orders of magnitude
 /// apart: density and distribution are exact to 10⁻¹² of themselves on either tail for up to a
-/// thousand patterns, and to 10⁻⁹ for a million. The time of each value is some 10 µs for each weight that
-/// differs from the others, of which there may be [`MAX_DIFFERENT`](Self::MAX_DIFFERENT).
+/// thousand patterns, and to 10⁻⁹ for a million. The time of each value is some 10 µs for each
+/// weight that differs from the others, of which there may be
+/// [`MAX_DIFFERENT`](Self::MAX_DIFFERENT).
 ///
 /// # Examples
 ///

@@ -35,8 +35,8 @@ pub enum LitArea {
 /// ```
 ///
 /// The field in the plane is correlated as the Fourier transform of the irradiance on the surface
-/// (van Cittert and Zernike), and c is the square of that. Uniformly lit, the area has the part that
-/// the pupil has for the speckle in an image; z is the distance.
+/// (van Cittert and Zernike), and c is the square of that. Uniformly lit, the area has the part
+/// that the pupil has for the speckle in an image; z is the distance.
 ///
 /// # Validity
 ///
@@ -68,13 +68,13 @@ pub struct ObjectiveSpeckle {
 }
 
 impl ObjectiveSpeckle {
-    /// Creates the speckle from the wavelength λ and the distance z of the plane, in metres, and the
-    /// lit area.
+    /// Creates the speckle from the wavelength λ and the distance z of the plane, in metres, and
+    /// the lit area.
     ///
     /// # Errors
     ///
-    /// Returns an error unless the wavelength, the distance and all lengths of the area are positive
-    /// and finite.
+    /// Returns an error unless the wavelength, the distance and all lengths of the area are
+    /// positive and finite.
     pub fn new(wavelength: f64, distance: f64, area: LitArea) -> Result<Self, StatisticsError> {
         let is_length = |x: f64| x > 0.0 && x.is_finite();
         if !is_length(wavelength) {

@@ -59,8 +59,8 @@ pub fn level_crossings(level: f64) -> f64 {
     0.5 * PI.sqrt() * level.sqrt() * (-level).exp()
 }
 
-/// Returns the fraction of the area of fully developed speckle that is brighter than `level`, in units
-/// of the mean intensity: `exp(−level)`, and 1 below zero.
+/// Returns the fraction of the area of fully developed speckle that is brighter than `level`, in
+/// units of the mean intensity: `exp(−level)`, and 1 below zero.
 pub fn area_fraction_above(level: f64) -> f64 {
     (-level.max(0.0)).exp()
 }

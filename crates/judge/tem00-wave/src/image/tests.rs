@@ -122,8 +122,8 @@ fn a_window_off_the_axis_is_the_perfect_image_of_every_point() {
             let at = DVec2::new(x as f64 - 48.0, y as f64 - 48.0) * step;
             let expected = image_of_point(&lit, camera.focus_point(centre + at)).norm();
             let found = image.amplitude()[(x, y)].norm();
-            // Two lattices differ at the rim of the pupil, here of 32 samples: 100 cells of 800, off by
-            // 0.1 each, are 1.2e−3 for each point.
+            // Two lattices differ at the rim of the pupil, here of 32 samples: 100 cells of 800,
+            // off by 0.1 each, are 1.2e−3 for each point.
             let tolerance = 3e-3;
             assert_absolute(found, expected, tolerance * largest);
         }
@@ -154,10 +154,11 @@ fn a_point_out_of_focus_fades_as_the_pupil_integral_says() {
             _ => integrand(j) * 2.0,
         });
         let expected = simpson.sum::<Complex<f64>>().norm() / (3.0 * f64::from(INTERVALS));
-        // The rim of the lattice pupil, as for the Airy pattern, whose cells now hold up to 0.4 rad.
+        // The rim of the lattice pupil, as for the Airy pattern, whose cells now hold up to 0.4
+        // rad.
         assert_absolute(found, expected, 1e-3 / depth);
-        // The law for a path that is linear in the area; the next term, (p/L)⁴ L/8 = 2e−4 wavelengths
-        // at the edge, is smaller still.
+        // The law for a path that is linear in the area; the next term, (p/L)⁴ L/8 = 2e−4
+        // wavelengths at the edge, is smaller still.
         let sinc = if i == 0 {
             1.0
         } else {

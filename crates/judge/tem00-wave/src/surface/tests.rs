@@ -102,8 +102,9 @@ fn a_seed_is_a_surface() {
 
 #[test]
 fn heights_of_a_large_surface_have_the_right_correlation_at_all_lags() {
-    // 200 × 200 scatterers 10 µm apart. With a correlation length of 20 µm there are π (ℓ² / 2) / 100 µm²
-    // = 6.3 scatterers per independent height, 6400 of those; below 5 µm all are independent.
+    // 200 × 200 scatterers 10 µm apart. With a correlation length of 20 µm there are π (ℓ² / 2) /
+    // 100 µm² = 6.3 scatterers per independent height, 6400 of those; below 5 µm all are
+    // independent.
     for correlation_length in [20e-6, 5e-6, 4e-6, 0.0] {
         let roughness = Roughness::Heights {
             rms: 2e-6,

@@ -21,22 +21,24 @@ use super::slope::{aperture_point, direction, secant, slope_of, towards_light};
 ///   the light and may be combined by multiple importance sampling.
 ///
 /// Light beyond the cut-off (the field `cutoff`, in beam radii, 4 by default) is dropped by
-/// [`irradiance`](Self::irradiance), [`flux`](Self::flux) and both next-event forms, which loses the
-/// fraction exp(−2 · cutoff²) of the power of a spot, 1e−14 by default. The power is not raised to
-/// make up for it. Rays are not cut off.
+/// [`irradiance`](Self::irradiance), [`flux`](Self::flux) and both next-event forms, which loses
+/// the fraction exp(−2 · cutoff²) of the power of a spot, 1e−14 by default. The power is not raised
+/// to make up for it. Rays are not cut off.
 ///
-/// Uniform variates are expected in [0, 1). One that is 0 acts as half the spacing of such variates.
+/// Uniform variates are expected in [0, 1). One that is 0 acts as half the spacing of such
+/// variates.
 ///
 /// # Validity
 ///
-/// The irradiance carries the rounding of the coordinates, which is large where they come from `f32`.
-/// Within two beam radii of the axis its relative error is then usually below `4 ε (1 + |p| / w)` and
-/// below five times that wherever the light stands, with ε = 1.2e−7, the larger one `|p|` of the distances of the point and of the light
-/// from the world's origin, and the smaller beam radius `w`. In a line the half-length of the fan and
-/// the width of its roll-off count as radii too; at an abrupt end nothing can be said.
+/// The irradiance carries the rounding of the coordinates, which is large where they come from
+/// `f32`. Within two beam radii of the axis its relative error is then usually below
+/// `4 ε (1 + |p| / w)` and below five times that wherever the light stands, with ε = 1.2e−7, the
+/// larger one `|p|` of the distances of the point and of the light from the world's origin, and the
+/// smaller beam radius `w`. In a line the half-length of the fan and the width of its roll-off
+/// count as radii too; at an abrupt end nothing can be said.
 ///
-/// The batch forms give the bits of single calls, with and without the feature `simd`, which compiles
-/// their loops for the widest vector instructions that the processor turns out to have.
+/// The batch forms give the bits of single calls, with and without the feature `simd`, which
+/// compiles their loops for the widest vector instructions that the processor turns out to have.
 ///
 /// The trait is sealed. [`SpotLight`](crate::SpotLight), [`LineLight`](crate::LineLight) and
 /// [`TabulatedLineLight`](crate::TabulatedLineLight) implement it.
@@ -164,8 +166,8 @@ pub trait Emitter: PhaseSpace {
     }
 
     /// Returns the density, per steradian, with which
-    /// [`next_event_sampled`](Self::next_event_sampled) draws the unit vector `wi` towards the light
-    /// at `p`; 0 outside the cut-off, behind the aperture and for a `wi` along the axis.
+    /// [`next_event_sampled`](Self::next_event_sampled) draws the unit vector `wi` towards the
+    /// light at `p`; 0 outside the cut-off, behind the aperture and for a `wi` along the axis.
     ///
     /// Multiple importance sampling needs it for a direction that another technique has drawn. The
     /// product with the `value` of the event in that direction is the radiance along it.
@@ -183,13 +185,13 @@ pub trait Emitter: PhaseSpace {
     /// Returns the light that a ray from `p` along the unit vector `wi` meets: the other technique
     /// beside [`next_event_sampled`](Self::next_event_sampled).
     ///
-    /// A material has drawn `wi` with the density `q`, per steradian. What it reflects of the light is
-    /// estimated by `f · |n·wi| · V · radiance / q`, which multiple importance sampling weighs by
-    /// `q / (q + pdf)`; the sampled event then has the weight `pdf / (pdf + q)`. The aperture is in
-    /// nobody's way: only a hit nearer than `distance` hides it.
+    /// A material has drawn `wi` with the density `q`, per steradian. What it reflects of the light
+    /// is estimated by `f · |n·wi| · V · radiance / q`, which multiple importance sampling weighs
+    /// by `q / (q + pdf)`; the sampled event then has the weight `pdf / (pdf + q)`. The aperture is
+    /// in nobody's way: only a hit nearer than `distance` hides it.
     ///
-    /// Returns `None` where [`next_event_sampled`](Self::next_event_sampled) does, for a ray that runs
-    /// with the light or along its aperture, and for one that meets no light.
+    /// Returns `None` where [`next_event_sampled`](Self::next_event_sampled) does, for a ray that
+    /// runs with the light or along its aperture, and for one that meets no light.
     fn hit(&self, p: [f64; 3], wi: [f64; 3]) -> Option<ApertureHit> {
         let frame = self.frame();
         let local = frame.local_from_world_point(p);
@@ -229,9 +231,9 @@ pub trait Emitter: PhaseSpace {
     /// Returns the densities with which [`sample_ray`](Self::sample_ray) draws the ray through `o`
     /// along the unit vector `d`; 0 for a ray against the axis.
     ///
-    /// Any point `o` of the ray will do: the densities of position are those of the ray's point on the
-    /// aperture plane. Coordinates that were rounded to `f32` must still resolve the source, which for a line is
-    /// about a micrometre wide.
+    /// Any point `o` of the ray will do: the densities of position are those of the ray's point on
+    /// the aperture plane. Coordinates that were rounded to `f32` must still resolve the source,
+    /// which for a line is about a micrometre wide.
     fn ray_pdf(&self, o: [f64; 3], d: [f64; 3]) -> RayPdf {
         let frame = self.frame();
         match slope_of(frame.local_from_world_vector(d)) {
@@ -259,7 +261,8 @@ pub trait Emitter: PhaseSpace {
         }
     }
 
-    /// Returns bounds of the light from the aperture to the distance `l`, in metres, along its axis.
+    /// Returns bounds of the light from the aperture to the distance `l`, in metres, along its
+    /// axis.
     ///
     /// The box holds all points within the cut-off. The cone holds the mean energy flow at all of
     /// them; a sampled ray is outside it with a probability of about exp(−2 · cutoff²).
@@ -282,20 +285,21 @@ pub trait Emitter: PhaseSpace {
         bounds
     }
 
-    /// Returns a bound of the power, in watts, that reaches the axis-aligned box from `min` to `max`,
-    /// whose coordinates are finite; 0 if the box is behind the aperture, beyond the cut-off or empty.
+    /// Returns a bound of the power, in watts, that reaches the axis-aligned box from `min` to
+    /// `max`, whose coordinates are finite; 0 if the box is behind the aperture, beyond the cut-off
+    /// or empty.
     ///
     /// A light hierarchy that holds surfaces in boxes visits no light whose bound is 0, and chooses
-    /// among the others by their bounds. All light within the cut-off counts that passes through the
-    /// box, were nothing in its way.
+    /// among the others by their bounds. All light within the cut-off counts that passes through
+    /// the box, were nothing in its way.
     ///
     /// # Validity
     ///
-    /// Never less than the power. Of a box within the beam, as long as it is wide, the bound is less
-    /// than four times the power, plus what a box as wide that is turned into the axes of the light
-    /// receives more. Of rods along the axis, up to a thousand times as long as wide, half have a bound
-    /// within 10 % of the power; it is up to some twenty times the power beside a focus that the rod
-    /// passes.
+    /// Never less than the power. Of a box within the beam, as long as it is wide, the bound is
+    /// less than four times the power, plus what a box as wide that is turned into the axes of the
+    /// light receives more. Of rods along the axis, up to a thousand times as long as wide, half
+    /// have a bound within 10 % of the power; it is up to some twenty times the power beside a
+    /// focus that the rod passes.
     fn power_bound(&self, min: [f64; 3], max: [f64; 3]) -> f64 {
         match LocalBox::around(&self.frame(), min, max) {
             Some(target) => {

@@ -278,8 +278,8 @@ impl Fan for LineLight {
 }
 
 impl LineLight {
-    /// Returns the range of the distances from the waist, along rays whose secants are in a range, at
-    /// distances from the plane of the apex that are in another, each ±`slack`.
+    /// Returns the range of the distances from the waist, along rays whose secants are in a range,
+    /// at distances from the plane of the apex that are in another, each ±`slack`.
     fn distances_from_waist(
         &self,
         [near, far]: [f64; 2],

@@ -22,9 +22,9 @@ use crate::{FocusCurve, LaserLine, LineProfile, Refusal};
 ///
 /// The waist lies at `r = y.z0`, or at `r = y.z0 √(1 + u²)` if `focus_on_plane` is 1.
 ///
-/// The density along the fan is given in the variable `v` that `variable` says: uniform on
-/// [−flat, flat], convolved with a normal density of standard deviation `sigma` (the normal alone if
-/// `flat` is 0, a top hat if `sigma` is 0), and divided by `mass`, its fraction inside `|θ| < π/2`. Per
+/// The density along the fan is given in the variable `v` that `variable` says: uniform on [−flat,
+/// flat], convolved with a normal density of standard deviation `sigma` (the normal alone if `flat`
+/// is 0, a top hat if `sigma` is 0), and divided by `mass`, its fraction inside `|θ| < π/2`. Per
 /// slope it is `g = g_v(v) dv/du`.
 ///
 /// | `variable` | v | dv/du |
@@ -98,8 +98,8 @@ pub struct LineLight {
     pub flat: f64,
     /// Standard deviation of the Gaussian part of the profile, in its variable; 0 for a top hat.
     pub sigma: f64,
-    /// The variable of the profile: 0 for tan θ, 1 for θ, 2 for sin θ, 3 for a table kept elsewhere,
-    /// without which the light is dark.
+    /// The variable of the profile: 0 for tan θ, 1 for θ, 2 for sin θ, 3 for a table kept
+    /// elsewhere, without which the light is dark.
     pub variable: f64,
     /// Fraction of the untruncated profile inside `|θ| < π/2`; 1 in tan θ.
     pub mass: f64,
@@ -114,13 +114,14 @@ pub struct LineLight {
 }
 
 impl LineLight {
-    /// Places a laser line in a scene, with the lens at the placement's origin and a power in watts.
+    /// Places a laser line in a scene, with the lens at the placement's origin and a power in
+    /// watts.
     ///
     /// # Errors
     ///
-    /// Returns an error if the placement's origin is not finite or beyond 1e30 m, if `power` does not
-    /// lie between 0 and 1e100 W, if the placement's axes are not finite, have no length, or are
-    /// parallel, or if the profile of the line is tabulated: a
+    /// Returns an error if the placement's origin is not finite or beyond 1e30 m, if `power` does
+    /// not lie between 0 and 1e100 W, if the placement's axes are not finite, have no length, or
+    /// are parallel, or if the profile of the line is tabulated: a
     /// [`TabulatedLineLight`](crate::TabulatedLineLight) places that.
     pub fn place(line: &LaserLine, placement: &Placement, power: f64) -> Result<Self, Refusal> {
         match line.profile() {

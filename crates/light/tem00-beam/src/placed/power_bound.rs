@@ -41,12 +41,13 @@ impl LocalBox {
     }
 }
 
-/// Returns a bound of the probability that a ray is in the range `x` somewhere at the distances `dz`
-/// from its waist, along one axis; 0 if that is beyond the cut-off, in beam radii.
+/// Returns a bound of the probability that a ray is in the range `x` somewhere at the distances
+/// `dz` from its waist, along one axis; 0 if that is beyond the cut-off, in beam radii.
 ///
-/// In units of its deviation `w/2` a ray is at `u cos δ + v sin δ`, with independent standard normal u
-/// and v and the Gouy phase δ, taken from the middle of its range ±Δ. With `x` in these units,
-/// widened to the largest that it is over `dz`, it follows from `x₀ ≤ u cos δ + v sin δ ≤ x₁` that
+/// In units of its deviation `w/2` a ray is at `u cos δ + v sin δ`, with independent standard
+/// normal u and v and the Gouy phase δ, taken from the middle of its range ±Δ. With `x` in these
+/// units, widened to the largest that it is over `dz`, it follows from
+/// `x₀ ≤ u cos δ + v sin δ ≤ x₁` that
 ///
 /// ```text
 /// x₀' − |v| tan Δ ≤ u ≤ x₁' + |v| tan Δ     where x' = x / cos Δ if that widens the range, else x

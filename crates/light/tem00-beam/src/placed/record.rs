@@ -91,9 +91,9 @@ pub struct RaySample {
 /// position · direction_given_position = direction · position_given_direction
 /// ```
 ///
-/// Positions are those on the aperture plane. Bidirectional methods want the left side, whose factors
-/// are those of the first and of the second vertex of a path; the right side is what a ray is drawn
-/// from.
+/// Positions are those on the aperture plane. Bidirectional methods want the left side, whose
+/// factors are those of the first and of the second vertex of a path; the right side is what a ray
+/// is drawn from.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayPdf {
@@ -108,8 +108,8 @@ pub struct RayPdf {
 }
 
 impl RayPdf {
-    /// Returns the factors that begin with the position, the second of them 0 where the first is: far
-    /// from the light, where the closed forms meet infinities.
+    /// Returns the factors that begin with the position, the second of them 0 where the first is:
+    /// far from the light, where the closed forms meet infinities.
     pub(super) fn from_position(position: f64, direction: impl FnOnce() -> f64) -> Self {
         let met = position > 0.0;
         Self {

@@ -1,7 +1,7 @@
 //! Rays as slopes against the axis of a light.
 
-/// Returns `√(1 + s²)`, the secant of the angle of a slope: the length of the ray per distance along
-/// the axis.
+/// Returns `√(1 + s²)`, the secant of the angle of a slope: the length of the ray per distance
+/// along the axis.
 #[inline(always)]
 pub(crate) fn secant<const N: usize>(slope: [f64; N]) -> f64 {
     slope.iter().fold(1.0, |sum, s| sum + s * s).sqrt()
@@ -14,8 +14,8 @@ pub(super) fn direction(slope: [f64; 2]) -> [f64; 3] {
     [slope[0] * cos, slope[1] * cos, cos]
 }
 
-/// Returns the slope of a direction, unless it runs against the axis, or at right angles to it: up to
-/// this cosine the cube of the secant, in the densities, is within the range of `f32`.
+/// Returns the slope of a direction, unless it runs against the axis, or at right angles to it: up
+/// to this cosine the cube of the secant, in the densities, is within the range of `f32`.
 pub(super) fn slope_of(direction: [f64; 3]) -> Option<[f64; 2]> {
     let [x, y, z] = direction;
     (z > (1e-12)).then(|| [x / z, y / z])

@@ -103,9 +103,9 @@ impl SpotLight {
     ///
     /// # Errors
     ///
-    /// Returns an error if the placement's origin is not finite or beyond 1e30 m, if `power` does not
-    /// lie between 0 and 1e100 W, or if the placement's axes are not finite, have no length, or are
-    /// parallel.
+    /// Returns an error if the placement's origin is not finite or beyond 1e30 m, if `power` does
+    /// not lie between 0 and 1e100 W, or if the placement's axes are not finite, have no length, or
+    /// are parallel.
     pub fn place_astigmatic(
         beam: &AstigmaticBeam,
         placement: &Placement,

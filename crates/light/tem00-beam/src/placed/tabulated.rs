@@ -7,11 +7,11 @@ use crate::{AngularKnot, LaserLine, LineProfile, Refusal};
 
 /// A laser line in a scene whose power along the fan is a table.
 ///
-/// A [`LineLight`] (its `variable` is 3, its `flat` and `sigma` are 0) and the table, borrowed from an
-/// [`AngularProfile`](crate::AngularProfile) or from wherever the renderer keeps the knots. The power
-/// per angle `f(θ)` is linear between neighbouring knots and 0 outside them; per slope it is
-/// `g(u) = f / (1 + u²)`. All else is as for the `LineLight`, but that the cut-off acts across the fan
-/// only.
+/// A [`LineLight`] (its `variable` is 3, its `flat` and `sigma` are 0) and the table, borrowed from
+/// an [`AngularProfile`](crate::AngularProfile) or from wherever the renderer keeps the knots. The
+/// power per angle `f(θ)` is linear between neighbouring knots and 0 outside them; per slope it is
+/// `g(u) = f / (1 + u²)`. All else is as for the `LineLight`, but that the cut-off acts across the
+/// fan only.
 ///
 /// Fewer than two knots give no light.
 ///
@@ -52,7 +52,8 @@ pub struct TabulatedLineLight<'a> {
 }
 
 impl<'a> TabulatedLineLight<'a> {
-    /// Places a laser line in a scene, with the lens at the placement's origin and a power in watts.
+    /// Places a laser line in a scene, with the lens at the placement's origin and a power in
+    /// watts.
     ///
     /// # Errors
     ///

@@ -239,8 +239,9 @@ impl Interval {
         self.start.density + part * (self.end.density - self.start.density)
     }
 
-    /// Returns the density at an angle to which a normal deviate of the density φ has been added, as far
-    /// as the interval is its source. In units of `sigma` from the angle, the density is α + m t:
+    /// Returns the density at an angle to which a normal deviate of the density φ has been added,
+    /// as far as the interval is its source. In units of `sigma` from the angle, the density is α +
+    /// m t:
     ///
     /// ```text
     /// ∫ (α + m t) φ(t) dt = α (Φ(b) − Φ(a)) − m (φ(b) − φ(a))     from a to b
@@ -262,8 +263,8 @@ impl Interval {
     /// Returns the angle below which the fraction `p` of all power lies.
     ///
     /// With the densities a and b at the ends, the fraction q of the power of the interval lies in
-    /// its part t, where `2 a t + (b − a) t² = q (a + b)`. The root in the form without cancellation
-    /// is `t = q (a + b) / (a + √((1 − q) a² + q b²))`.
+    /// its part t, where `2 a t + (b − a) t² = q (a + b)`. The root in the form without
+    /// cancellation is `t = q (a + b) / (a + √((1 − q) a² + q b²))`.
     fn angle_at(&self, p: f64) -> f64 {
         let power = self.end.cumulative - self.start.cumulative;
         // Off the knots, where the density may be 0.

@@ -44,10 +44,10 @@ impl<'a, L: Emitter> Judge<'a, L> {
 
     /// Compares an answer at `p` with that of the light.
     ///
-    /// The tolerance has two parts. Three local coordinates, each a subtraction and a scalar product,
-    /// and what is divided by them are off by 8 ε |p − origin| in all: so far the point may be moved.
-    /// What follows is a dozen rounded operations; the exponent `a` of the irradiance is off by
-    /// 8 ε a, and exp and erfc by as much again.
+    /// The tolerance has two parts. Three local coordinates, each a subtraction and a scalar
+    /// product, and what is divided by them are off by 8 ε |p − origin| in all: so far the point
+    /// may be moved. What follows is a dozen rounded operations; the exponent `a` of the irradiance
+    /// is off by 8 ε a, and exp and erfc by as much again.
     pub(crate) fn compare(&mut self, p: [f64; 3], got: Answer) {
         let name = &self.sample.name;
         let expected = answer(&self.sample.light, p);

@@ -1,5 +1,5 @@
-//! The joint density of a ray in both of its factorings: they agree, their parts integrate to 1, and
-//! rays are where the density of the position says.
+//! The joint density of a ray in both of its factorings: they agree, their parts integrate to 1,
+//! and rays are where the density of the position says.
 
 use tem00_beam::{DVec3, Emitter, LaserLine, RayPdf};
 use tem00_testkit::{Numbers, assert_absolute, chi_squared};

@@ -64,8 +64,8 @@ fn estimates(light: &dyn Emitter, p: [f64; 3], lobe: Lobe) -> [(f64, f64); 3] {
     })
 }
 
-/// Holds the three estimates against the irradiance within four standard errors, or, where an estimate
-/// has next to no variance, the rounding of coordinates.
+/// Holds the three estimates against the irradiance within four standard errors, or, where an
+/// estimate has next to no variance, the rounding of coordinates.
 fn check(light: &dyn Emitter, p: [f64; 3], lobe: Lobe) {
     let expected = light.irradiance(p);
     for (mean, error) in estimates(light, p, lobe) {

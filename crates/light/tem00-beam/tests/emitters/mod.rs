@@ -1,5 +1,5 @@
-//! What renderers ask of a light, over all lights: densities of rays, rays that materials draw, power
-//! in boxes.
+//! What renderers ask of a light, over all lights: densities of rays, rays that materials draw,
+//! power in boxes.
 //!
 //! All seeds are fixed.
 

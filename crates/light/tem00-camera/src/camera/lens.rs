@@ -34,12 +34,12 @@ impl Camera {
     /// Returns a ray that arrives at the image point `pixel` through a point of the lens.
     ///
     /// `lens` is a pair of numbers in [0, 1); uniform ones give points that are uniform over the
-    /// pupil. All rays of an image point meet where it is in focus. Without depth of field every ray
-    /// is the one through the centre of the lens.
+    /// pupil. All rays of an image point meet where it is in focus. Without depth of field every
+    /// ray is the one through the centre of the lens.
     ///
-    /// The mean of radiance times weight, over the lens and the pixel, is the value of the pixel. All
-    /// weights are 1: the pupil counts by area, and the cosines that vary a little over it belong
-    /// to the [irradiance](Self::irradiance_per_radiance).
+    /// The mean of radiance times weight, over the lens and the pixel, is the value of the pixel.
+    /// All weights are 1: the pupil counts by area, and the cosines that vary a little over it
+    /// belong to the [irradiance](Self::irradiance_per_radiance).
     ///
     /// # References
     ///
@@ -83,7 +83,8 @@ impl Camera {
         }
     }
 
-    /// Writes rays of a lens without distortion, `LANES` at most, by a loop over separate coordinates.
+    /// Writes rays of a lens without distortion, `LANES` at most, by a loop over separate
+    /// coordinates.
     fn undistorted_rays(
         &self,
         pixels: &[DVec2],

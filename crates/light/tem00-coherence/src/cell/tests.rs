@@ -45,8 +45,9 @@ fn tilt_and_height_factor_are_those_of_the_plane_of_incidence() {
     }
 }
 
-/// The sum over powers of the correlation, each a Gaussian about the tilt, by sums over two dimensions. A length of 1 is
-/// the reciprocal of the frequencies that the pupil spans, λ / (2 sin u).
+/// The sum over powers of the correlation, each a Gaussian about the tilt, by sums over two
+/// dimensions. A length of 1 is the reciprocal of the frequencies that the pupil spans, λ / (2 sin
+/// u).
 #[test]
 fn correlated_heights_are_the_sum_of_their_powers() {
     for (angle, length, kappa) in [

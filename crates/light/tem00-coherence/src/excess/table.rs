@@ -18,8 +18,8 @@ pub(super) struct Table {
     values: Vec<Vec<f64>>,
 }
 
-/// The longest correlation length in speckles over which lags are summed. Of a longer one the loss is of first order in its
-/// reciprocal: it acts as this one does with phases that lose as much.
+/// The longest correlation length in speckles over which lags are summed. Of a longer one the loss
+/// is of first order in its reciprocal: it acts as this one does with phases that lose as much.
 const LONGEST: f64 = 32.0;
 
 /// Correlation lengths in speckles beyond which nothing is lost.
@@ -120,8 +120,9 @@ fn over_phases(rows: &[Row], lags: &[[f64; 3]], kernel: LagKernel, shift: f64) -
         .collect()
 }
 
-/// Returns `Λ(a)/√π = ∫ (1 − exp(−a (1 − e^{−u²}))) du/u² / √π`, the loss of light of squared phases a over a long
-/// correlation length ℓ in units of `4 √π/(π² ℓ)`, to 0.4 %: right to third order in a, and for large ones.
+/// Returns `Λ(a)/√π = ∫ (1 − exp(−a (1 − e^{−u²}))) du/u² / √π`, the loss of light of squared
+/// phases a over a long correlation length ℓ in units of `4 √π/(π² ℓ)`, to 0.4 %: right to third
+/// order in a, and for large ones.
 fn loss(exponent: f64) -> f64 {
     exponent * slope(exponent)
 }
@@ -153,8 +154,8 @@ fn phases(length: f64) -> Vec<f64> {
     breaks
 }
 
-/// Breaks of displacements: finer about 0 and 1, where the kernels have a cusp and an end, as far as the heights leave it
-/// sharp.
+/// Breaks of displacements: finer about 0 and 1, where the kernels have a cusp and an end, as far
+/// as the heights leave it sharp.
 fn shifts(longest: f64) -> Vec<f64> {
     let finest = (TAU * longest.max(1.0)).recip();
     let steps = || core::iter::successors(Some(finest), |step| Some(2.0 * step));
@@ -172,8 +173,8 @@ fn shifts(longest: f64) -> Vec<f64> {
     breaks
 }
 
-/// Visits lags on panels that are as short as displacements and widths ask for that meet there: an excess of the width w
-/// ends at 6w, and has frequencies up to 1 + 2/w.
+/// Visits lags on panels that are as short as displacements and widths ask for that meet there: an
+/// excess of the width w ends at 6w, and has frequencies up to 1 + 2/w.
 fn for_each_lag(end: f64, mut visit: impl FnMut(f64, f64)) {
     let mut from = 0.0;
     let mut to = NARROWEST;

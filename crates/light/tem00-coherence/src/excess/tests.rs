@@ -33,7 +33,8 @@ fn the_table_holds_the_integrals() {
             let error = largest_error(kernel, length);
             assert!(error < 1e-6, "{kernel:?} {length}: {error:e}");
         }
-        // Beyond the longest one what is lost agrees, but not its course over phases and displacements.
+        // Beyond the longest one what is lost agrees, but not its course over phases and
+        // displacements.
         for length in [33.0, 70.0] {
             let error = largest_error(kernel, length);
             assert!(error < 3e-3, "{kernel:?} {length}: {error:e}");

@@ -80,7 +80,8 @@ fn points_and_lamps_are_the_limits_of_a_source() {
         assert!(contrast(&cell, SourceExtent::disc(small)) > 1.0 - 1e-4);
         assert!(contrast(&cell, SourceExtent::gaussian(small)) > 1.0 - 1e-4);
     }
-    // Lamps have as many patterns as speckles of their own fit into them: ∫ chat² over the squared pupil.
+    // Lamps have as many patterns as speckles of their own fit into them: ∫ chat² over the squared
+    // pupil.
     let area = integrate(|x| TAU * x * disc_overlap(x).powi(2), [0.0, 1.0], 0.1);
     let of_pupil = (2.0 * SIN_APERTURE).powi(2) * area;
     let (wide, spread) = (0.3, 0.1);
@@ -177,7 +178,8 @@ fn two_wavelengths_from_two_directions_correlate_by_their_waves() {
 
 #[test]
 fn directions_share_chords_and_lenses_of_the_pupil() {
-    // Two directions of half of the light each, displaced across the tilt by half a pupil, and along it.
+    // Two directions of half of the light each, displaced across the tilt by half a pupil, and
+    // along it.
     let cell = cell(20.0, 0.0);
     let line = &SpectralLine::monochromatic(WAVELENGTH).unwrap();
     let displaced = |axis: DVec3| {
@@ -190,7 +192,8 @@ fn directions_share_chords_and_lenses_of_the_pupil() {
         let ratio = of(line, cell).line_noise_ratio(rows);
         2.0 * ratio.powi(2) - 1.0
     };
-    // Chords of two discs that are displaced along the chords: ∫ (2√(1 − x²) − 1)₊² dx · 3/16 over half a chord.
+    // Chords of two discs that are displaced along the chords: ∫ (2√(1 − x²) − 1)₊² dx · 3/16 over
+    // half a chord.
     let sine = 0.75_f64.sqrt();
     let chords = 5.0 * sine - 4.0 * sine.powi(3) / 3.0 - 2.0 * (sine * 0.5 + sine.asin());
     let across = displaced(DVec3::Y);

@@ -263,7 +263,8 @@ fn a_table_of_displacements_has_the_closed_forms_until_the_pupils_part() {
     let (thin, tall) = (Rows::Thin.tabulated(), Rows::Tall.tabulated());
     for distance in [0.0, 0.1, 0.375, 0.8, 0.995, 1.0, 1.2, 7.0] {
         let shared = f64::min(distance, 1.0);
-        // Nodes are 1/96 apart, and f″ is 3 at most; of discs that part it grows, in the last cell, by a root.
+        // Nodes are 1/96 apart, and f″ is 3 at most; of discs that part it grows, in the last cell,
+        // by a root.
         let along = 1.0 - 1.5 * shared + 0.5 * shared.powi(3);
         for side in [-distance, distance] {
             assert_absolute(thin(DVec2::new(side, 0.0)), along, 5e-5);

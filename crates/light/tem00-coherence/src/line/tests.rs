@@ -198,7 +198,8 @@ proptest! {
     }
 }
 
-/// Pairs of many peaks, against their sum for a function whose mean over a pair of Gaussians is known.
+/// Pairs of many peaks, against their sum for a function whose mean over a pair of Gaussians is
+/// known.
 #[test]
 fn many_peaks_are_the_sum_of_their_pairs() {
     let scale = 3e4;

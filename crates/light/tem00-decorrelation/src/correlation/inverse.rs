@@ -16,7 +16,8 @@ use crate::Refusal;
 ///
 /// # Errors
 ///
-/// Returns an error unless γ is in [0, 1]. A measured correlation can lie outside by its noise: clamp it first.
+/// Returns an error unless γ is in [0, 1]. A measured correlation can lie outside by its noise:
+/// clamp it first.
 ///
 /// # Examples
 ///

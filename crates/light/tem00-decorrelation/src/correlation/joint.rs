@@ -32,7 +32,8 @@ use super::{axial_correlation, pupil_overlap_correlation};
 /// μ = (1/π) Σ_k ∫₀^acos(s) (1 − k cos t) E(β (1 + k² − 2k cos t)) dt,   E(z) = (exp(iz) − 1)/(iz)
 /// ```
 ///
-/// with k = s for both arcs if c is the middle of the lens, k = 0 and 2s if it is the centre of a disc.
+/// with k = s for both arcs if c is the middle of the lens, k = 0 and 2s if it is the centre of a
+/// disc.
 ///
 /// # Validity
 ///
@@ -66,8 +67,8 @@ pub enum CorrelationLaw {
     #[default]
     AtPeak,
     /// The correlation at the displacement of the projected surface point, with the reference state
-    /// (or the moved one) in focus; out of focus, at the displacement that the defocus of that state
-    /// alone gives.
+    /// (or the moved one) in focus; out of focus, at the displacement that the defocus of that
+    /// state alone gives.
     AtImageDisplacement,
 }
 
@@ -75,11 +76,11 @@ impl CorrelationLaw {
     /// Returns the intensity correlation γ in [0, 1] left after a displacement across the pupil, in
     /// pupil diameters, and along the axis, in axial decorrelation lengths.
     ///
-    /// It is even in both. The integrals are exact to 1e−8. From an axial displacement of 3e−5 lengths
-    /// up to one of 3200 they are found by Gauss–Legendre quadrature: in half a microsecond to one at first,
-    /// and in a time proportional to the displacement beyond a few lengths. The product of the laws of
-    /// either displacement is returned for less, where it is as exact, and farther out, where all are
-    /// below 4/β² = 1e−8.
+    /// It is even in both. The integrals are exact to 1e−8. From an axial displacement of 3e−5
+    /// lengths up to one of 3200 they are found by Gauss–Legendre quadrature: in half a microsecond
+    /// to one at first, and in a time proportional to the displacement beyond a few lengths. The
+    /// product of the laws of either displacement is returned for less, where it is as exact, and
+    /// farther out, where all are below 4/β² = 1e−8.
     pub fn correlation(self, pupil_shift: f64, axial_shift: f64) -> f64 {
         let (s, x) = (pupil_shift.abs(), axial_shift.abs());
         // NaN counts as decorrelated in the product.
@@ -102,8 +103,8 @@ impl CorrelationLaw {
     }
 }
 
-/// Up to here the product is exact to 1e−8, too: the phase of the defocus lies between 0 and β over the
-/// pupil, so that its variance over any part of it, which is what γ loses, is at most β²/4.
+/// Up to here the product is exact to 1e−8, too: the phase of the defocus lies between 0 and β over
+/// the pupil, so that its variance over any part of it, which is what γ loses, is at most β²/4.
 const SMALLEST_AXIAL_SHIFT: f64 = 3e-5;
 
 /// From here on γ ≤ (2/β)² < 1e−8: |E(z)| ≤ 2/z, and the arcs are seen from c under 2π at most.
@@ -113,7 +114,8 @@ const LARGEST_AXIAL_SHIFT: f64 = 3_200.0;
 /// defocus.
 fn arc(s: f64, beta: f64, k: f64) -> [f64; 2] {
     let end = s.acos();
-    // The phase changes along the arc at most at the rate of its end or, short of it, a right angle.
+    // The phase changes along the arc at most at the rate of its end or, short of it, a right
+    // angle.
     let longest = PHASE_PER_PANEL / (beta * 2.0 * k * end.sin());
     let mut total = [0.0; 2];
     for_each_node([0.0, end], longest, |t, weight| {

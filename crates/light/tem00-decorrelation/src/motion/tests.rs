@@ -79,8 +79,8 @@ fn a_thick_lens_moves_the_image_by_its_magnification() {
     })
     .unwrap();
     let slid = RigidMotion::along(DVec3::new(1e-3, 0.0, 0.0)).unwrap();
-    // In focus at L = f (1/m + 1/m_p) = 162.5 mm, and 10 % nearer, where the image is blurred and as
-    // much larger.
+    // In focus at L = f (1/m + 1/m_p) = 162.5 mm, and 10 % nearer, where the image is blurred and
+    // as much larger.
     for (depth, magnification) in [(162.5e-3, 0.5), (146.25e-3, 0.5 / 0.9)] {
         let before = Configuration::new(upright(depth)).unwrap();
         let moved = SpeckleMotion::between(&thick, &before, &after_surface(&before, slid));

@@ -43,8 +43,8 @@ fn tensor_of_a_phase_is_that_of_its_wave() {
 
 #[test]
 fn a_mirror_curves_the_wave_as_coddington_says() {
-    // Collimated light on a concave mirror of the radius R at the angle θ: foci at R cos θ / 2 in the
-    // plane of incidence and R / (2 cos θ) across it.
+    // Collimated light on a concave mirror of the radius R at the angle θ: foci at R cos θ / 2 in
+    // the plane of incidence and R / (2 cos θ) across it.
     let (radius, angle) = (0.4, 0.6_f64);
     let incident = DVec3::new(angle.sin(), 0.0, -angle.cos());
     let normal = DVec3::Z;

@@ -42,9 +42,9 @@ fn image_displacement_is_that_of_the_exact_projection() {
     }
 }
 
-/// A camera in focus at 0.3 m and two states of a scene, in which the speckle moves across its pupil
-/// and along its axis at once: a surface that slides and turns, seen and lit obliquely, by a camera
-/// that moves itself.
+/// A camera in focus at 0.3 m and two states of a scene, in which the speckle moves across its
+/// pupil and along its axis at once: a surface that slides and turns, seen and lit obliquely, by a
+/// camera that moves itself.
 fn random_change(index: u32) -> (ImagingGeometry, State, State) {
     let mut k = 100.0 * f64::from(index);
     // Squares times the golden ratio: even, and independent of each other.
@@ -107,11 +107,11 @@ fn random_change(index: u32) -> (ImagingGeometry, State, State) {
     (geometry, before, after)
 }
 
-/// The light of a change on its way through the lens: the phases, in turns, that the correlation of the
-/// fields in two image points sums up over the pupil, and the pupil points after the change.
+/// The light of a change on its way through the lens: the phases, in turns, that the correlation of
+/// the fields in two image points sums up over the pupil, and the pupil points after the change.
 ///
-/// Of all pairs of pupil points before and after, the average over rough surfaces leaves those whose
-/// paths differ alike for neighbouring scatterers.
+/// Of all pairs of pupil points before and after, the average over rough surfaces leaves those
+/// whose paths differ alike for neighbouring scatterers.
 struct Pairs {
     geometry: ImagingGeometry,
     after: Vec<(DVec2, f64)>,
@@ -146,8 +146,8 @@ impl Pairs {
         pairs
     }
 
-    /// The path from a pupil point to the point in focus whose image lies at `r`, in wavelengths: an ideal
-    /// lens makes all paths to that image equal.
+    /// The path from a pupil point to the point in focus whose image lies at `r`, in wavelengths:
+    /// an ideal lens makes all paths to that image equal.
     fn lens(&self, p: DVec2, r: DVec2) -> f64 {
         let focus = (r / self.geometry.principal_distance()).extend(-1.0);
         p.extend(0.0)
@@ -155,8 +155,8 @@ impl Pairs {
             / self.geometry.wavelength()
     }
 
-    /// The correlation of the intensity where the point was seen before with that at `displacement` from
-    /// there.
+    /// The correlation of the intensity where the point was seen before with that at `displacement`
+    /// from there.
     fn correlation(&self, displacement: DVec2) -> f64 {
         let sum = |sum: DVec2, &(p, turns): &(DVec2, f64)| {
             let turns: f64 = turns - self.lens(p, self.image + displacement);

@@ -46,10 +46,11 @@ enum Source {
     Point(DVec3),
     /// A wave that converges to a point.
     Focus(DVec3),
-    /// An exact astigmatic wave: rays from the nearest point of a circle, whose wavefronts are tori.
+    /// An exact astigmatic wave: rays from the nearest point of a circle, whose wavefronts are
+    /// tori.
     ///
-    /// Seen from the origin the circle lies around `centre` in the plane of the origin and `axis`. In
-    /// that plane the rays come from the centre, across it from the circle.
+    /// Seen from the origin the circle lies around `centre` in the plane of the origin and `axis`.
+    /// In that plane the rays come from the centre, across it from the circle.
     Fan {
         centre: DVec3,
         axis: DVec3,

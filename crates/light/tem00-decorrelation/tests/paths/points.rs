@@ -112,10 +112,10 @@ fn sources() -> [(&'static str, Source); 6] {
     ]
 }
 
-/// A curved wave is described to second order in the distance, so that displacements are compared by
-/// central differences. The remainder of third order is about (δ/ℓ)² of the result, with ℓ the
-/// shortest length of the set-up: 1e−10, about the rounding of the gradient, ε/1e−5 = 2e−11. Oblique
-/// views amplify both by a few powers of the inverse cosines (at most 5 here).
+/// A curved wave is described to second order in the distance, so that displacements are compared
+/// by central differences. The remainder of third order is about (δ/ℓ)² of the result, with ℓ the
+/// shortest length of the set-up: 1e−10, about the rounding of the gradient, ε/1e−5 = 2e−11.
+/// Oblique views amplify both by a few powers of the inverse cosines (at most 5 here).
 #[test]
 fn small_motions_in_curved_light_displace_the_field_as_exact_paths_do() {
     let delta = 1e-5 * 0.18;
@@ -152,8 +152,8 @@ fn waves_are_followed_sideways_to_second_order() {
                 (seen - source.direction_from(step * size)).length()
             };
             let (coarse, fine) = (error(2e-3), error(1e-3));
-            // Rays of a torus go astray, those of a sphere and a plane do not: (2 mm/0.18 m)² with a
-            // factor for radii of either sign, and at most a quarter of it up to the third order,
+            // Rays of a torus go astray, those of a sphere and a plane do not: (2 mm/0.18 m)² with
+            // a factor for radii of either sign, and at most a quarter of it up to the third order,
             // plus what the directions round.
             let allowed = if name.contains("fan") { 5e-4 } else { 1e-15 };
             assert!(coarse < allowed, "{name}, {step}: {coarse:e}");

@@ -8,8 +8,8 @@ use rustfft::{Fft, FftPlanner};
 
 /// The transform of `aperture` samples at the start of a line of `length`.
 ///
-/// With `length = parts · D` the frequencies `k = parts · j + s` of each remainder s are a transform
-/// of length D:
+/// With `length = parts · D` the frequencies `k = parts · j + s` of each remainder s are a
+/// transform of length D:
 ///
 /// ```text
 /// X(parts · j + s) = Σ y_s(n) exp(−2πi n j / D)       0 ≤ n < D
@@ -63,8 +63,8 @@ impl Axis {
         short.get_inplace_scratch_len().max(outside)
     }
 
-    /// Transforms the line `input`; `X(parts · j + s)` comes to lie at `output[s · D + j]`. Nothing is
-    /// left of `input`.
+    /// Transforms the line `input`; `X(parts · j + s)` comes to lie at `output[s · D + j]`. Nothing
+    /// is left of `input`.
     #[inline(always)]
     pub(super) fn transform(
         &self,

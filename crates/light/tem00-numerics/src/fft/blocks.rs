@@ -62,8 +62,8 @@ pub(super) fn fill_columns(
     }
 }
 
-/// Writes the spectra of a block's columns, one [`stride`] apart and each in `parts` parts, into the
-/// rows of the block.
+/// Writes the spectra of a block's columns, one [`stride`] apart and each in `parts` parts, into
+/// the rows of the block.
 #[inline(always)]
 pub(super) fn spread_columns(
     spectra: &[Complex<f32>],

@@ -5,8 +5,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Calls `each(state, index, chunk)` for every piece of `chunk` values; the last may be shorter.
 ///
-/// Pieces never depend on each other. Whoever works on one takes a state from `states`, or a new one,
-/// and leaves it there for the next. Unless `threads`, the calling thread does it all.
+/// Pieces never depend on each other. Whoever works on one takes a state from `states`, or a new
+/// one, and leaves it there for the next. Unless `threads`, the calling thread does it all.
 pub(super) fn for_each_chunk<T: Send, S: Default + Send>(
     threads: bool,
     values: &mut [T],

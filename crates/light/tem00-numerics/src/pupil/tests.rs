@@ -22,8 +22,8 @@ fn overlap_is_the_closed_form() {
 #[test]
 fn overlap_of_discs_that_hardly_meet_is_the_series() {
     for epsilon in spread().map(|x| 0.01 * x) {
-        // chat(1 − ε), from integrating −chat′ = (4/π) √(2ε − ε²) term by term. At ε = 0.01 the first
-        // term left out is 9e−12; rounding of 1 − ε turns it by 1.5 · 1e−16 / ε.
+        // chat(1 − ε), from integrating −chat′ = (4/π) √(2ε − ε²) term by term. At ε = 0.01 the
+        // first term left out is 9e−12; rounding of 1 − ε turns it by 1.5 · 1e−16 / ε.
         let s = 1.0 - epsilon;
         let epsilon = 1.0 - s;
         let leading = 8.0 * 2.0_f64.sqrt() / (3.0 * PI) * epsilon * epsilon.sqrt();

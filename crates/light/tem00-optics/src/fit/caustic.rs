@@ -321,8 +321,8 @@ impl<'a> Caustic<'a> {
         (c > 0.0 && waist > 0.0).then_some(start)
     }
 
-    /// Start of the search if that fails: the smallest radius as the waist, and the steepest line from
-    /// it as the divergence.
+    /// Start of the search if that fails: the smallest radius as the waist, and the steepest line
+    /// from it as the divergence.
     fn guess(&self) -> Result<[f64; PARAMETERS], FitError> {
         let points = || self.axis.coordinates.iter().zip(&self.radii);
         let (&middle, &waist) = points()

@@ -4,7 +4,8 @@ use tem00_testkit::{Numbers, assert_absolute, chi_squared_survival};
 
 use super::positions::Estimate;
 
-/// The standard normal variate that a correct value exceeds in magnitude with a probability of 1e−4.
+/// The standard normal variate that a correct value exceeds in magnitude with a probability of
+/// 1e−4.
 const CRITICAL: f64 = 3.891;
 
 /// Normal deviates of unit variance from a fixed seed.

@@ -20,7 +20,8 @@ pub struct LaserBuilder {
 }
 
 impl Laser {
-    /// Begins the description of a round spot: a Gaussian beam of a vacuum wavelength and a waist radius, both in metres.
+    /// Begins the description of a round spot: a Gaussian beam of a vacuum wavelength and a waist
+    /// radius, both in metres.
     ///
     /// # Examples
     ///
@@ -41,8 +42,8 @@ impl Laser {
         LaserBuilder::of_spot(wavelength, waist_radius)
     }
 
-    /// Begins the description of a laser line of a vacuum wavelength and a thickness in focus (1/e², full width), in
-    /// metres, that opens by an angle, in radians.
+    /// Begins the description of a laser line of a vacuum wavelength and a thickness in focus
+    /// (1/e², full width), in metres, that opens by an angle, in radians.
     pub fn line(wavelength: f64, thickness: f64, fan_angle: f64) -> LaserBuilder {
         LaserBuilder::of_line(wavelength, thickness, fan_angle)
     }
@@ -75,7 +76,8 @@ impl LaserBuilder {
         self
     }
 
-    /// Sets the distance of the waist from the aperture, in metres; of a spot also negative, behind it.
+    /// Sets the distance of the waist from the aperture, in metres; of a spot also negative, behind
+    /// it.
     pub const fn focused_at(mut self, distance: f64) -> Self {
         self.focus = Some(distance);
         self
@@ -87,7 +89,8 @@ impl LaserBuilder {
         self
     }
 
-    /// Makes a spot elliptic, with a waist radius along the line direction and one across it, in metres.
+    /// Makes a spot elliptic, with a waist radius along the line direction and one across it, in
+    /// metres.
     ///
     /// A line has only the second.
     pub const fn waist_radii(mut self, radii: [f64; 2]) -> Self {
@@ -95,7 +98,8 @@ impl LaserBuilder {
         self
     }
 
-    /// Sets the distribution of the power along a line: Powell, tabulated or another. Spots have none.
+    /// Sets the distribution of the power along a line: Powell, tabulated or another. Spots have
+    /// none.
     pub fn profile(mut self, profile: LineProfile) -> Self {
         if let Some((_, of_line)) = &mut self.line {
             *of_line = profile;
@@ -109,19 +113,21 @@ impl LaserBuilder {
         self
     }
 
-    /// Sets the directions from which the light reaches a surface, where the source is no point: it acts on speckle only.
+    /// Sets the directions from which the light reaches a surface, where the source is no point: it
+    /// acts on speckle only.
     pub fn source_extent(mut self, extent: SourceExtent) -> Self {
         self.source_extent = extent;
         self
     }
 
-    /// Places the laser at `origin`, aimed at `target`, with `line_direction` across the axis: the direction in which
-    /// a line opens, and the first axis of an elliptic spot. Its part along the axis is ignored.
+    /// Places the laser at `origin`, aimed at `target`, with `line_direction` across the axis: the
+    /// direction in which a line opens, and the first axis of an elliptic spot. Its part along the
+    /// axis is ignored.
     ///
     /// # Errors
     ///
-    /// Returns an error if the beam is not possible, if the target is the origin, or if the line direction is parallel
-    /// to the axis.
+    /// Returns an error if the beam is not possible, if the target is the origin, or if the line
+    /// direction is parallel to the axis.
     pub fn placed(
         self,
         origin: DVec3,

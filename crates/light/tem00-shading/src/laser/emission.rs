@@ -63,12 +63,12 @@ impl Laser {
         }
     }
 
-    /// Draws a direction from which the laser lights `point`, from two uniform numbers in [0, 1), or
-    /// returns `None` where it sends no light.
+    /// Draws a direction from which the laser lights `point`, from two uniform numbers in [0, 1),
+    /// or returns `None` where it sends no light.
     ///
     /// The estimate of the reflected radiance is `f · |n·direction| · value`, where the source is
-    /// visible. No light is counted beyond four radii of the beam; [`next_event_pdf`](Self::next_event_pdf) is
-    /// 0 there.
+    /// visible. No light is counted beyond four radii of the beam;
+    /// [`next_event_pdf`](Self::next_event_pdf) is 0 there.
     pub fn next_event_sampled(&self, point: DVec3, u: [f64; 2]) -> Option<SampledEvent> {
         let event = self.with_emitter(|light| light.next_event_sampled(point.to_array(), u))?;
         Some(SampledEvent {
@@ -79,8 +79,8 @@ impl Laser {
         })
     }
 
-    /// Returns the density, per steradian, with which [`next_event_sampled`](Self::next_event_sampled) draws
-    /// the unit `direction` at `point`.
+    /// Returns the density, per steradian, with which
+    /// [`next_event_sampled`](Self::next_event_sampled) draws the unit `direction` at `point`.
     pub fn next_event_pdf(&self, point: DVec3, direction: DVec3) -> f64 {
         self.with_emitter(|light| light.next_event_pdf(point.to_array(), direction.to_array()))
     }
@@ -88,8 +88,8 @@ impl Laser {
     /// Returns the radiance, in W/(m² sr), that arrives at `origin` from the unit `direction`; 0
     /// behind the aperture.
     ///
-    /// It is the radiance of free space: whether something stands between `origin` and the aperture,
-    /// at [`aperture_distance`](Self::aperture_distance), is the caller's to find out.
+    /// It is the radiance of free space: whether something stands between `origin` and the
+    /// aperture, at [`aperture_distance`](Self::aperture_distance), is the caller's to find out.
     pub fn radiance(&self, origin: DVec3, direction: DVec3) -> f64 {
         if self.aperture_distance(origin, direction).is_none() {
             return 0.0;

@@ -27,8 +27,8 @@ fn line(profile: LineProfile, focus_curve: FocusCurve) -> Laser {
     .unwrap()
 }
 
-/// By how much the light of a laser turns along one of two directions per length along the other, in
-/// 1/m: a component of the curvature of its wavefront.
+/// By how much the light of a laser turns along one of two directions per length along the other,
+/// in 1/m: a component of the curvature of its wavefront.
 fn curvature(laser: &Laser, point: DVec3, [along, turned]: [DVec3; 2]) -> f64 {
     const STEP: f64 = 1e-7;
     let wave = |part: f64| laser.wave_direction_at(point + part * along);
@@ -53,8 +53,8 @@ fn the_wavefront_across_a_line_is_flat_where_its_focus_curve_says() {
     }
 }
 
-/// An elliptic spot with its waists apart, from an oblique position, whose line direction is not across
-/// the axis; its beam; and the three axes.
+/// An elliptic spot with its waists apart, from an oblique position, whose line direction is not
+/// across the axis; its beam; and the three axes.
 fn elliptic_spot() -> (Laser, AstigmaticBeam, [DVec3; 3]) {
     let position = DVec3::new(0.03, -0.02, 0.05);
     let axis = DVec3::new(2.0, 1.0, -2.0) / 3.0;
@@ -102,9 +102,9 @@ fn a_tilted_plane_receives_the_power_of_an_elliptic_spot() {
     for (towards_along, towards_across) in [(0.0, 0.0), (1.5, 0.5), (-0.3, 1.7)] {
         let normal = (towards_along * along + towards_across * across - axis).normalize();
         let (u, v) = normal.any_orthonormal_pair();
-        // The radii are 1.0 mm and 0.3 mm across the axis and at most twice that on the plane, where
-        // they grow by a tenth. A sum in steps of h is off by exp(−π² w²/2 h²) < 1e-25, and 10 mm hold
-        // all but exp(−2 · 4²) = 1e-14, where the light is cut off.
+        // The radii are 1.0 mm and 0.3 mm across the axis and at most twice that on the plane,
+        // where they grow by a tenth. A sum in steps of h is off by exp(−π² w²/2 h²) < 1e-25, and
+        // 10 mm hold all but exp(−2 · 4²) = 1e-14, where the light is cut off.
         let step = 0.08e-3;
         let place = |i: i32| f64::from(i) * step;
         let power: f64 = (-125..=125)

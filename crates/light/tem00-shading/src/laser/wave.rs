@@ -23,7 +23,8 @@ pub(crate) struct SpotWave {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LineWave {
     apex_offset: f64,
-    /// The slant distance of the waist from the apex in the middle of the fan, and its growth with the secant.
+    /// The slant distance of the waist from the apex in the middle of the fan, and its growth with
+    /// the secant.
     waist_slant_distance: [f64; 2],
     rayleigh_range_squared: f64,
 }
@@ -37,7 +38,8 @@ pub(crate) struct WaveFrame {
 
 /// A wave as the numbers of a kernel, for which a spot and a line are alike.
 pub(crate) struct WaveNumbers {
-    /// The waist along x, and that across it from there: once, and as much again per secant of the ray.
+    /// The waist along x, and that across it from there: once, and as much again per secant of the
+    /// ray.
     pub(crate) centres: [f64; 3],
     pub(crate) rayleigh_range_squared: [f64; 2],
     pub(crate) is_line: bool,
@@ -81,7 +83,8 @@ impl SpotWave {
 }
 
 impl LineWave {
-    /// The slopes of the ray through a point in the axes of the line: NaN at the apex and behind it.
+    /// The slopes of the ray through a point in the axes of the line: NaN at the apex and behind
+    /// it.
     #[inline(always)]
     pub(crate) fn slopes(&self, [x, y, z]: [f64; 3]) -> [f64; 2] {
         let depth = z + self.apex_offset;
@@ -101,8 +104,8 @@ fn curvature(from_waist: f64, rayleigh_range_squared: f64) -> f64 {
 }
 
 impl WaveFrame {
-    /// Returns the unit direction from `point` along which the wave arrives, by the slopes of its rays: towards the
-    /// aperture where they are not finite.
+    /// Returns the unit direction from `point` along which the wave arrives, by the slopes of its
+    /// rays: towards the aperture where they are not finite.
     #[inline(always)]
     pub(crate) fn direction_to_source(
         &self,
@@ -157,8 +160,8 @@ impl Laser {
     /// Returns the unit direction from `point` along which the wave arrives, towards its source.
     ///
     /// Where the laser lights the point it is the direction of the light. Beyond its cut-off, where
-    /// no light is followed any more, the wave goes on; at the apex of a line and behind it, there is none, and the
-    /// direction is that to the middle of the aperture.
+    /// no light is followed any more, the wave goes on; at the apex of a line and behind it, there
+    /// is none, and the direction is that to the middle of the aperture.
     pub fn wave_direction_at(&self, point: DVec3) -> DVec3 {
         let frame = self.wave_frame();
         match self.wave_shape() {
@@ -167,14 +170,16 @@ impl Laser {
         }
     }
 
-    /// Returns the optical path of the wave to `point`, in metres, less one that is the same for all points.
+    /// Returns the optical path of the wave to `point`, in metres, less one that is the same for
+    /// all points.
     ///
     /// ```text
     /// Φ = z + (κ_x x² + κ_y y²) / 2     of a spot; κ the curvatures of the wave at z
     /// Φ = r + κ y² / 2                  of a line; r from the apex, κ that of the focus at r
     /// ```
     ///
-    /// The Gouy phase, half a wavelength over a focus, is left out. Returns `None` at the apex of a line and behind it.
+    /// The Gouy phase, half a wavelength over a focus, is left out. Returns `None` at the apex of a
+    /// line and behind it.
     pub fn path_to(&self, point: DVec3) -> Option<f64> {
         let [x, y, z] = self.local(point);
         match &self.source {

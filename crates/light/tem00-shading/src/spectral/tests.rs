@@ -4,8 +4,8 @@ use tem00_testkit::{assert_absolute, assert_relative};
 use super::*;
 use crate::{Camera, CameraDescription, DVec3, Laser, Motion, Pose, Speckle, SpeckleFrame};
 
-/// A plane z = 0 under a laser along its normal, seen under 30° about the axis y: other wavelengths displace the pupil
-/// along x.
+/// A plane z = 0 under a laser along its normal, seen under 30° about the axis y: other wavelengths
+/// displace the pupil along x.
 fn camera() -> Camera {
     let (sin, cos) = 30_f64.to_radians().sin_cos();
     Camera::new(CameraDescription {

@@ -1,13 +1,12 @@
 //! The mean squares that interpolation leaves, as polynomials of the fractions.
 //!
 //! A pupil point k that stands for the wave `exp(−2πi k x / Q)` comes out of the interpolation as
-//! that wave times its response `g(k; f)`, near 1 (see [`response`]). Mean squares are sums of products
-//! of two responses over the pupil, one axis times the other. Along each axis the real part of
-//! such a product is even about f = ½ and the imaginary part odd, so that both are
-//! polynomials of `p = f (1 − f)`, the odd one after division by `p (1 − 2f)`. Of one slice this is exact:
-//! degree 3 in p. Of two slices, whose pupils stand apart, the
-//! products also turn with f, and the polynomials leave 1e−6 at most, of the odd parts, which a symmetric
-//! pupil cancels, 2e−5.
+//! that wave times its response `g(k; f)`, near 1 (see [`response`]). Mean squares are sums of
+//! products of two responses over the pupil, one axis times the other. Along each axis the real
+//! part of such a product is even about f = ½ and the imaginary part odd, so that both are
+//! polynomials of `p = f (1 − f)`, the odd one after division by `p (1 − 2f)`. Of one slice this is
+//! exact: degree 3 in p. Of two slices, whose pupils stand apart, the products also turn with f,
+//! and the polynomials leave 1e−6 at most, of the odd parts, which a symmetric pupil cancels, 2e−5.
 
 use num_complex::Complex;
 use tem00_numerics::{

@@ -135,7 +135,8 @@ pub(crate) fn lag_products(f: f64) -> [f64; 4] {
     core::array::from_fn(|lag| w[lag..].iter().zip(&w).map(|(a, b)| a * b).sum())
 }
 
-/// Response of the interpolation at the fraction `f` to the wave of the pupil point k, over that wave.
+/// Response of the interpolation at the fraction `f` to the wave of the pupil point k, over that
+/// wave.
 ///
 /// ```text
 /// g(k; f) = b(k) Σ w(t) exp(−2πi k (t − f) / Q)

@@ -30,10 +30,10 @@ impl Period {
     /// Splits coordinates into the cell, below the period, and the fraction in [0, 1] of the way to
     /// the next.
     ///
-    /// No step rounds what a `f64` can hold: the number of periods and its product are whole numbers below
-    /// 2⁵³, and the difference is a multiple of the last bit of x and smaller. So the period is
-    /// exact. Only what lies within rounding below zero comes out as the end of the last cell. What is not finite has the
-    /// last cell and the fraction NaN.
+    /// No step rounds what a `f64` can hold: the number of periods and its product are whole
+    /// numbers below 2⁵³, and the difference is a multiple of the last bit of x and smaller. So the
+    /// period is exact. Only what lies within rounding below zero comes out as the end of the last
+    /// cell. What is not finite has the last cell and the fraction NaN.
     #[inline(always)]
     pub(crate) fn split<const L: usize>(&self, x: &[f64; L]) -> ([usize; L], [f64; L]) {
         let mut x = *x;
@@ -143,7 +143,8 @@ fn positions<const L: usize>(cells: &[usize; L], fractions: &[f64; L]) -> [f64; 
     positions
 }
 
-/// The four taps of the cubic B-spline that reach the fraction `f` between the second and the third.
+/// The four taps of the cubic B-spline that reach the fraction `f` between the second and the
+/// third.
 #[inline(always)]
 pub(crate) fn cubic_weights(f: f32) -> [f32; 4] {
     let g = 1.0 - f;

@@ -17,24 +17,24 @@ use crate::{PupilField, SpeckleError, SpecklePattern, SpeckleScratch};
 /// I(r) = ∫ |U(r − T t; offset + s t)|² dt       t from −½ to ½
 /// ```
 ///
-/// The *image drift* T moves the pattern over the sensor; the *pupil drift* s moves the light over the
-/// pupil, so that the speckle boils where it is. The exposure is centred: at t = 0 the pattern is the
-/// one that does not move. The mean is exactly 1 where that of the still pattern is.
+/// The *image drift* T moves the pattern over the sensor; the *pupil drift* s moves the light over
+/// the pupil, so that the speckle boils where it is. The exposure is centred: at t = 0 the pattern
+/// is the one that does not move. The mean is exactly 1 where that of the still pattern is.
 ///
 /// ```text
 /// C² = 2 ∫₀¹ (1 − t) |μ(t T)|² dt           image drift alone
 /// C² = 2 ∫₀¹ (1 − t) chat(t s)² dt          pupil drift alone, circular pupil
 /// ```
 ///
-/// Look-ups of a stack need none of this: draw the moment of each sample of a pixel at random within
-/// the exposure, and look up at the coordinates of that moment.
+/// Look-ups of a stack need none of this: draw the moment of each sample of a pixel at random
+/// within the exposure, and look up at the coordinates of that moment.
 ///
 /// # Validity
 ///
-/// Image drift is exact, by a factor sinc in the spectrum of the intensity. Pupil drift takes the mean
-/// of [`moments`](Self::moments) patterns at equal steps, between which the pattern moves as it does
-/// in the exposure. That leaves the squared contrast too high by `(4s/3π + (1 − chat(s)²)/6) / n²` for n
-/// moments behind a circle, which is less than 10⁻³.
+/// Image drift is exact, by a factor sinc in the spectrum of the intensity. Pupil drift takes the
+/// mean of [`moments`](Self::moments) patterns at equal steps, between which the pattern moves as
+/// it does in the exposure. That leaves the squared contrast too high by
+/// `(4s/3π + (1 − chat(s)²)/6) / n²` for n moments behind a circle, which is less than 10⁻³.
 ///
 /// # Examples
 ///
@@ -67,8 +67,8 @@ impl Exposure {
     /// The largest pupil drift along an axis, in pupil diameters: 3840 patterns.
     pub const MAX_PUPIL_DRIFT: f64 = 128.0;
 
-    /// Returns the same exposure with another drift of the pattern over the sensor, in speckle sizes
-    /// h along x and y.
+    /// Returns the same exposure with another drift of the pattern over the sensor, in speckle
+    /// sizes h along x and y.
     ///
     /// # Errors
     ///

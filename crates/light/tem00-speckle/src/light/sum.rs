@@ -15,18 +15,19 @@ const MAX_PATTERNS: usize = 1024;
 /// I = Σ wⱼ Iⱼ          Σ wⱼ = 1, Iⱼ independent patterns of mean 1
 /// ```
 ///
-/// There are `patterns` equal ones; each is two waves of the fractions `(1 ± P)/2`, with the degree of
-/// `polarisation` P, and each of these has parts of the mean intensities `weights`, in any unit: several lasers,
-/// or the coherent modes of a broad spectrum. Parts without light are left out. P is that of the light that
-/// reaches the sensor: 1 behind a polariser, near 0 for laser light off white paper without one.
+/// There are `patterns` equal ones; each is two waves of the fractions `(1 ± P)/2`, with the degree
+/// of `polarisation` P, and each of these has parts of the mean intensities `weights`, in any unit:
+/// several lasers, or the coherent modes of a broad spectrum. Parts without light are left out. P
+/// is that of the light that reaches the sensor: 1 behind a polariser, near 0 for laser light off
+/// white paper without one.
 ///
-/// The contrast is `√(Σ wⱼ²)`; `tem00_statistics::IncoherentSum` has the law. Equal motion leaves every part with
-/// the same correlation, so that coordinates stay those of one pattern.
+/// The contrast is `√(Σ wⱼ²)`; `tem00_statistics::IncoherentSum` has the law. Equal motion leaves
+/// every part with the same correlation, so that coordinates stay those of one pattern.
 ///
 /// # Errors
 ///
-/// Returns an error unless `0 ≤ polarisation ≤ 1`, if a weight is negative or not finite or none positive, or
-/// unless there are between 1 and 1024 patterns in all.
+/// Returns an error unless `0 ≤ polarisation ≤ 1`, if a weight is negative or not finite or none
+/// positive, or unless there are between 1 and 1024 patterns in all.
 ///
 /// # Examples
 ///
@@ -91,14 +92,15 @@ fn check_count(patterns: usize) -> Result<(), SpeckleError> {
 }
 
 impl PupilField {
-    /// Returns fields of as many independent patterns: this one, then the same with seeds made from its own.
+    /// Returns fields of as many independent patterns: this one, then the same with seeds made from
+    /// its own.
     ///
     /// Two fields made from different seeds are the same with a probability of 2⁻⁶⁴ only.
     ///
     /// # Errors
     ///
-    /// Returns an error unless `1 ≤ patterns ≤ 1024`, or if the field was made from samples and there is more than
-    /// one pattern: samples are no source of independent ones.
+    /// Returns an error unless `1 ≤ patterns ≤ 1024`, or if the field was made from samples and
+    /// there is more than one pattern: samples are no source of independent ones.
     pub fn independent(&self, patterns: usize) -> Result<Vec<Self>, SpeckleError> {
         check_count(patterns)?;
         match self.seed() {
@@ -121,12 +123,13 @@ impl PupilField {
 impl SpecklePattern {
     /// Returns the mean of patterns with weights in any unit: light that adds by intensities.
     ///
-    /// Its mean intensity is 1 where that of every pattern is, and its speckle size that of the first.
+    /// Its mean intensity is 1 where that of every pattern is, and its speckle size that of the
+    /// first.
     ///
     /// # Errors
     ///
-    /// Returns an error if a weight is negative or not finite or none positive, or unless there are as many patterns
-    /// as weights, all of one size.
+    /// Returns an error if a weight is negative or not finite or none positive, or unless there are
+    /// as many patterns as weights, all of one size.
     pub fn weighted_mean(
         weights: &[f64],
         patterns: impl IntoIterator<Item = Self>,

@@ -19,8 +19,8 @@ use crate::{
 
 const ZERO: Complex<f32> = Complex::new(0.0, 0.0);
 
-/// The field in a pupil that stands somewhere on the lattice, over the box around its points: for a Fourier transform of
-/// the caller's own, as on a graphics card.
+/// The field in a pupil that stands somewhere on the lattice, over the box around its points: for a
+/// Fourier transform of the caller's own, as on a graphics card.
 ///
 /// The value at column i and row j of the box is
 ///
@@ -28,10 +28,11 @@ const ZERO: Complex<f32> = Complex::new(0.0, 0.0);
 /// A(i, j) = t(i, j) P(start + (i, j)) factors[0][i] factors[1][j]     inside the spans of row j, else 0
 /// ```
 ///
-/// with the [`transmission`](Self::transmission) t, or 1, and the phasor P of word kx of the `ChaCha8` stream ky, both of
-/// the lattice point nearest to the origin on a lattice that closes after [`period`](Self::period), and farther by the
-/// [`origin`](PupilField::origin) of the field. With its box at the
-/// corner of an array of W × H zeros it transforms to the pattern and, about zero frequency, to the amplitude:
+/// with the [`transmission`](Self::transmission) t, or 1, and the phasor P of word kx of the
+/// `ChaCha8` stream ky, both of the lattice point nearest to the origin on a lattice that closes
+/// after [`period`](Self::period), and farther by the [`origin`](PupilField::origin) of the field.
+/// With its box at the corner of an array of W × H zeros it transforms to the pattern and, about
+/// zero frequency, to the amplitude:
 ///
 /// ```text
 /// I(x, y) = |F(x, y)|² / power                                        F = Σ A(i, j) exp(−2πi (i x / W + j y / H))
@@ -73,7 +74,8 @@ pub struct Aperture<'a> {
 type Factors = [Vec<Complex<f32>>; 2];
 
 impl PupilField {
-    /// Returns the values in the pupil displaced by `offset` diameters and out of focus by `defocus`.
+    /// Returns the values in the pupil displaced by `offset` diameters and out of focus by
+    /// `defocus`.
     ///
     /// # Panics
     ///
@@ -145,7 +147,8 @@ impl<'a> Aperture<'a> {
         self.mask.extent()
     }
 
-    /// Returns the first column and row of the box, counted from the lattice point nearest to the pupil's centre.
+    /// Returns the first column and row of the box, counted from the lattice point nearest to the
+    /// pupil's centre.
     pub fn corner(&self) -> [i64; 2] {
         self.mask.corner()
     }
@@ -162,7 +165,8 @@ impl<'a> Aperture<'a> {
         self.lattice.period
     }
 
-    /// Returns the columns of row `y` of the box that belong to the pupil, and those among them that do not.
+    /// Returns the columns of row `y` of the box that belong to the pupil, and those among them
+    /// that do not.
     ///
     /// # Panics
     ///
@@ -253,7 +257,8 @@ impl<'a> Aperture<'a> {
 
 /// The lattice point nearest to `offset` diameters, and the way from there.
 fn lattice_point(offset: f64, diameter: f64) -> (i64, f64) {
-    // So many diameters are a number of rounds of the lattice, which the remainder takes off exactly.
+    // So many diameters are a number of rounds of the lattice, which the remainder takes off
+    // exactly.
     let position = offset % Lattice::SIDE as f64 * diameter;
     let point = position.round();
     let fraction = position - point;

@@ -24,8 +24,8 @@ use crate::{
 /// I(r) = |U(r)|²
 /// ```
 ///
-/// with the transmission t of the [`Pupil`], the defocus a, and the lattice point c₀ nearest to c. The
-/// sum runs over points about k = 0, wherever the pupil stands on the lattice, so that U is
+/// with the transmission t of the [`Pupil`], the defocus a, and the lattice point c₀ nearest to c.
+/// The sum runs over points about k = 0, wherever the pupil stands on the lattice, so that U is
 /// band-limited about zero frequency and can be interpolated.
 ///
 /// Patterns need not be square: on W × H samples of speckles h wide the pupil has the diameters W/h
@@ -33,20 +33,20 @@ use crate::{
 ///
 /// # Defocus
 ///
-/// The defocus a is counted in axial decorrelation lengths: it adds a turn of phase per unit from the
-/// centre of the pupil to its rim. Speckle in focus and out of it correlate by `γ = sinc²(π a)`, whose
-/// first zero is at a = 1. A surface that moves by `d` along the line of sight, at the distance L from
-/// a pupil of diameter D, is out of focus by `a = d D² / (8 λ L²)`.
+/// The defocus a is counted in axial decorrelation lengths: it adds a turn of phase per unit from
+/// the centre of the pupil to its rim. Speckle in focus and out of it correlate by
+/// `γ = sinc²(π a)`, whose first zero is at a = 1. A surface that moves by `d` along the line of
+/// sight, at the distance L from a pupil of diameter D, is out of focus by `a = d D² / (8 λ L²)`.
 ///
-/// Displacement and defocus together also move the pattern: against the pattern in focus of the pupil
-/// at rest, in the frame of the lattice, by `−4 a · offset` speckle sizes.
+/// Displacement and defocus together also move the pattern: against the pattern in focus of the
+/// pupil at rest, in the frame of the lattice, by `−4 a · offset` speckle sizes.
 ///
 /// # Validity
 ///
 /// The intensity holds spatial frequencies up to C/Q, twice those of the amplitude: C ≤ Q/2 keeps
 /// it free of aliasing. C ≥ 8 gives 49 phasors or more, so that the contrast is within 1 % of one.
-/// Random phasors repeat after 2³² lattice points along each axis, which is a million diameters of a
-/// pupil of 4096.
+/// Random phasors repeat after 2³² lattice points along each axis, which is a million diameters of
+/// a pupil of 4096.
 ///
 /// Any size works; those without prime factors above 5 are transformed fastest.
 ///
@@ -135,15 +135,16 @@ impl PupilField {
     /// Creates a field of unit phasors behind a circular pupil, for patterns of `size` = [W, H]
     /// samples whose speckles are `speckle_size` samples wide, in both directions.
     ///
-    /// The speckle size h is the period of the intensity's cut-off frequency. The pupil is an ellipse
-    /// of W/h by H/h lattice points.
+    /// The speckle size h is the period of the intensity's cut-off frequency. The pupil is an
+    /// ellipse of W/h by H/h lattice points.
     ///
     /// # Speckle without a lens
     ///
-    /// On a screen at the distance z, parallel to a rough surface and near the axis, the lit area takes the place of the
-    /// pupil: of the width w it makes speckles of `λz / w`, and [`with_pupil`](Self::with_pupil) gives its shape. A
-    /// Gaussian spot is cut off, at five radii in w for a pupil of the radius 0.2. A surface that has moved by d through
-    /// the light displaces the pupil by `−d / w`: its speckle boils and does not move. The law is
+    /// On a screen at the distance z, parallel to a rough surface and near the axis, the lit area
+    /// takes the place of the pupil: of the width w it makes speckles of `λz / w`, and
+    /// [`with_pupil`](Self::with_pupil) gives its shape. A Gaussian spot is cut off, at five radii
+    /// in w for a pupil of the radius 0.2. A surface that has moved by d through the light
+    /// displaces the pupil by `−d / w`: its speckle boils and does not move. The law is
     /// `tem00_statistics::laws::ObjectiveSpeckle`.
     ///
     /// # Errors
@@ -214,8 +215,8 @@ impl PupilField {
         Self::build(self.lattice, layout, pupil)
     }
 
-    /// Returns the same field behind a pupil of another diameter, for speckles `speckle_size` samples
-    /// wide. External samples are shared, not copied.
+    /// Returns the same field behind a pupil of another diameter, for speckles `speckle_size`
+    /// samples wide. External samples are shared, not copied.
     ///
     /// # Errors
     ///
@@ -244,10 +245,11 @@ impl PupilField {
         self
     }
 
-    /// Returns the same field about a pupil that rests `points` lattice points farther along each axis.
+    /// Returns the same field about a pupil that rests `points` lattice points farther along each
+    /// axis.
     ///
-    /// A stack of it holds another part of a path than a stack of the field itself. Where both hold the same
-    /// slices, they hold the same speckle.
+    /// A stack of it holds another part of a path than a stack of the field itself. Where both hold
+    /// the same slices, they hold the same speckle.
     ///
     /// # Examples
     ///
@@ -266,8 +268,8 @@ impl PupilField {
         self
     }
 
-    /// Returns the lattice point of the phasors or samples at which the pupil rests: the origin unless the field
-    /// has been [displaced](Self::displaced).
+    /// Returns the lattice point of the phasors or samples at which the pupil rests: the origin
+    /// unless the field has been [displaced](Self::displaced).
     pub const fn origin(&self) -> [i64; 2] {
         self.lattice.origin
     }
@@ -382,9 +384,9 @@ impl PupilField {
 
     /// Returns the diameter `2√(N/π)` of the disc whose area is the pupil's N lattice cells.
     ///
-    /// With it the Airy autocovariance of a circular pupil holds within 1.3e−3 in every direction at
-    /// C = 32, and within 3e−4 at C = 128. With the nominal C these are 4.1e−3 and 6e−4. For a pattern
-    /// that is not square it is the geometric mean over both axes.
+    /// With it the Airy autocovariance of a circular pupil holds within 1.3e−3 in every direction
+    /// at C = 32, and within 3e−4 at C = 128. With the nominal C these are 4.1e−3 and 6e−4. For a
+    /// pattern that is not square it is the geometric mean over both axes.
     pub fn effective_diameter(&self) -> f64 {
         2.0 * (self.phasor_count() as f64 / PI).sqrt()
     }
@@ -396,8 +398,8 @@ impl PupilField {
     /// ```
     ///
     /// It is 1 at zero lag, has the period of the pattern, and is real for pupils with a centre of
-    /// symmetry. The autocovariance of the intensity is `|μ|²` for Gaussian phasors and `|μ|² − 1/N` for
-    /// unit phasors, with the [effective](Self::effective_phasor_count) number N.
+    /// symmetry. The autocovariance of the intensity is `|μ|²` for Gaussian phasors and
+    /// `|μ|² − 1/N` for unit phasors, with the [effective](Self::effective_phasor_count) number N.
     ///
     /// # Panics
     ///
@@ -410,8 +412,8 @@ impl PupilField {
         self.mask.correlation(lag, self.size)
     }
 
-    /// Returns the amplitude correlation of the fields of the pupil and of the same pupil displaced by
-    /// `shift` lattice points.
+    /// Returns the amplitude correlation of the fields of the pupil and of the same pupil displaced
+    /// by `shift` lattice points.
     ///
     /// ```text
     /// Σ t(k) t*(k − shift) / Σ |t|²

@@ -12,8 +12,9 @@ use crate::Phasors;
 
 /// A field on the points of a torus, of so many points along each axis.
 ///
-/// On a torus of P points the point k shows what the source has at the representative of k in [−P/2, P/2),
-/// counted from the origin, so that the surroundings of the origin are the same for every P.
+/// On a torus of P points the point k shows what the source has at the representative of k in
+/// [−P/2, P/2), counted from the origin, so that the surroundings of the origin are the same for
+/// every P.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Lattice {
     pub(crate) source: Source,
@@ -32,8 +33,8 @@ pub(crate) enum Source {
 
 /// Random phasors.
 ///
-/// The phasor at (kx, ky) is made of word kx of the `ChaCha8` stream ky, both modulo 2³², so that any
-/// part of the lattice can be generated alone, in any order and by any thread.
+/// The phasor at (kx, ky) is made of word kx of the `ChaCha8` stream ky, both modulo 2³², so that
+/// any part of the lattice can be generated alone, in any order and by any thread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Seeded {
     pub(crate) seed: u64,

@@ -7,8 +7,8 @@ use crate::{SpeckleError, Transmission};
 
 /// The shape of the camera's pupil.
 ///
-/// Lengths are in units of the pupil diameter D, which is C lattice points: the outer diameter of an
-/// annulus and the width of a rectangle. A point at the position p from the pupil's centre, in
+/// Lengths are in units of the pupil diameter D, which is C lattice points: the outer diameter of
+/// an annulus and the width of a rectangle. A point at the position p from the pupil's centre, in
 /// diameters, belongs to it where
 ///
 /// ```text
@@ -36,8 +36,8 @@ pub enum Pupil {
     },
     /// A disc whose amplitude transmission falls off as `exp(−p²/radius²)`.
     Gaussian {
-        /// The radius, in units of the diameter, at which 1/e² of the power is transmitted; positive
-        /// and finite.
+        /// The radius, in units of the diameter, at which 1/e² of the power is transmitted;
+        /// positive and finite.
         radius: f64,
     },
     /// Any amplitude transmission over the bounding square, with phase if there are aberrations.
@@ -151,8 +151,8 @@ impl Pupil {
 /// The overlap of two apodised discs of diameter 1 at the distance `rho`.
 ///
 /// About the middle between the centres the product of both transmissions is a Gaussian again, and
-/// the rim of the lens they share lies at b(φ) = √(¼ − ¼ρ² sin²φ) − ½ρ cos φ. In polar coordinates the
-/// radial integral is elementary; the quadrants are alike.
+/// the rim of the lens they share lies at b(φ) = √(¼ − ¼ρ² sin²φ) − ½ρ cos φ. In polar coordinates
+/// the radial integral is elementary; the quadrants are alike.
 fn gaussian_overlap(rho: f64, radius: f64) -> f64 {
     if rho >= 1.0 || rho.is_nan() {
         return 0.0;
@@ -236,8 +236,8 @@ mod tests {
             for shift in [[0, 0], [60, 0], [300, 100], [0, 90], [420, -30], [550, 0]] {
                 let diameters = shift.map(|s| s as f64 / DIAMETER);
                 let share = mask.overlap(shift).re / mask.power();
-                // A rectangle of 151 rows instead of 150 is off by 1/150; rims of discs average out.
-                // So much more so against the area of a thin ring.
+                // A rectangle of 151 rows instead of 150 is off by 1/150; rims of discs average
+                // out. So much more so against the area of a thin ring.
                 let tolerance = match pupil {
                     Pupil::Rectangle { .. } => 1.0 / 150.0,
                     Pupil::Annulus { inner } => 2e-4 / (1.0 - inner * inner),

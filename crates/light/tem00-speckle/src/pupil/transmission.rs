@@ -42,7 +42,8 @@ pub struct Transmission {
 }
 
 impl Transmission {
-    /// Creates a transmission from its amplitude, 0 where the pupil is opaque and 1 where it is open.
+    /// Creates a transmission from its amplitude, 0 where the pupil is opaque and 1 where it is
+    /// open.
     ///
     /// # Errors
     ///

@@ -162,8 +162,8 @@ impl PupilField {
         seen
     }
 
-    /// scale · exp(−2πi corner x / Q): moves the pupil's centre from its position in the aperture to
-    /// zero frequency.
+    /// scale · exp(−2πi corner x / Q): moves the pupil's centre from its position in the aperture
+    /// to zero frequency.
     fn centring_phase(
         &self,
         aperture: &Aperture<'_>,

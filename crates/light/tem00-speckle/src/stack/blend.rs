@@ -11,11 +11,11 @@ use crate::SpeckleStack;
 type Part = ([i64; 2], f64);
 
 impl SpeckleStack {
-    /// Returns the correlation γ of the intensities looked up at the samples at two coordinates u and v,
-    /// on slices or between: by the counted overlaps of their pupils, exactly.
+    /// Returns the correlation γ of the intensities looked up at the samples at two coordinates u
+    /// and v, on slices or between: by the counted overlaps of their pupils, exactly.
     ///
-    /// Both have the period of the stack; for a still stack it is 1. Coordinates that are not finite have nothing in
-    /// common: 0.
+    /// Both have the period of the stack; for a still stack it is 1. Coordinates that are not
+    /// finite have nothing in common: 0.
     ///
     /// # Examples
     ///
@@ -60,8 +60,9 @@ impl SpeckleStack {
         }
     }
 
-    /// The covariances of the amplitudes of two blends. Where the lattice closes early their pupils may
-    /// meet from both sides, as waves that the tile averages apart unless they are periods of it apart.
+    /// The covariances of the amplitudes of two blends. Where the lattice closes early their pupils
+    /// may meet from both sides, as waves that the tile averages apart unless they are periods of
+    /// it apart.
     fn covariances(&self, a: &[Part], b: &[Part]) -> BTreeMap<[i64; 2], Complex<f64>> {
         let nearest = self.field.shift(a[0].0, b[0].0);
         let way = [0, 1].map(|axis| nearest[axis] - (b[0].0[axis] - a[0].0[axis]));

@@ -43,8 +43,8 @@ struct Joiner<'a> {
     expected: Variance,
 }
 
-/// Joins the coefficients of the slices of `field`, and returns the variances: one for all slices of
-/// random phasors, one for each of external light.
+/// Joins the coefficients of the slices of `field`, and returns the variances: one for all slices
+/// of random phasors, one for each of external light.
 pub(super) fn join_all<C: Send>(
     field: &PupilField,
     path: SlicePath,
@@ -76,7 +76,8 @@ pub(super) fn join_all<C: Send>(
 }
 
 impl Joiner<'_> {
-    /// The join from the slice of the pupil at `centre` to that at `next`, and the variance of the first.
+    /// The join from the slice of the pupil at `centre` to that at `next`, and the variance of the
+    /// first.
     fn join(&self, centre: [i64; 2], next: [i64; 2]) -> (Join, Variance) {
         let shift = self.field.shift(centre, next);
         if self.field.samples().is_none() {

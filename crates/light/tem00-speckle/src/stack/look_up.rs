@@ -20,8 +20,9 @@ const LANES: usize = 16;
 impl SpeckleStack {
     /// Returns the intensity, with mean 1, at (x, y) in samples and u in slices.
     ///
-    /// A coordinate that is not finite, as that of a degenerate ray, is no place of the pattern. Nothing is known of the
-    /// speckle there but its mean, 1, which is returned: light that is multiplied by it stays as it is.
+    /// A coordinate that is not finite, as that of a degenerate ray, is no place of the pattern.
+    /// Nothing is known of the speckle there but its mean, 1, which is returned: light that is
+    /// multiplied by it stays as it is.
     #[inline(always)]
     pub fn intensity_at(&self, x: f64, y: f64, u: f64) -> f64 {
         if !is_place([x, y, u]) {
@@ -35,12 +36,12 @@ impl SpeckleStack {
         intensity
     }
 
-    /// Returns the amplitude, of mean square 1, whose squared magnitude [`intensity_at`](Self::intensity_at)
-    /// returns: for light whose fields add.
+    /// Returns the amplitude, of mean square 1, whose squared magnitude
+    /// [`intensity_at`](Self::intensity_at) returns: for light whose fields add.
     ///
-    /// It is the field in the frame of the pupil of the slice at u or before it. Stacks along one path have one
-    /// frame, so that their amplitudes add at one place; those of other places and slices add after
-    /// [`ramp_at`](Self::ramp_at). It is 1 where a coordinate is not finite.
+    /// It is the field in the frame of the pupil of the slice at u or before it. Stacks along one
+    /// path have one frame, so that their amplitudes add at one place; those of other places and
+    /// slices add after [`ramp_at`](Self::ramp_at). It is 1 where a coordinate is not finite.
     pub fn amplitude_at(&self, x: f64, y: f64, u: f64) -> Complex<f64> {
         if !is_place([x, y, u]) {
             return Complex::new(1.0, 0.0);
@@ -53,8 +54,9 @@ impl SpeckleStack {
         Complex::new(f64::from(re[0]), f64::from(im[0])) / f64::from(mean_square[0]).sqrt()
     }
 
-    /// Returns the phase, in radians, that takes the [`amplitude_at`](Self::amplitude_at) a position into the frame of the
-    /// first slice of all: `exp(−i ramp)` times the amplitude goes on from slice to slice.
+    /// Returns the phase, in radians, that takes the [`amplitude_at`](Self::amplitude_at) a
+    /// position into the frame of the first slice of all: `exp(−i ramp)` times the amplitude goes
+    /// on from slice to slice.
     ///
     /// ```text
     /// ramp = 2π (x c_x / Q_x + y c_y / Q_y)     c the lattice point about which the pupil of the slice stands
@@ -71,9 +73,9 @@ impl SpeckleStack {
     /// Writes the intensities at many points into `intensity`, the same bits as
     /// [`intensity_at`](Self::intensity_at) one by one.
     ///
-    /// Points between the same two slices, one after the other, are looked up together, and those that
-    /// also lie close to each other fastest. The feature `simd` takes the widest vector instructions of the
-    /// processor, for the same bits.
+    /// Points between the same two slices, one after the other, are looked up together, and those
+    /// that also lie close to each other fastest. The feature `simd` takes the widest vector
+    /// instructions of the processor, for the same bits.
     ///
     /// # Panics
     ///
@@ -108,11 +110,12 @@ impl SpeckleStack {
     /// For renderers that multiply speckle onto a finished image, and for pixels that are not much
     /// smaller than a speckle: looked up at its centre, such a pixel would show too much contrast.
     ///
-    /// The mean is a sum over 5 × 5 points of Gauss and Legendre for each speckle of the box, and over
-    /// at most one period of the pattern along each axis, however large the box. It errs by less than
-    /// 4e−5 of the amplitude of the finest fringes, those at the intensity's cut-off, and by far less of
-    /// all others. The images that cubic splines leave of the finest fringes, (2s − 1)⁻⁴ of them for
-    /// speckles of s samples, are met by such a sum by chance. It is 1 where `centre`, `size` or `u` is not finite.
+    /// The mean is a sum over 5 × 5 points of Gauss and Legendre for each speckle of the box, and
+    /// over at most one period of the pattern along each axis, however large the box. It errs by
+    /// less than 4e−5 of the amplitude of the finest fringes, those at the intensity's cut-off, and
+    /// by far less of all others. The images that cubic splines leave of the finest fringes, (2s −
+    /// 1)⁻⁴ of them for speckles of s samples, are met by such a sum by chance. It is 1 where
+    /// `centre`, `size` or `u` is not finite.
     ///
     /// # Panics
     ///

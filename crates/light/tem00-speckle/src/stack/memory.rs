@@ -10,9 +10,10 @@ use crate::{SlicePath, SpeckleError, pupil::too_large};
 pub struct StackOptions {
     /// The bytes that the slices may take, [`u64::MAX`] by default.
     ///
-    /// Many systems grant any memory that is asked for and end the program when it is used. Where the
-    /// system says what it has available (Linux), more is an error without a limit too; elsewhere, and
-    /// in a container that may have less, only a limit keeps a stack that is too large from that.
+    /// Many systems grant any memory that is asked for and end the program when it is used. Where
+    /// the system says what it has available (Linux), more is an error without a limit too;
+    /// elsewhere, and in a container that may have less, only a limit keeps a stack that is too
+    /// large from that.
     pub memory_limit: u64,
 }
 

@@ -25,8 +25,8 @@ pub enum SlicePath {
         half_period: usize,
     },
     /// A straight line along x over a lattice that closes after `length` pupil diameters. Slices
-    /// are uncorrelated from `2M / length` slices on, which is M for a length of 2, until `length` − 1
-    /// diameters: a motion over so many diameters never returns to speckle it has left.
+    /// are uncorrelated from `2M / length` slices on, which is M for a length of 2, until `length`
+    /// − 1 diameters: a motion over so many diameters never returns to speckle it has left.
     Straight {
         /// Half the number of slices, M.
         half_period: usize,
@@ -63,8 +63,8 @@ impl SlicePath {
         }
     }
 
-    /// Returns the largest motion of the pupil that the slices tell apart from every smaller one, in
-    /// its diameters: the length of their path less the diameter of the pupil itself.
+    /// Returns the largest motion of the pupil that the slices tell apart from every smaller one,
+    /// in its diameters: the length of their path less the diameter of the pupil itself.
     pub const fn reach(self) -> f64 {
         match self {
             Self::Still => 0.0,
@@ -94,8 +94,9 @@ impl SlicePath {
     ///
     /// # Errors
     ///
-    /// Returns an error if the half period is zero or above [`MAX_HALF_PERIOD`](Self::MAX_HALF_PERIOD),
-    /// or the length below 2 or above [`MAX_LENGTH`](Self::MAX_LENGTH).
+    /// Returns an error if the half period is zero or above
+    /// [`MAX_HALF_PERIOD`](Self::MAX_HALF_PERIOD), or the length below 2 or above
+    /// [`MAX_LENGTH`](Self::MAX_LENGTH).
     pub fn check(self) -> Result<(), SpeckleError> {
         match self {
             Self::Circle { half_period } | Self::Straight { half_period, .. }
@@ -187,7 +188,8 @@ fn points_along(length: usize, field: &PupilField) -> i64 {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PathLaw {
     pub(crate) path: SlicePath,
-    /// The overlaps of the pupils of each slice with slice 0 and with the next slice, over a period.
+    /// The overlaps of the pupils of each slice with slice 0 and with the next slice, over a
+    /// period.
     pub(super) overlaps: Vec<[f64; 2]>,
     /// The smallest overlap with slice 0 up to each slice, to the half period.
     lowest: Vec<f64>,
@@ -200,8 +202,8 @@ pub(crate) struct PathLaw {
 /// overlap(f) = [(1 − f) a + f b] / √(1 − 2 f (1 − f) (1 − ρ))
 /// ```
 ///
-/// with the overlaps a and b of that slice with each of the two, and their own, ρ: the blend is divided
-/// by its root mean square.
+/// with the overlaps a and b of that slice with each of the two, and their own, ρ: the blend is
+/// divided by its root mean square.
 struct Blend {
     overlaps: [f64; 2],
     /// 1 − ρ.
@@ -257,8 +259,8 @@ impl PathLaw {
         self.blend_after(to_usize(u)).overlap(u.fract())
     }
 
-    /// Puts the smallest u ≥ 0 at which the overlap has fallen to each of `overlaps` in its place; NaN counts as no
-    /// overlap.
+    /// Puts the smallest u ≥ 0 at which the overlap has fallen to each of `overlaps` in its place;
+    /// NaN counts as no overlap.
     pub(crate) fn coordinates_of(&self, overlaps: &mut [f64]) {
         // The blend in which the last one was found, and the overlaps to which it falls.
         let (mut before, mut blend) = (0, self.blend_after(0));

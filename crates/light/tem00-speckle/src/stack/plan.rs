@@ -25,12 +25,13 @@ pub struct StackNeeds {
 /// needs.
 ///
 /// - The diameter of the pupil field is at least the region in speckles, along each axis, for the
-///   pattern repeats after so many: `C ≥ region / speckle_size`. It is rounded up to the next multiple
-///   of 8 without prime factors above 5, and is at least 32. If that takes too much memory, or more
-///   than a pattern can hold, the image alone repeats nothing.
+///   pattern repeats after so many: `C ≥ region / speckle_size`. It is rounded up to the next
+///   multiple of 8 without prime factors above 5, and is at least 32. If that takes too much
+///   memory, or more than a pattern can hold, the image alone repeats nothing.
 /// - The pattern has twice that size, `Q = 2 C`: the intensity's Nyquist limit.
 /// - The slices lie on a straight path. For two frames it is two diameters long: what has left the
-///   pupil is new, wherever it is looked up. More frames ask for a path that ends clear of its start.
+///   pupil is new, wherever it is looked up. More frames ask for a path that ends clear of its
+///   start.
 /// - Their number is the largest of 32, 16, 8 or 4 per diameter that fits the memory. Blended
 ///   look-ups exceed the correlation law by up to 0.04, 0.08, 0.14 or 0.23.
 ///
@@ -89,8 +90,8 @@ impl StackPlan {
         Self::first_within(Self::candidates(needs)?, needs.memory_limit)
     }
 
-    /// Creates the plan of known sizes: of the pattern in samples, of the pupil in lattice points along each
-    /// axis, and of the path.
+    /// Creates the plan of known sizes: of the pattern in samples, of the pupil in lattice points
+    /// along each axis, and of the path.
     ///
     /// [`field`](Self::field) returns an error if a pattern cannot have them.
     pub const fn from_sizes(size: [usize; 2], diameter: [usize; 2], path: SlicePath) -> Self {
@@ -101,8 +102,9 @@ impl StackPlan {
         }
     }
 
-    /// Returns the plans for `needs` in the order of their worth, whatever memory they take: all that
-    /// is asked for with fewer and fewer slices, then for the image alone, then on a shorter path.
+    /// Returns the plans for `needs` in the order of their worth, whatever memory they take: all
+    /// that is asked for with fewer and fewer slices, then for the image alone, then on a shorter
+    /// path.
     ///
     /// # Errors
     ///
@@ -210,8 +212,8 @@ impl StackPlan {
         self.size
     }
 
-    /// Returns the diameter of the pupil along each axis, in lattice points: the speckles after which
-    /// the pattern repeats.
+    /// Returns the diameter of the pupil along each axis, in lattice points: the speckles after
+    /// which the pattern repeats.
     pub const fn diameter(&self) -> [usize; 2] {
         self.diameter
     }
@@ -236,8 +238,9 @@ impl StackPlan {
         self.path.reach()
     }
 
-    /// Returns the largest motions to either side of the reference that the slices tell apart, in pupil diameters, for
-    /// motions of which the largest are `shifts`: where both sides move, each gets its part of the [reach](Self::reach).
+    /// Returns the largest motions to either side of the reference that the slices tell apart, in
+    /// pupil diameters, for motions of which the largest are `shifts`: where both sides move, each
+    /// gets its part of the [reach](Self::reach).
     pub fn reaches(&self, shifts: [f64; 2]) -> [f64; 2] {
         let [before, after] = shifts;
         if before == 0.0 || after == 0.0 {
@@ -246,8 +249,9 @@ impl StackPlan {
         shifts.map(|part| self.reach() * part / (before + after))
     }
 
-    /// Returns the place in a stack of pattern `number` of several that share it, in periods along x and y: the points of
-    /// the sequence of Roberts (2018), far apart from each other. The first is at the origin.
+    /// Returns the place in a stack of pattern `number` of several that share it, in periods along
+    /// x and y: the points of the sequence of Roberts (2018), far apart from each other. The first
+    /// is at the origin.
     pub fn place(number: usize) -> [f64; 2] {
         /// The plastic ratio: the root of x³ = x + 1.
         const PLASTIC: f64 = 1.324_717_957_244_746;
@@ -255,8 +259,9 @@ impl StackPlan {
         [PLASTIC, PLASTIC * PLASTIC].map(|step| (number / step).fract())
     }
 
-    /// Returns whether a pupil diameter has the 16 slices from which a stack of one's own is worth more than a place in
-    /// one with more slices: the blend between fewer exceeds the correlation law by up to 0.11.
+    /// Returns whether a pupil diameter has the 16 slices from which a stack of one's own is worth
+    /// more than a place in one with more slices: the blend between fewer exceeds the correlation
+    /// law by up to 0.11.
     pub fn blends_closely(&self) -> bool {
         self.slices_per_diameter() >= 16.0
     }
@@ -352,8 +357,8 @@ fn is_smooth(mut number: usize) -> bool {
     number == 1
 }
 
-/// The length of a straight path, in pupil diameters, that ends clear of its start after a motion of
-/// `motion` diameters.
+/// The length of a straight path, in pupil diameters, that ends clear of its start after a motion
+/// of `motion` diameters.
 fn length_for(motion: f64) -> usize {
     to_usize((1.0 + motion).ceil()).clamp(2, LONGEST_PATH)
 }

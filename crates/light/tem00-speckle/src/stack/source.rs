@@ -6,8 +6,8 @@ use crate::{
     stack::{check_limit, join_all},
 };
 
-/// What the slices of a stack are transformed from, and their closed forms: for stacks that are generated elsewhere, as on
-/// a graphics card.
+/// What the slices of a stack are transformed from, and their closed forms: for stacks that are
+/// generated elsewhere, as on a graphics card.
 ///
 /// # Examples
 ///
@@ -34,8 +34,8 @@ impl StackSource {
     ///
     /// # Errors
     ///
-    /// Returns an error if the half period of `path` is zero or too large, if its length is, or if the slices take more
-    /// than the memory limit.
+    /// Returns an error if the half period of `path` is zero or too large, if its length is, or if
+    /// the slices take more than the memory limit.
     pub fn new(
         field: &PupilField,
         path: SlicePath,
@@ -52,8 +52,8 @@ impl StackSource {
         })
     }
 
-    /// Returns the field that the slices are cut from. That of a straight path closes on itself after the length of the
-    /// path.
+    /// Returns the field that the slices are cut from. That of a straight path closes on itself
+    /// after the length of the path.
     pub const fn field(&self) -> &PupilField {
         &self.field
     }
@@ -67,8 +67,8 @@ impl StackSource {
         self.path
     }
 
-    /// Returns what slice `index` is transformed from, prefiltered for the interpolation: its amplitudes are the
-    /// coefficients of the stack.
+    /// Returns what slice `index` is transformed from, prefiltered for the interpolation: its
+    /// amplitudes are the coefficients of the stack.
     pub fn slice(&self, index: usize) -> Aperture<'_> {
         let centre = self.path.centre(to_signed(index), &self.field);
         self.field.aperture_of_point(centre, Some(&self.filters))

@@ -240,8 +240,8 @@ fn looked_up(size: u32, path: SlicePath, tiles: u32, pairs: &[[f64; 2]]) -> Vec<
     covariances
 }
 
-/// The spread of a covariance is at most that of the squared contrast, 1.53/C; α = 6e−5. Unit phasors
-/// lower it by up to 1/N.
+/// The spread of a covariance is at most that of the squared contrast, 1.53/C; α = 6e−5. Unit
+/// phasors lower it by up to 1/N.
 fn spread_of(tiles: u32) -> f64 {
     4.0 * 1.53 / 32.0 / f64::from(tiles).sqrt() + 1.0 / 797.0
 }
@@ -277,8 +277,8 @@ fn look_ups_on_slices_and_between_correlate_as_stated() {
     }
 }
 
-/// Half-way round a closed path pupils meet from both sides. Where the lattice closes with the pattern
-/// these are one wave, else two.
+/// Half-way round a closed path pupils meet from both sides. Where the lattice closes with the
+/// pattern these are one wave, else two.
 #[test]
 fn look_ups_on_opposite_sides_of_a_path_correlate_as_stated() {
     const TILES: u32 = 24;
@@ -415,7 +415,8 @@ fn a_limit_is_the_most_that_a_stack_may_take() {
 
 #[test]
 fn the_first_of_the_slices_that_have_fallen_as_low_is_found() {
-    // The overlap of two rings is least where they cross at right angles, and rises until they touch.
+    // The overlap of two rings is least where they cross at right angles, and rises until they
+    // touch.
     let law = PathLaw::new(circle(2_048), &Pupil::Annulus { inner: 0.8 });
     let overlaps: Vec<_> = law.overlaps[..2_048].iter().map(|[o, _]| *o).collect();
     let dip = (1..2_048)

@@ -25,7 +25,8 @@ pub struct RenderArgs {
     #[arg(long)]
     pub(crate) resume: bool,
 
-    /// Render only this part of the image, in pixels from the upper left corner [default: from the scene].
+    /// Render only this part of the image, in pixels from the upper left corner [default: from the
+    /// scene].
     #[arg(long, value_name = "X,Y,WIDTH,HEIGHT", value_parser = crop_of_scene)]
     pub(crate) crop: Option<Change>,
 
@@ -38,8 +39,8 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) max_depth: Option<u32>,
 
-    /// Target relative standard error per pixel; a pixel takes 1 to 64 times --spp samples, as needed
-    /// [default: from the scene].
+    /// Target relative standard error per pixel; a pixel takes 1 to 64 times --spp samples, as
+    /// needed [default: from the scene].
     #[arg(long, value_name = "ERROR", value_parser = relative_error, conflicts_with = "adaptive")]
     pub(crate) target_error: Option<f64>,
 
@@ -47,8 +48,8 @@ pub struct RenderArgs {
     #[arg(long, conflicts_with_all = ["target_error", "adaptive"])]
     pub(crate) reference: bool,
 
-    /// Do not render: report how much the camera will see of each laser and why, and draw camera, lasers
-    /// and parts. The exit code is 3 if it will see no laser light.
+    /// Do not render: report how much the camera will see of each laser and why, and draw camera,
+    /// lasers and parts. The exit code is 3 if it will see no laser light.
     #[arg(long)]
     pub(crate) check: bool,
 
@@ -96,7 +97,8 @@ fn radiance(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Returns what a part of the image changes in the scene, whose reader sees that it lies in the image.
+/// Returns what a part of the image changes in the scene, whose reader sees that it lies in the
+/// image.
 fn crop_of_scene(text: &str) -> Result<Change, String> {
     crop(text)?;
     format!("render.crop=[{text}]").parse()

@@ -34,12 +34,13 @@ pub struct SceneArgs {
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
 
-    /// Render only frame N or frames FIRST to LAST, inclusive, 0-based; each frame is independent of the
-    /// selection [default: all].
+    /// Render only frame N or frames FIRST to LAST, inclusive, 0-based; each frame is independent
+    /// of the selection [default: all].
     #[arg(long, visible_alias = "frame", value_name = "N|FIRST..LAST")]
     pub frames: Option<IndexRange>,
 
-    /// Number of threads, 1 to 1024 and at most four per core; it does not change the result [default: all].
+    /// Number of threads, 1 to 1024 and at most four per core; it does not change the result
+    /// [default: all].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
 

@@ -4,11 +4,12 @@ use clap::Args;
 use tem00_config::ANGLE;
 use tem00_report::args::{length, positive};
 
-/// Compute the speckle size of a camera, the contrast in a pixel, and the motions that decorrelate it.
+/// Compute the speckle size of a camera, the contrast in a pixel, and the motions that decorrelate
+/// it.
 ///
-/// This needs only the lens, the distance and the wavelength. The surface is rough and illuminated over
-/// more than a resolution cell. The size h, wavelength times working f-number, is the period of the finest
-/// fringes that the pupil transmits.
+/// This needs only the lens, the distance and the wavelength. The surface is rough and illuminated
+/// over more than a resolution cell. The size h, wavelength times working f-number, is the period
+/// of the finest fringes that the pupil transmits.
 #[derive(Args, Debug)]
 #[command(after_help = SPECKLE_EXAMPLES)]
 pub(crate) struct SpeckleArgs {
@@ -24,8 +25,8 @@ pub(crate) struct SpeckleArgs {
     #[arg(long, value_name = "F", value_parser = positive)]
     pub(crate) f_number: f64,
 
-    /// Distance from the surface in focus to the entrance pupil, as in "300 mm"; for a thin lens, to the
-    /// lens.
+    /// Distance from the surface in focus to the entrance pupil, as in "300 mm"; for a thin lens,
+    /// to the lens.
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub(crate) distance: f64,
 
@@ -33,7 +34,8 @@ pub(crate) struct SpeckleArgs {
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub(crate) pixel_pitch: Option<f64>,
 
-    /// Pupil magnification, the diameter of the exit pupil over the diameter of the entrance pupil; 1 for a thin lens.
+    /// Pupil magnification, the diameter of the exit pupil over the diameter of the entrance pupil;
+    /// 1 for a thin lens.
     #[arg(long, value_name = "RATIO", default_value_t = 1.0, value_parser = positive)]
     pub(crate) pupil_magnification: f64,
 

@@ -239,7 +239,8 @@ fn aperture(laser: &LaserInspection) -> Option<DVec3> {
     way.first().copied()
 }
 
-/// Returns the eye of the camera and the corners of what it shows at the distance in focus, in metres.
+/// Returns the eye of the camera and the corners of what it shows at the distance in focus, in
+/// metres.
 fn pyramid(camera: &Camera) -> [DVec3; 5] {
     let [width, height] = [camera.width(), camera.height()].map(|pixels| pixels as f64);
     let distance = camera.description().focus_distance;

@@ -170,8 +170,8 @@ fn size_row(field: &PupilField, lags: &Grid<f32>, axis: Axis) -> Result<Row, Sta
     ))
 }
 
-/// Returns the autocovariance of the pupil at the lags along one axis, up to some times the measured
-/// size; the rest is left 0.
+/// Returns the autocovariance of the pupil at the lags along one axis, up to some times the
+/// measured size; the rest is left 0.
 fn exact_autocovariance(field: &PupilField, axis: Axis, size: f64) -> Grid<f32> {
     let lags = (to_usize((8.0 * size).ceil()) + 8).min(field.size()[0]);
     let covariance = |lag: usize| {

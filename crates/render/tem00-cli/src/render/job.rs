@@ -101,7 +101,8 @@ impl<'a> Render<'a> {
         self.folder.join(format!("{}.json", self.name))
     }
 
-    /// Warns, before the work, about lasers of which the camera will see no light, and draws the scene then.
+    /// Warns, before the work, about lasers of which the camera will see no light, and draws the
+    /// scene then.
     pub(super) fn warn_of_darkness(&self) -> Result<(), Failure> {
         let found = Inspection::new(&self.scene, self.frames)
             .map_err(|error| tracer_failure(&self.args.common.scene, &error))?;
@@ -157,8 +158,8 @@ impl<'a> Render<'a> {
     }
 }
 
-/// Returns the frames that the command line asks for, of the `count` that the scene has; all of them if
-/// it asks for none.
+/// Returns the frames that the command line asks for, of the `count` that the scene has; all of
+/// them if it asks for none.
 ///
 /// # Errors
 ///

@@ -17,8 +17,8 @@ use tem00_tracer::Scene;
 
 use crate::summary::{Exposure, FrameSummary};
 
-/// A number that distinguishes renders: it changes with the scene, with each file that belongs to it,
-/// with the choices on the command line and with the version of the program.
+/// A number that distinguishes renders: it changes with the scene, with each file that belongs to
+/// it, with the choices on the command line and with the version of the program.
 ///
 /// It is the 64-bit FNV-1a hash of them all. Two renders share it by chance once in 10¹⁹ pairs.
 #[derive(Clone, Debug, Deserialize, PartialEq, Eq, Serialize)]

@@ -32,8 +32,8 @@ impl Render<'_> {
     ///
     /// # Errors
     ///
-    /// Returns a failure if a frame cannot be rendered or written, if the folder holds the frames of
-    /// another render to go on with, or if the user ends it.
+    /// Returns a failure if a frame cannot be rendered or written, if the folder holds the frames
+    /// of another render to go on with, or if the user ends it.
     pub(super) fn sequence(&self) -> Result<Sequence, Failure> {
         let missing = self.missing()?;
         let mut exposure = self.known_exposure();
@@ -232,8 +232,8 @@ impl Render<'_> {
         })
     }
 
-    /// Returns whether the expected contrast is that of one pattern, averaged over the area of a pixel
-    /// by a fixed number of camera samples.
+    /// Returns whether the expected contrast is that of one pattern, averaged over the area of a
+    /// pixel by a fixed number of camera samples.
     fn knows_contrast(&self) -> bool {
         let mut surfaces = self.scene.surfaces.iter();
         self.scene.render.method == Method::Path
@@ -242,8 +242,8 @@ impl Render<'_> {
             && surfaces.all(|surface| surface.speckle == SurfaceSpeckle::default())
     }
 
-    /// Returns the number of samples that a frame took: where they depend on the light, those that its pixels are
-    /// made of.
+    /// Returns the number of samples that a frame took: where they depend on the light, those that
+    /// its pixels are made of.
     fn samples_of(&self, frame: &Frame) -> u64 {
         match self.scene.render.sampling {
             Sampling::Even => self.samples_per_frame(),

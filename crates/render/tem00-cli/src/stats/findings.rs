@@ -26,8 +26,8 @@ const SIGNIFICANCE: f64 = 1e-3;
 /// The fewest independent samples that say something about a distribution.
 const FEWEST_SAMPLES: usize = 20;
 
-/// The smallest mean, in grey levels, from which on rounding hardly moves the fit of a Gamma law: by
-/// 0.8 %, falling with the square.
+/// The smallest mean, in grey levels, from which on rounding hardly moves the fit of a Gamma law:
+/// by 0.8 %, falling with the square.
 const COARSE: f64 = 5.0;
 
 /// Rounding of a mean of more grey levels than this shows in nothing that is measured here.
@@ -90,9 +90,10 @@ impl Findings<'_> {
 
     /// Warns if the darkest values say that darkness has a grey value of its own, in even light.
     ///
-    /// A thousandth of the pixels of speckle are darker than a thousandth of the mean; where patterns are added or
-    /// pixels are large there are fewer dark ones, but then the law is less skew: its skewness is twice the
-    /// contrast or a little more. A pedestal lowers the contrast alone.
+    /// A thousandth of the pixels of speckle are darker than a thousandth of the mean; where
+    /// patterns are added or pixels are large there are fewer dark ones, but then the law is less
+    /// skew: its skewness is twice the contrast or a little more. A pedestal lowers the contrast
+    /// alone.
     pub(super) fn pedestal(
         &mut self,
         image: &LoadedImage,
@@ -201,7 +202,8 @@ impl Findings<'_> {
 
     /// Returns the standard deviation, from image to image, of the contrast of evenly lit speckle.
     ///
-    /// It is that of a Gamma law of this contrast, `C √((1 + C²)/2)` over the root of the number of independent samples.
+    /// It is that of a Gamma law of this contrast, `C √((1 + C²)/2)` over the root of the number of
+    /// independent samples.
     fn spread(&self, contrast: f64, size: Option<SpeckleSize>) -> Result<f64, StatisticsError> {
         let of_image = self.of_image(size)?.standard_error() / self.contrast.standard_error();
         let of_sample = contrast * (0.5 * (1.0 + contrast * contrast)).sqrt();

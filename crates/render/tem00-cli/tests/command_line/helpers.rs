@@ -135,8 +135,9 @@ pub(crate) fn words(command: &str) -> Vec<String> {
     words
 }
 
-/// Plays the transcript `tests/cmd/NAME.txt`: runs its commands one after the other beside the files of `tests/cmd/files`
-/// and those that `prepare` makes, and compares what they say. `SNAPSHOTS=overwrite cargo test` writes what they say now.
+/// Plays the transcript `tests/cmd/NAME.txt`: runs its commands one after the other beside the
+/// files of `tests/cmd/files` and those that `prepare` makes, and compares what they say.
+/// `SNAPSHOTS=overwrite cargo test` writes what they say now.
 #[track_caller]
 pub(crate) fn play(name: &str, prepare: impl FnOnce(&Path)) -> tempfile::TempDir {
     let here = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cmd");
@@ -169,7 +170,8 @@ pub(crate) fn play(name: &str, prepare: impl FnOnce(&Path)) -> tempfile::TempDir
     folder
 }
 
-/// Makes a pattern of a size, from a pupil of a diameter, and returns its intensities, whose mean is 1.
+/// Makes a pattern of a size, from a pupil of a diameter, and returns its intensities, whose mean
+/// is 1.
 pub(crate) fn pattern(folder: &Path, name: &str, [size, diameter]: [usize; 2]) -> Vec<f64> {
     let line = format!("pattern -o {name} --size {size} --diameter {diameter} --seed 5");
     done(folder, &line);

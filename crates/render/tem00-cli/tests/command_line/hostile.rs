@@ -264,8 +264,8 @@ fn the_data_of_a_gltf_file_stays_in_its_folder() {
     }
 }
 
-/// What a terminal obeys: colour, title, clearing the screen, a control character of one byte in Latin-1,
-/// and the end of a line that the next text overwrites.
+/// What a terminal obeys: colour, title, clearing the screen, a control character of one byte in
+/// Latin-1, and the end of a line that the next text overwrites.
 const ESCAPES: &str = "\u{1b}[31m\u{1b}]0;title\u{7}\u{9b}2J\u{202e}\r";
 
 #[track_caller]

@@ -25,8 +25,8 @@ fn saturation_of_speckle_is_one_judgement_whatever_the_bits_and_where_they_lie()
     let folder = folder();
     let path = |name: &str| folder.path().join(name);
     let light = speckle(folder.path());
-    // The largest value and the step of two values: 10, 12 and 14 bits, in the lower and the upper bits of a word, and
-    // values clipped by what a camera computes.
+    // The largest value and the step of two values: 10, 12 and 14 bits, in the lower and the upper
+    // bits of a word, and values clipped by what a camera computes.
     for (largest, step) in [
         (4_095, 1),
         (1_023, 1),

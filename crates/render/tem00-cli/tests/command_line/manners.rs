@@ -1,4 +1,5 @@
-//! What all commands have in common: wrong kinds of files, units, notes, progress, and what shells are told.
+//! What all commands have in common: wrong kinds of files, units, notes, progress, and what shells
+//! are told.
 
 use std::{
     fs,

@@ -153,8 +153,8 @@ fn ctrl_c_ends_a_pattern_without_a_file() {
     assert!(files(folder.path()).is_empty(), "nothing is left");
 }
 
-/// Writes an image of 400 × 320 pixels as a map of 16 bits: `pixel` of x and y, from the middle, and of the intensity of a
-/// pattern with this pupil, on 512 samples, whose mean is 1.
+/// Writes an image of 400 × 320 pixels as a map of 16 bits: `pixel` of x and y, from the middle,
+/// and of the intensity of a pattern with this pupil, on 512 samples, whose mean is 1.
 fn write_image(folder: &Path, name: &str, pupil: usize, pixel: impl Fn(f64, f64, f64) -> f64) {
     let values = helpers::pattern(folder, "even.npy", [512, pupil]);
     let (width, height) = (400_u16, 320_u16);
@@ -223,8 +223,8 @@ fn uneven_light_is_warned_of_and_taken_out() {
         "speckle size y (pixels)",
     ] {
         let ratio = measured(&flat, quantity) / measured(&even, quantity);
-        // Light that falls to 0.41 at the edges weighs the speckles otherwise: a third of the spread
-        // from image to image, 0.77 / 40, at 3 σ.
+        // Light that falls to 0.41 at the edges weighs the speckles otherwise: a third of the
+        // spread from image to image, 0.77 / 40, at 3 σ.
         assert!((ratio - 1.0).abs() < 0.02, "{quantity}: {ratio}");
     }
     let cropped = stats(path, "even.npy --crop 10,20,100,90");
@@ -276,7 +276,8 @@ fn light_that_sets_the_size_is_warned_of_and_taken_out() {
         assert!((1.9..2.5).contains(&size), "{name}: {size}");
         let flat = stats(path, &format!("{name} --flatten=16"));
         assert_eq!(flat["warnings"], literal!([]), "{name}");
-        // To 0.77 / 180 of the contrast and 0.62 / 180 of the size by chance, and s² = 4e-4 by the second order.
+        // To 0.77 / 180 of the contrast and 0.62 / 180 of the size by chance, and s² = 4e-4 by the
+        // second order.
         let size = measured(&flat, "speckle size x (pixels)") / 2.0;
         let contrast = measured(&flat, "contrast") / WEAK;
         assert!((size - 1.0).abs() < 0.015, "{name}: {size}");

@@ -191,7 +191,8 @@ fn a_fast_lens_shows_the_contrast_that_its_samples_leave() {
     let folder = folder();
     let wide = SCENE.replace("[48, 40]", "[120, 100]");
     write(folder.path(), "a.toml", wide.replace("0.2 mm", "2 mm"));
-    // Speckles of 0.1 and 0.41 pixels, from the law of pixels that few samples miss to that of one sample.
+    // Speckles of 0.1 and 0.41 pixels, from the law of pixels that few samples miss to that of one
+    // sample.
     for (f_number, samples) in [("0.5", 1), ("0.5", 16), ("0.5", 64), ("2", 2), ("2", 8)] {
         let options = format!("--set camera.f_number={f_number} --spp {samples}");
         let summary = rendered(folder.path(), &options);

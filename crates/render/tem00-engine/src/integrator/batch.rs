@@ -60,8 +60,8 @@ pub(super) struct Path {
     pub rough: u32,
     /// The factor by which refraction has changed radiance without changing power.
     pub compression: f64,
-    /// The density with which the ray's direction was drawn, per steradian; `None` at the camera and
-    /// behind a mirror or glass.
+    /// The density with which the ray's direction was drawn, per steradian; `None` at the camera
+    /// and behind a mirror or glass.
     pub scattering_pdf: Option<f64>,
 }
 
@@ -190,7 +190,8 @@ impl Batch<'_> {
     }
 }
 
-/// The points where speckle is looked up, in the order in which paths have met them, with the sample of each.
+/// The points where speckle is looked up, in the order in which paths have met them, with the
+/// sample of each.
 #[derive(Debug, Default)]
 pub(super) struct SpeckleLookUps {
     samples: Vec<usize>,
@@ -199,7 +200,8 @@ pub(super) struct SpeckleLookUps {
     of_laser: LaserLookUps,
 }
 
-/// The points where the speckle of a laser is looked up, with the index of each sample's values for it.
+/// The points where the speckle of a laser is looked up, with the index of each sample's values for
+/// it.
 #[derive(Debug, Default)]
 struct LaserLookUps {
     slots: Vec<usize>,
@@ -252,7 +254,8 @@ impl Batch<'_> {
         }
     }
 
-    /// Gives the light of the samples its speckle, and those without light a factor where `rules` want it.
+    /// Gives the light of the samples its speckle, and those without light a factor where `rules`
+    /// want it.
     pub(super) fn settle(&mut self, speckle: Option<&SpeckleFrame<'_>>, rules: &PathRules) {
         let lasers = self.laser_samples.len() / self.samples.len().max(1);
         let SpeckleLookUps {

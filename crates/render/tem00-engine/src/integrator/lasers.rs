@@ -127,7 +127,8 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    /// Returns the weight of light of a laser that a path finds by a direction drawn from the rough surface before.
+    /// Returns the weight of light of a laser that a path finds by a direction drawn from the rough
+    /// surface before.
     #[inline(always)]
     fn weight_beside_lit_points(
         &self,

@@ -1,7 +1,9 @@
-//! Light of lasers over one rough surface to another, found by connecting the second to a point that a laser lights.
+//! Light of lasers over one rough surface to another, found by connecting the second to a point
+//! that a laser lights.
 //!
-//! A direction drawn from a rough surface seldom meets a thin line of light on another; a point drawn where a laser
-//! lights a surface always lies on it. Both ways are weighed by how likely each draws the same path.
+//! A direction drawn from a rough surface seldom meets a thin line of light on another; a point
+//! drawn where a laser lights a surface always lies on it. Both ways are weighed by how likely each
+//! draws the same path.
 
 use core::iter;
 
@@ -37,8 +39,8 @@ pub(super) struct LitPoint<'a> {
 }
 
 impl<'a> LitPoints<'a> {
-    /// Draws points by the power of a laser as it stands in the frame: several for each sample of a pixel, since all pixels
-    /// share them.
+    /// Draws points by the power of a laser as it stands in the frame: several for each sample of a
+    /// pixel, since all pixels share them.
     pub(super) fn new(
         scene: &'a Scene,
         laser: &Laser,
@@ -66,7 +68,8 @@ impl<'a> LitPoints<'a> {
         Self { points, share }
     }
 
-    /// Chooses a point by a number in [0, 1), with the fraction of the drawn rays that have met one.
+    /// Chooses a point by a number in [0, 1), with the fraction of the drawn rays that have met
+    /// one.
     pub(super) fn choose(&self, u: f64) -> Option<(&LitPoint<'a>, f64)> {
         let point = self.points.get(to_usize(u * self.points.len() as f64))?;
         Some((point, self.share))
@@ -89,7 +92,8 @@ fn first_hits(
     hits.into_iter().flatten()
 }
 
-/// Orders points along Morton's curve: where numbers are spread evenly, so are the points that they choose.
+/// Orders points along Morton's curve: where numbers are spread evenly, so are the points that they
+/// choose.
 fn order_along_curve(points: &mut [LitPoint<'_>]) {
     const CELLS: f64 = (1 << 16) as f64 - 1.0;
     let positions = || points.iter().map(|point| point.hit.position);
@@ -105,14 +109,15 @@ fn order_along_curve(points: &mut [LitPoint<'_>]) {
     });
 }
 
-/// Returns the density of points that are drawn by the power of a laser, on a surface of this normal, per square metre.
+/// Returns the density of points that are drawn by the power of a laser, on a surface of this
+/// normal, per square metre.
 pub(super) fn density(laser: &Laser, light: &LaserEvent, normal: DVec3) -> f64 {
     light.e_perp * light.wi.dot(normal).abs() / laser.power()
 }
 
 impl<'a> LitPoint<'a> {
-    /// Returns the weighted radiance that comes from the point over a vertex, by the density of points, if nothing lies
-    /// between them.
+    /// Returns the weighted radiance that comes from the point over a vertex, by the density of
+    /// points, if nothing lies between them.
     pub(super) fn radiance_over(&self, vertex: &Vertex<'a>, wavelength: f64) -> Option<f64> {
         let offset = self.hit.position - vertex.hit.position;
         let distance = offset.length();

@@ -28,8 +28,8 @@ struct Numbered<V> {
 }
 
 impl<'a> LightGroup<'a> {
-    /// Draws rays from the phase space of the beam, and shows `visit` the surfaces that they meet, one bounce after the
-    /// other; paths that it removes end.
+    /// Draws rays from the phase space of the beam, and shows `visit` the surfaces that they meet,
+    /// one bounce after the other; paths that it removes end.
     pub(crate) fn follow(&self, visit: impl FnMut(u32, &mut Vec<Met<'a>>, &mut Draws)) {
         let mut draws = Draws::new(self.key);
         let emit = |number| {

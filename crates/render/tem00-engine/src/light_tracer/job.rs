@@ -14,7 +14,8 @@ pub(crate) struct LightTracer<'a> {
     pub intersector: &'a Intersector,
     pub speckle: Option<&'a SpeckleFrame<'a>>,
     pub frame: u32,
-    /// The maximum number of surfaces that light may meet between laser and camera; `None` for no limit.
+    /// The maximum number of surfaces that light may meet between laser and camera; `None` for no
+    /// limit.
     pub max_depth: Option<u32>,
     pub selection: LightSelection,
     /// The part of the image that is rendered.

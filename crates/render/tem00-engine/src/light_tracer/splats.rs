@@ -79,11 +79,12 @@ impl SplatFilm {
         self.power[1] += splats.power.powi(2);
     }
 
-    /// Adds the means after so many groups and paths, each of which stood for the whole laser, to the layers of the laser.
+    /// Adds the means after so many groups and paths, each of which stood for the whole laser, to
+    /// the layers of the laser.
     ///
-    /// They are averaged over the square of the pixel: a light path comes upon its image point by chance, so that no
-    /// other reconstruction filter applies. The variance is without bias, from groups that are independent of each other,
-    /// and infinite for a single one.
+    /// They are averaged over the square of the pixel: a light path comes upon its image point by
+    /// chance, so that no other reconstruction filter applies. The variance is without bias, from
+    /// groups that are independent of each other, and infinite for a single one.
     pub(super) fn add_to(&self, layers: &mut LaserLayers, groups: u64, paths: u64) {
         let (groups, paths) = (groups as f64, paths.max(1) as f64);
         let variance = |[sum, squares]: [f64; 2]| {

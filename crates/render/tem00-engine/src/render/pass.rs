@@ -76,7 +76,8 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
         Ok(film.into_frame())
     }
 
-    /// Returns by which of the numbers of samples each pixel is rendered, from a pilot with samples of its own.
+    /// Returns by which of the numbers of samples each pixel is rendered, from a pilot with samples
+    /// of its own.
     fn levels(&self, film: &Mutex<Film>) -> Result<Grid<u8>, RenderError> {
         let pilot = Mutex::new(Pilot::new(self.area.width, self.area.height));
         self.for_each_strip(
@@ -100,8 +101,8 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
         Ok(levels)
     }
 
-    /// Traces the samples of all pixels that have a level, strip by strip, and hands over what was found with the
-    /// number of rays.
+    /// Traces the samples of all pixels that have a level, strip by strip, and hands over what was
+    /// found with the number of rays.
     fn for_each_strip(
         &self,
         seed: u64,

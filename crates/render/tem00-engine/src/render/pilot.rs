@@ -3,8 +3,9 @@
 use tem00_numerics::{Grid, cast::to_f32};
 use tem00_tracer::{RenderOptions, Sampling, film::PixelSums};
 
-/// The power of the standard deviation that the number of samples is in proportion to. The mean square error of an image
-/// of independent samples, of variance σ²/n, would be least with 1, and that of edges, of variance σ²/n², with 2/3.
+/// The power of the standard deviation that the number of samples is in proportion to. The mean
+/// square error of an image of independent samples, of variance σ²/n, would be least with 1, and
+/// that of edges, of variance σ²/n², with 2/3.
 const POWER: f64 = 2.0 / 3.0;
 
 /// The finest step of numbers of samples, in parts of a doubling.
@@ -13,8 +14,8 @@ const STEPS: usize = 16;
 /// The steps below which pixels get the least number of samples, whatever is left.
 const DARKEST: usize = 64 * STEPS;
 
-/// The radiance below which a pixel's error is compared with this radiance instead of its own, by the
-/// mean radiance of the image.
+/// The radiance below which a pixel's error is compared with this radiance instead of its own, by
+/// the mean radiance of the image.
 const DARK: f64 = 0.1;
 
 /// What the samples of a pilot have found.
@@ -38,8 +39,9 @@ impl Pilot {
         }
     }
 
-    /// Tells whether a pilot looks at a pixel of the whole image. Two samples are the least that differ: where they would be more
-    /// than a quarter of all, every second pixel speaks for its neighbours, as on a chessboard.
+    /// Tells whether a pilot looks at a pixel of the whole image. Two samples are the least that
+    /// differ: where they would be more than a quarter of all, every second pixel speaks for its
+    /// neighbours, as on a chessboard.
     pub(super) const fn looks_at(options: &RenderOptions, [x, y]: [usize; 2]) -> bool {
         let all = matches!(options.sampling, Sampling::TargetError(_));
         all || options.samples_per_pixel >= 8 || (x + y).is_multiple_of(2)
@@ -62,7 +64,8 @@ impl Pilot {
         (pixels * u64::from(options.samples_per_pixel)).saturating_sub(self.all_samples)
     }
 
-    /// Returns which of the numbers of samples, the first of which is that of the pilot, each pixel gets.
+    /// Returns which of the numbers of samples, the first of which is that of the pilot, each pixel
+    /// gets.
     pub(super) fn levels(&self, options: &RenderOptions, counts: &[u32]) -> Grid<u8> {
         match options.sampling {
             Sampling::TargetError(target) => self.levels_for(target, counts),
@@ -114,7 +117,8 @@ impl Pilot {
     fn levels_for(&self, target: f64, counts: &[u32]) -> Grid<u8> {
         let all = self.radiance.values().iter().copied();
         let mean = all.map(f64::from).sum::<f64>() / self.radiance.values().len() as f64;
-        // Nine pixels together tell a deviation, but for about 1/√n of it, more where light is rare.
+        // Nine pixels together tell a deviation, but for about 1/√n of it, more where light is
+        // rare.
         let raised = (1.0 + 2.0 / (9.0 * f64::from(self.samples)).sqrt()) / 3.0;
         let deviations = around(&self.deviation, libm::hypotf);
         Grid::from_fn(deviations.width(), deviations.height(), |x, y| {
@@ -126,7 +130,8 @@ impl Pilot {
     }
 }
 
-/// Combines the values of each pixel and its eight neighbours, which at the rim of the image it stands for itself.
+/// Combines the values of each pixel and its eight neighbours, which at the rim of the image it
+/// stands for itself.
 fn around(layer: &Grid<f32>, combine: impl Fn(f32, f32) -> f32) -> Grid<f32> {
     let [right, down] = [layer.width() - 1, layer.height() - 1];
     let combined = |layer: &Grid<f32>, [dx, dy]: [usize; 2]| {

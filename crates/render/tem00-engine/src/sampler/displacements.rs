@@ -3,11 +3,11 @@ use super::lattice::Lattice;
 /// The most lattices over which a mean is taken, of those that pixels draw from.
 const LATTICES: usize = 8;
 
-/// Returns the mean of a function of the displacement between two samples of a pixel, in pixels: over all pairs of
-/// samples, each with itself too, and over all pixels.
+/// Returns the mean of a function of the displacement between two samples of a pixel, in pixels:
+/// over all pairs of samples, each with itself too, and over all pixels.
 ///
-/// The mean of the autocovariance of a pattern is the variance that the pixels of a render have, each the mean of
-/// `samples_per_pixel` samples.
+/// The mean of the autocovariance of a pattern is the variance that the pixels of a render have,
+/// each the mean of `samples_per_pixel` samples.
 ///
 /// # Panics
 ///
@@ -43,10 +43,11 @@ pub fn mean_over_sample_displacements(samples_per_pixel: u32, f: impl Fn([f64; 2
     sum / (pixels * f64::from(count))
 }
 
-/// Returns displacements along one axis of samples whose columns are so many apart on the torus, with their weights.
+/// Returns displacements along one axis of samples whose columns are so many apart on the torus,
+/// with their weights.
 ///
-/// Both samples lie anywhere in their columns. Neighbouring columns mirror each other in pairs, of which `count` columns have
-/// `count / 2`.
+/// Both samples lie anywhere in their columns. Neighbouring columns mirror each other in pairs, of
+/// which `count` columns have `count / 2`.
 fn along(columns: u32, count: u32) -> Vec<(f64, f64)> {
     let n = f64::from(count);
     // Columns of many samples are too narrow for their inside to matter.
@@ -96,7 +97,8 @@ mod tests {
                 let moments = tem00_statistics::Moments::from_samples(&values).unwrap();
                 let expected = mean_over_sample_displacements(count, law);
                 let error = (moments.mean() - expected).abs();
-                // Two nodes leave (1/64)²/12 of the second derivative, 4/h², times what is not of a sample with itself.
+                // Two nodes leave (1/64)²/12 of the second derivative, 4/h², times what is not of a
+                // sample with itself.
                 let tolerance = 4.0 * moments.standard_error() + 2e-3 * expected;
                 assert!(
                     error < tolerance,

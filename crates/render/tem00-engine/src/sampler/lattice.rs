@@ -1,10 +1,12 @@
 /// About the maximum number of generators that are tried.
 const MAX_TRIED: u32 = 1024;
 
-/// How close the points of a lattice may be: the square of their distance by that of the best lattice.
+/// How close the points of a lattice may be: the square of their distance by that of the best
+/// lattice.
 const GOOD: f64 = 0.9;
 
-/// A lattice of N points on a torus, with one point in each of N columns and of N rows: (i, g i) / N.
+/// A lattice of N points on a torus, with one point in each of N columns and of N rows: (i, g i) /
+/// N.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Lattice {
     /// The way from a point to the next one: (1, g) / N, rounded up to 2⁻⁶⁴ of the torus.
@@ -14,7 +16,8 @@ pub(super) struct Lattice {
 }
 
 impl Lattice {
-    /// Returns lattices of `count` points, one in each column and in each row, whose points are far apart.
+    /// Returns lattices of `count` points, one in each column and in each row, whose points are far
+    /// apart.
     pub(super) fn good(count: u32) -> Vec<Self> {
         let step = count.div_ceil(MAX_TRIED) as usize;
         let units = (1..=count)

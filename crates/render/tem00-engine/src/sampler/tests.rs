@@ -91,15 +91,16 @@ fn every_column_and_every_row_of_a_pixel_holds_one_sample() {
 fn a_pixel_misses_of_an_edge_what_one_sample_in_each_column_does() {
     for count in [7, 64, 121] {
         let n = f64::from(count);
-        // In one column in n the edge leaves the count to chance: f (1 − f) / n², f between 0 and 1.
+        // In one column in n the edge leaves the count to chance: f (1 − f) / n², f between 0
+        // and 1.
         let edge = mean_square(count, |pixel, points| {
             let place = (f64::from(pixel) * 0.618).fract();
             let before = points.iter().filter(|[x, _]| *x < place).count() as f64;
             before / n - place
         });
         let ratio = edge * 6.0 * n * n;
-        // The relative standard deviation of a mean square of 4000 is √(2/4000) = 0.022 for normal errors;
-        // 4 of them.
+        // The relative standard deviation of a mean square of 4000 is √(2/4000) = 0.022 for normal
+        // errors; 4 of them.
         assert!((ratio - 1.0).abs() < 0.09, "{count}: {ratio}");
     }
 }
@@ -115,8 +116,8 @@ fn a_ramp_over_the_pixel_is_met_exactly_but_for_a_column_without_a_neighbour() {
             });
             // The last of an odd number lies anywhere in its column: 1 / (12 n²), by n².
             let alone = f64::from(count % 2) / (12.0 * n.powi(4));
-            // 4 relative standard deviations of a mean square of 4000, √(0.8/4000) of uniform numbers, and a rounding
-            // to 2⁻³² for each sample.
+            // 4 relative standard deviations of a mean square of 4000, √(0.8/4000) of uniform
+            // numbers, and a rounding to 2⁻³² for each sample.
             let error = ramp - alone;
             assert!(error.abs() < 0.06 * alone + 1e-18, "{count}: {ramp:e}");
         }
@@ -125,7 +126,8 @@ fn a_ramp_over_the_pixel_is_met_exactly_but_for_a_column_without_a_neighbour() {
 
 #[test]
 fn slanted_edges_cost_no_more_than_in_jittered_cells() {
-    // One sample by chance in each of 8 × 8 and of 11 × 11 cells, from benches/peers/pixel_samples.py.
+    // One sample by chance in each of 8 × 8 and of 11 × 11 cells, from
+    // benches/peers/pixel_samples.py.
     for (count, jittered) in [(64, 3.3e-4), (121, 1.3e-4)] {
         let error = mean_square(count, edge_error);
         assert!(error < 0.75 * jittered, "{count}: {error:e}");
@@ -140,7 +142,8 @@ fn smooth_functions_of_any_use_are_integrated_to_second_order() {
             let points = pairs(&sequence, key_of(2, pixel), count, Use::Lens);
             for axis in [0, 1] {
                 let mean = points.iter().map(|p| p[axis]).sum::<f64>() / f64::from(count);
-                // At each of the two folds the slope jumps by 4: an error of h² / 3 at most, h = 1/N.
+                // At each of the two folds the slope jumps by 4: an error of h² / 3 at most, h =
+                // 1/N.
                 let bound = 0.67 / f64::from(count * count) + 1e-9;
                 assert!((mean - 0.5).abs() < bound, "{count}: {mean}");
             }

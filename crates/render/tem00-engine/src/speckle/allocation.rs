@@ -47,8 +47,8 @@ pub(super) struct PatternAllocation {
     /// The largest motion of the pupil to either side of the reference frame, in its diameters.
     pub shifts: [f64; 2],
     pub stack: StackPlan,
-    /// The lattice points about which the slices of each frame lie, whole diameters along the path; empty where one stack
-    /// holds those of all frames.
+    /// The lattice points about which the slices of each frame lie, whole diameters along the path;
+    /// empty where one stack holds those of all frames.
     pub middles: Vec<[i64; 2]>,
     /// The number of stacks.
     pub count: usize,
@@ -87,8 +87,8 @@ pub(super) struct Part {
     pub offset: [f64; 2],
 }
 
-/// The path that the slices of a frame hold beyond its span, in pupil diameters: half a one to either side, as they lie
-/// about a whole one, and a quarter for points that no ray has met.
+/// The path that the slices of a frame hold beyond its span, in pupil diameters: half a one to
+/// either side, as they lie about a whole one, and a quarter for points that no ray has met.
 const MARGIN: f64 = 1.5;
 
 impl Choice {
@@ -199,8 +199,8 @@ impl Request {
     }
 }
 
-/// Allocates patterns to requests within a memory in bytes: a stack for each pattern, or else a position
-/// in one stack for all. `asked` makes of a plan what the scene file asks for.
+/// Allocates patterns to requests within a memory in bytes: a stack for each pattern, or else a
+/// position in one stack for all. `asked` makes of a plan what the scene file asks for.
 pub(super) fn allocate(
     requests: &[Request],
     memory: u64,

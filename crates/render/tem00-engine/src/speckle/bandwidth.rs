@@ -14,8 +14,8 @@ use super::{
     prescan::{LaserGroups, RAYS_PER_SIDE, first_ray, pixels_of, rays_per_side},
 };
 
-/// Follows rays of the reference frame to what the camera sees, and returns the light of each laser on each surface. Those
-/// of other frames show surfaces that are not seen there.
+/// Follows rays of the reference frame to what the camera sees, and returns the light of each laser
+/// on each surface. Those of other frames show surfaces that are not seen there.
 pub(super) fn laser_lights(
     scene: &Scene,
     laser_groups: LaserGroups<'_>,

@@ -33,28 +33,30 @@ impl SpeckleChange {
         correlation: 1.0,
     };
 
-    /// Returns what becomes of the speckle of a laser at a point between two frames, by the law that
-    /// frames are [rendered](crate::render_frame) with, the first of the two as their reference.
+    /// Returns what becomes of the speckle of a laser at a point between two frames, by the law
+    /// that frames are [rendered](crate::render_frame) with, the first of the two as their
+    /// reference.
     ///
     /// ```text
     /// x' = P⁻¹(P(x) + a)        from the image point x in the first frame to x' in the second
     /// γ  = chat²(s)             s the shift of the pupil over the speckle, in its diameters
     /// ```
     ///
-    /// P leads from the sensor, which may be tilted, behind a lens that may distort, to the plane across
-    /// the axis in which the law gives the displacement a. What is in focus is that at the image point,
-    /// not that on the axis.
+    /// P leads from the sensor, which may be tilted, behind a lens that may distort, to the plane
+    /// across the axis in which the law gives the displacement a. What is in focus is that at the
+    /// image point, not that on the axis.
     ///
     /// A head that moves over a still part changes speckle as the part does that moves under it.
     ///
-    /// Returns `None` where the law has no value, as for a point that one of the frames does not see:
-    /// each frame then has speckle of its own.
+    /// Returns `None` where the law has no value, as for a point that one of the frames does not
+    /// see: each frame then has speckle of its own.
     ///
     /// # Validity
     ///
-    /// Two later frames of a render, neither of them its reference, have both changed from a third one.
-    /// Their displacement is the difference of two. They correlate as said here, within 0.05 and what the blend of two
-    /// slices adds, unless [`SpecklePlan::correlation_notes`](crate::SpecklePlan::correlation_notes) has a note.
+    /// Two later frames of a render, neither of them its reference, have both changed from a third
+    /// one. Their displacement is the difference of two. They correlate as said here, within 0.05
+    /// and what the blend of two slices adds, unless
+    /// [`SpecklePlan::correlation_notes`](crate::SpecklePlan::correlation_notes) has a note.
     ///
     /// # Panics
     ///

@@ -128,11 +128,12 @@ impl Change {
         &self.lasers[index].now
     }
 
-    /// Returns on which side of the reference frame now is for the speckle of a laser on the surface
-    /// of a reference point: 1 where the pupil has moved over its speckle as it has where it moved
-    /// farthest, and −1 where it has moved the other way.
+    /// Returns on which side of the reference frame now is for the speckle of a laser on the
+    /// surface of a reference point: 1 where the pupil has moved over its speckle as it has where
+    /// it moved farthest, and −1 where it has moved the other way.
     ///
-    /// Without a reference point, or where the theory has no value, −1 is before the reference frame.
+    /// Without a reference point, or where the theory has no value, −1 is before the reference
+    /// frame.
     pub(super) fn side(
         &self,
         laser: usize,
@@ -151,7 +152,8 @@ impl Change {
         }
     }
 
-    /// Returns what a point tells of the way of the pupil over its speckle, if the theory has a value.
+    /// Returns what a point tells of the way of the pupil over its speckle, if the theory has a
+    /// value.
     pub(super) fn reference_point(
         &self,
         laser: usize,
@@ -241,8 +243,8 @@ impl Change {
         }
     }
 
-    /// Writes what has become of the speckle of light of a laser at points of one surface, `None` where the theory has
-    /// no value.
+    /// Writes what has become of the speckle of light of a laser at points of one surface, `None`
+    /// where the theory has no value.
     ///
     /// # Panics
     ///
@@ -298,8 +300,8 @@ impl Change {
         body.map_or(point, |body| body.back.point(point))
     }
 
-    /// Returns the optical path of a laser to a point of a surface, in metres: now, and where both stood in the
-    /// reference frame.
+    /// Returns the optical path of a laser to a point of a surface, in metres: now, and where both
+    /// stood in the reference frame.
     pub(crate) fn paths_to(&self, laser: usize, surface: usize, point: DVec3) -> Option<[f64; 2]> {
         let LaserChange { before, now, .. } = &self.lasers[laser];
         Some([

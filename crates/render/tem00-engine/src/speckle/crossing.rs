@@ -15,8 +15,8 @@ use super::{
 
 /// Two frames whose speckle is rendered with another correlation than the law has.
 ///
-/// The pupil moves over the speckle in two directions, and bodies share a stack or points move apart; or the law has no
-/// value from the reference frame. Its `Display` is one line that says so.
+/// The pupil moves over the speckle in two directions, and bodies share a stack or points move
+/// apart; or the law has no value from the reference frame. Its `Display` is one line that says so.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CorrelationNote {
     /// The name of the surface.
@@ -25,7 +25,8 @@ pub struct CorrelationNote {
     pub laser: usize,
     /// The frames.
     pub frames: [u32; 2],
-    /// The correlation of intensity with which a point of the surface is rendered, its displacement in the image apart.
+    /// The correlation of intensity with which a point of the surface is rendered, its displacement
+    /// in the image apart.
     pub rendered: f64,
     /// That of the law.
     pub law: f64,
@@ -49,7 +50,8 @@ pub(super) enum Following {
     /// By its length, to either side of the reference frame.
     #[default]
     Length,
-    /// By its component along an axis, on a line of each frame's own, in the middle of the ways of what it sees.
+    /// By its component along an axis, on a line of each frame's own, in the middle of the ways of
+    /// what it sees.
     Axis(DVec2),
 }
 
@@ -103,7 +105,8 @@ impl Followed {
     }
 }
 
-/// The largest error of a correlation that asks for nothing: neither for another way to follow a motion, nor for a note.
+/// The largest error of a correlation that asks for nothing: neither for another way to follow a
+/// motion, nor for a note.
 const MAX_ERROR: f64 = 0.05;
 
 /// Frames that are compared, evenly spread; with each, the next.
@@ -112,12 +115,13 @@ const SPREAD: u32 = 32;
 /// Frames with which one is compared, of those where the pupil has moved about as far.
 const NEIGHBOURS: usize = 64;
 
-/// Points that are followed, beside the middle of what each frame sees, where ways differ by less than this, in pupil
-/// diameters.
+/// Points that are followed, beside the middle of what each frame sees, where ways differ by less
+/// than this, in pupil diameters.
 const POINTS: usize = 4;
 const ALIKE: f64 = 0.1;
 
-/// The ways of the pupil over the speckle of some points, of surfaces that move alike, in some frames.
+/// The ways of the pupil over the speckle of some points, of surfaces that move alike, in some
+/// frames.
 pub(super) struct Tracks {
     frames: Vec<u32>,
     /// The middle of the ways of all that each of the frames sees.
@@ -188,7 +192,8 @@ impl Tracks {
         }
     }
 
-    /// Returns how slices can follow the points: by the length of the motion, and as well as they can.
+    /// Returns how slices can follow the points: by the length of the motion, and as well as they
+    /// can.
     pub(super) fn followed(&self, waves: &[Waves<'_>]) -> [Followed; 2] {
         let follow = |following: Following| {
             let pairs = waves
@@ -241,8 +246,8 @@ impl Tracks {
     }
 }
 
-/// The frames that are compared: some that are spread evenly, and the two that slices along one line confuse most, each
-/// with the next.
+/// The frames that are compared: some that are spread evenly, and the two that slices along one
+/// line confuse most, each with the next.
 fn compared(prescan: &MotionPrescan, count: u32) -> Vec<u32> {
     let spread = (0..SPREAD).map(|i| i * (count - 1) / (SPREAD - 1));
     let frames = spread.chain(most_confused(prescan, count));
@@ -315,8 +320,8 @@ impl<'a> Waves<'a> {
         self.line.as_ref().map_or(0.0, |(_, b)| b.reach)
     }
 
-    /// Returns the correlation of intensities between which the pupil has moved by so many diameters, where waves
-    /// displace it along an axis.
+    /// Returns the correlation of intensities between which the pupil has moved by so many
+    /// diameters, where waves displace it along an axis.
     pub(super) fn correlation(&self, shift: DVec2, axis: DVec2) -> f64 {
         let Some((line, bandwidth)) = &self.line else {
             return pupil_overlap_correlation(shift.length());

@@ -31,7 +31,8 @@ pub(crate) struct SpeckleFrame<'a> {
     sides: Vec<Vec<f64>>,
     /// The slices of each pattern of each laser.
     windows: Vec<Vec<Arc<Window>>>,
-    /// The light that has met several rough surfaces, where its speckle is not simply that of the single light.
+    /// The light that has met several rough surfaces, where its speckle is not simply that of the
+    /// single light.
     multiple: Option<MultipleMap>,
 }
 
@@ -118,7 +119,8 @@ impl SpeckleFrame<'_> {
         self
     }
 
-    /// Returns the speckle factor of laser `laser` at a surface point, beside single light as it is around there.
+    /// Returns the speckle factor of laser `laser` at a surface point, beside single light as it is
+    /// around there.
     pub(crate) fn factor(&self, laser: usize, point: &SpecklePoint) -> f64 {
         let key = (laser, point.surface);
         let map = self.multiple.as_ref();
@@ -130,7 +132,8 @@ impl SpeckleFrame<'_> {
         factor[0]
     }
 
-    /// Writes the speckle factors of laser `laser` at many surface points into `factors`, the same bits as one by one.
+    /// Writes the speckle factors of laser `laser` at many surface points into `factors`, the same
+    /// bits as one by one.
     ///
     /// `singles` are the radiances of the light that has met this surface only.
     ///

@@ -1,4 +1,5 @@
-//! Light that has met several rough surfaces: what its speckle has in common with that of the light which has met one.
+//! Light that has met several rough surfaces: what its speckle has in common with that of the light
+//! which has met one.
 
 mod lattice;
 mod light;
@@ -39,8 +40,8 @@ pub(crate) struct MultipleLayer {
     pub(super) faint: f64,
 }
 
-/// The part that the mean over the whole image has in that over neighbouring cells, in cells: it decides only where the
-/// neighbourhood has found next to nothing.
+/// The part that the mean over the whole image has in that over neighbouring cells, in cells: it
+/// decides only where the neighbourhood has found next to nothing.
 const PART_OF_ALL: f64 = 0.1;
 
 impl MultipleMap {
@@ -82,8 +83,8 @@ impl MultipleMap {
         self.layers.get(&key)
     }
 
-    /// Returns, for each laser and surface, the greatest squared contrast that the speckle of the lit surfaces adds where
-    /// the light is not faint.
+    /// Returns, for each laser and surface, the greatest squared contrast that the speckle of the
+    /// lit surfaces adds where the light is not faint.
     pub(crate) fn strongest_cascades(&self) -> BTreeMap<LightKey, f64> {
         let mut strongest = BTreeMap::new();
         for (key, light) in self.bright() {

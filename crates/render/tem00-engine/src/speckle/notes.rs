@@ -23,7 +23,8 @@ impl fmt::Display for RoughnessNote {
     }
 }
 
-/// A surface that gets light of a laser from so small a part of another that the speckle of that part shows.
+/// A surface that gets light of a laser from so small a part of another that the speckle of that
+/// part shows.
 ///
 /// Its `Display` is one line that says why.
 #[derive(Clone, Debug, PartialEq)]

@@ -48,7 +48,8 @@ pub struct PatternPlan {
 pub(super) struct SurfacePatterns {
     /// The patterns, among those of the laser.
     pub allocation: usize,
-    /// The parts that add up: for each equal pattern, for each component of polarisation, for each mode.
+    /// The parts that add up: for each equal pattern, for each component of polarisation, for each
+    /// mode.
     pub parts: Vec<Part>,
     /// The degree of polarisation, and the number of components that have light.
     pub polarisation: f64,
@@ -59,7 +60,8 @@ pub(super) struct SurfacePatterns {
     pub reference_point: Option<ReferencePoint>,
     /// How the slices follow a motion.
     pub following: Following,
-    /// What the linewidth of the laser asks. Each part is then several, one after the other, whose fields add.
+    /// What the linewidth of the laser asks. Each part is then several, one after the other, whose
+    /// fields add.
     pub bandwidth: Option<Bandwidth>,
 }
 
@@ -115,8 +117,8 @@ impl SpecklePlan {
         Ok(Self { patterns })
     }
 
-    /// Returns a note for each laser and each group of surfaces that move alike whose frames correlate otherwise, by
-    /// more than 0.05, than by the law.
+    /// Returns a note for each laser and each group of surfaces that move alike whose frames
+    /// correlate otherwise, by more than 0.05, than by the law.
     pub fn correlation_notes(&self) -> impl Iterator<Item = &CorrelationNote> {
         self.patterns.iter().flat_map(|pattern| &pattern.notes)
     }

@@ -22,7 +22,8 @@ use super::{
     multiple::MultipleMap,
 };
 
-/// Rays per image side with which a frame is sampled: fewer in a long sequence, whose frames share [`RAYS`].
+/// Rays per image side with which a frame is sampled: fewer in a long sequence, whose frames share
+/// [`RAYS`].
 pub(super) const RAYS_PER_SIDE: u32 = 128;
 const FEWEST_RAYS_PER_SIDE: u32 = 16;
 const RAYS: u32 = 1 << 20;
@@ -30,8 +31,9 @@ const RAYS: u32 = 1 << 20;
 /// The longest sequence of frames that are sampled.
 const MAX_FRAMES: u32 = 1 << 18;
 
-/// Points that are kept: of so many frames so many per image side, and of so many frames the one whose speckle has changed
-/// most. They show what one ray of a frame misses: how the motion differs over a surface, and where a small part is.
+/// Points that are kept: of so many frames so many per image side, and of so many frames the one
+/// whose speckle has changed most. They show what one ray of a frame misses: how the motion differs
+/// over a surface, and where a small part is.
 const KEPT_FRAMES: u32 = 4;
 const KEPT_PER_SIDE: u32 = 4;
 const KEPT_FARTHEST: usize = 16;
@@ -44,8 +46,8 @@ const LONG_SPAN: f64 = 64.0;
 pub(super) struct MotionPrescan {
     /// Width and height of the image, in pixels.
     pub image: DVec2,
-    /// The corners of the region of the reference frame's image from which speckle is looked up, in pixels: that
-    /// of the image itself, and of where lit points of other frames were.
+    /// The corners of the region of the reference frame's image from which speckle is looked up, in
+    /// pixels: that of the image itself, and of where lit points of other frames were.
     region: Region,
     /// The largest motion of the pupil over the speckle to either side of the reference frame, in
     /// pupil diameters; the second to the side of the farthest.
@@ -62,8 +64,8 @@ pub(super) struct MotionPrescan {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FrameNeeds {
     region: Region,
-    /// The smallest and the largest motion of the pupil over the speckle, in pupil diameters, negative on the other
-    /// side of the reference frame.
+    /// The smallest and the largest motion of the pupil over the speckle, in pupil diameters,
+    /// negative on the other side of the reference frame.
     pub span: [f64; 2],
     /// The ways of the pupil over the speckle, to the right and up, in pupil diameters.
     pub ways: Region,
@@ -101,8 +103,8 @@ impl MotionPrescan {
         if size.y > size.x { DVec2::Y } else { DVec2::X }
     }
 
-    /// Returns width and height of the largest region from which frames look up slices that they share, in pixels,
-    /// where each looks up such a part of the path, in pupil diameters.
+    /// Returns width and height of the largest region from which frames look up slices that they
+    /// share, in pixels, where each looks up such a part of the path, in pupil diameters.
     pub(super) fn shared_region(&self, spans: &[[f64; 2]]) -> DVec2 {
         // Pupils that overlap stand in the same diameter of the path, or in neighbouring ones.
         let mut parts = BTreeMap::<i64, Region>::new();
@@ -287,8 +289,8 @@ pub(super) fn rays_per_side(frames: u32) -> u32 {
         .clamp(FEWEST_RAYS_PER_SIDE, RAYS_PER_SIDE)
 }
 
-/// Where the first ray of a frame goes, in distances between rays. Few go elsewhere in each frame, so that a part
-/// which they miss in some is met in others.
+/// Where the first ray of a frame goes, in distances between rays. Few go elsewhere in each frame,
+/// so that a part which they miss in some is met in others.
 pub(super) fn first_ray(change: &Change, side: u32) -> DVec2 {
     let farther = match side {
         RAYS_PER_SIDE => 0.0,
@@ -297,8 +299,8 @@ pub(super) fn first_ray(change: &Change, side: u32) -> DVec2 {
     (DVec2::splat(0.5) + farther * DVec2::from_array(StackPlan::place(1))).rem_euclid(DVec2::ONE)
 }
 
-/// Image points evenly spread over the image, in pixels: so many along each side, from a point in distances between
-/// them.
+/// Image points evenly spread over the image, in pixels: so many along each side, from a point in
+/// distances between them.
 pub(super) fn pixels_of(
     camera: &Camera,
     side: u32,

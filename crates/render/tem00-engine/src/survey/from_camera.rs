@@ -26,8 +26,8 @@ struct Sight<'s, 'a> {
 }
 
 impl<'a> Survey<'a> {
-    /// Follows a group of paths back from a point that the camera sees and returns the light of a laser on the further
-    /// rough surfaces that they meet.
+    /// Follows a group of paths back from a point that the camera sees and returns the light of a
+    /// laser on the further rough surfaces that they meet.
     pub(super) fn multiple_from_camera(
         &self,
         laser: usize,

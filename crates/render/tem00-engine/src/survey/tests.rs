@@ -1,4 +1,5 @@
-//! A corner of two rough plates; `tests/judges` holds the contrast of its light to the light of the wall summed.
+//! A corner of two rough plates; `tests/judges` holds the contrast of its light to the light of the
+//! wall summed.
 
 use core::sync::atomic::AtomicBool;
 
@@ -12,8 +13,8 @@ use crate::{render_frame, testing};
 
 const WAVELENGTH: f64 = 650e-9;
 
-/// Plates at right angles: the floor, which the camera sees, and a wall, which a beam of the given waist radius lights
-/// from the side.
+/// Plates at right angles: the floor, which the camera sees, and a wall, which a beam of the given
+/// waist radius lights from the side.
 fn corner(line: SpectralLine, waist_radius: f64) -> Scene {
     let aim = DVec3::new(0.0, 0.0, 15e-3);
     let position = DVec3::new(0.4, 0.0, 0.2);
@@ -74,7 +75,8 @@ fn a_small_spot_on_the_wall_makes_speckle_of_speckle() {
         let to_pupil = scene.camera.position() - floor;
         let sin_aperture = 0.5 * scene.camera.pupil_diameter() / to_pupil.length();
         let l = to_pupil.normalize();
-        // The spot on the wall, in steps of a quarter of its radius, as directions across the line of sight.
+        // The spot on the wall, in steps of a quarter of its radius, as directions across the line
+        // of sight.
         let axis = || (-8..=8).map(|i| 0.25 * f64::from(i) * waist_radius);
         let spot: Vec<_> = axis()
             .flat_map(|y| axis().map(move |z| DVec3::new(0.0, y, 15e-3 + z)))
@@ -98,7 +100,8 @@ fn a_small_spot_on_the_wall_makes_speckle_of_speckle() {
             panic!("{notes:?}")
         };
         assert_eq!((note.surface.as_str(), note.laser), ("plate", 0));
-        // The note has the place where it is highest, of an image that is small against its distance from the wall.
+        // The note has the place where it is highest, of an image that is small against its
+        // distance from the wall.
         assert!((note.contrast - law).abs() < 0.05, "{note} for {law}");
     }
     let wide = corner(gaussian(0.0), 20e-3);

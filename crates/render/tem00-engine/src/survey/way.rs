@@ -43,8 +43,8 @@ impl Way {
 }
 
 impl WayPoint<'_> {
-    /// Returns the irradiance that the point sends to another across the direction between them, in W/m², as if its path
-    /// were the only one, and the unit direction towards it.
+    /// Returns the irradiance that the point sends to another across the direction between them, in
+    /// W/m², as if its path were the only one, and the unit direction towards it.
     pub(super) fn irradiance_at(&self, point: DVec3, wavelength: f64) -> Option<(f64, DVec3)> {
         let hit = &self.met.vertex.hit;
         let way = point - hit.position;

@@ -209,8 +209,8 @@ pub(super) fn set(mut lanes: u64) -> impl Iterator<Item = usize> {
 
 /// Intervals that hold the origins of all rays and the reciprocals of their directions.
 ///
-/// Operations of single precision preserve order, so that what they give for the ends of an interval
-/// holds what they give for the rays in it.
+/// Operations of single precision preserve order, so that what they give for the ends of an
+/// interval holds what they give for the rays in it.
 #[derive(Clone, Copy, Debug)]
 struct Beam {
     origin: [[f32; 2]; 3],

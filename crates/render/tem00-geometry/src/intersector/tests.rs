@@ -147,7 +147,8 @@ fn brute_force(shapes: &[Shape], ray: &Ray) -> Option<(f64, usize)> {
     distances.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// Asserts that a ray meets what a search of all primitives finds, at the same distance, and returns it.
+/// Asserts that a ray meets what a search of all primitives finds, at the same distance, and
+/// returns it.
 #[track_caller]
 fn assert_found(intersector: &Intersector, shapes: &[Shape], ray: &Ray) -> Option<Hit> {
     let found = intersector.intersect(ray);

@@ -11,7 +11,8 @@ use crate::{Refusal, TriangleMesh, hierarchy::MeshHierarchy, mesh};
 /// x = s R p + t        p: point of the mesh
 /// ```
 ///
-/// What is placed or moved anew shares the mesh, and with it the hierarchy that finds where rays meet it.
+/// What is placed or moved anew shares the mesh, and with it the hierarchy that finds where rays
+/// meet it.
 ///
 /// # Examples
 ///

@@ -97,7 +97,8 @@ impl Rectangle {
         self.centre + (2.0 * u - 1.0) * self.half_u + (2.0 * v - 1.0) * self.half_v
     }
 
-    /// Returns how far an offset from the centre reaches along the half edges, as fractions of them.
+    /// Returns how far an offset from the centre reaches along the half edges, as fractions of
+    /// them.
     #[inline(always)]
     pub fn fractions(&self, offset: DVec3) -> [f64; 2] {
         [offset.dot(self.inverse_u), offset.dot(self.inverse_v)]

@@ -6,8 +6,8 @@ use tem00_config::{Change, FileAccess, Reading};
 /// Options for reading a scene file or a set-up file.
 #[derive(Args, Clone, Debug)]
 pub struct FileArgs {
-    /// Let the file include files that lie outside of its folder, and glTF meshes take data from outside
-    /// of theirs.
+    /// Let the file include files that lie outside of its folder, and glTF meshes take data from
+    /// outside of theirs.
     #[arg(long)]
     allow_outside: bool,
 

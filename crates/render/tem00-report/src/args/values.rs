@@ -18,8 +18,8 @@ pub fn black_level(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Reads a length as scene files have it, with its unit: a bare number would be in metres there, and
-/// hardly meant so.
+/// Reads a length as scene files have it, with its unit: a bare number would be in metres there,
+/// and hardly meant so.
 pub fn length(text: &str) -> Result<f64, String> {
     const ALLOWED: core::ops::RangeInclusive<f64> = 1e-12..=1e9;
     (LENGTH.parse(text))

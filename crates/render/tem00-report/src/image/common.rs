@@ -66,7 +66,8 @@ pub struct Crop {
 /// Options for reading an image.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Reading<'a> {
-    /// One channel of several; without it Y, the mean of R, G and B, or the only one that shows light.
+    /// One channel of several; without it Y, the mean of R, G and B, or the only one that shows
+    /// light.
     pub channel: Option<&'a str>,
     /// The relation of grey values to light, instead of that of the file.
     pub transfer: Option<Transfer>,
@@ -207,7 +208,8 @@ pub(super) fn checked_area(width: u64, height: u64) -> Result<usize, ImageError>
         .ok_or(ImageError::Size { width, height })
 }
 
-/// Makes sure that a file is as long as its pixels need, `pixels_per_byte` of which take a byte at least.
+/// Makes sure that a file is as long as its pixels need, `pixels_per_byte` of which take a byte at
+/// least.
 pub(super) fn check_length(
     [width, height]: [u64; 2],
     bytes: u64,

@@ -26,8 +26,8 @@ pub struct Layer<'a> {
     pub channels: Vec<(&'static str, &'a Grid<f32>)>,
 }
 
-/// The position of layers in an image of which they are a part: in OpenEXR the data window in the display
-/// window.
+/// The position of layers in an image of which they are a part: in OpenEXR the data window in the
+/// display window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window {
     /// The column and the row of the first pixel.

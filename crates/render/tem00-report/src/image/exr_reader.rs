@@ -12,14 +12,16 @@ use super::{
     selection::Components,
 };
 
-/// Words in the names of channels and layers that show no light: opacity, distance, identifiers, geometry.
+/// Words in the names of channels and layers that show no light: opacity, distance, identifiers,
+/// geometry.
 const NO_LIGHT: &str = "a alpha ra ga ba ar ag ab opacity \
     z zback depth id objectid materialid normal normals position motion uv";
 
 /// Reads one channel, or the mean of R, G and B.
 ///
-/// `channel` is `channel` or `layer.channel`. Without it light is looked for: Y, else R, G and B, else the only
-/// channel that may be light; in the first part without its layers, else in the only layer that has any.
+/// `channel` is `channel` or `layer.channel`. Without it light is looked for: Y, else R, G and B,
+/// else the only channel that may be light; in the first part without its layers, else in the only
+/// layer that has any.
 pub(super) fn read(
     mut reader: impl BufRead + Seek,
     channel: Option<&str>,
@@ -48,7 +50,8 @@ pub(super) fn read(
     Ok(samples(&select(&channels, channel)?))
 }
 
-/// Returns the number of pixels of a part and the bytes of one, if the file is long enough for them.
+/// Returns the number of pixels of a part and the bytes of one, if the file is long enough for
+/// them.
 fn checked_size(header: &Header, length: u64) -> Result<(usize, usize), ImageError> {
     let [width, height] = [header.layer_size.width(), header.layer_size.height()];
     let size = [width as u64, height as u64];
@@ -258,8 +261,8 @@ mod tests {
         file.into_inner()
     }
 
-    /// A file of parts, with `/` between them, with channels of two pixels behind their names and colons; identifiers have
-    /// `#` before their names.
+    /// A file of parts, with `/` between them, with channels of two pixels behind their names and
+    /// colons; identifiers have `#` before their names.
     fn parts(text: &str) -> Vec<u8> {
         let channel = |(index, name): (usize, &str)| match name.strip_prefix('#') {
             Some(name) => AnyChannel::new(name, FlatSamples::U32(vec![7, 8])),
@@ -284,7 +287,8 @@ mod tests {
 
     #[test]
     fn light_is_chosen_and_never_alpha_depth_or_an_identifier() {
-        // Layers without a name come first, then the only one with light; so do parts. What is not plain is asked for.
+        // Layers without a name come first, then the only one with light; so do parts. What is not
+        // plain is asked for.
         let table = "
             :A Y => channel Y
             :A B G R Z => mean of R, G and B

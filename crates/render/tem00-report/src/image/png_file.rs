@@ -42,7 +42,8 @@ pub fn write_grey_png(
     })
 }
 
-/// Writes a PNG file of the bytes of its pixels, with text chunks and what `more` tells the encoder.
+/// Writes a PNG file of the bytes of its pixels, with text chunks and what `more` tells the
+/// encoder.
 pub(crate) fn write_png<'a, W: Write>(
     writer: W,
     size: [usize; 2],
@@ -189,7 +190,8 @@ mod tests {
         }
     }
 
-    /// A grey file of two pixels of 8 bits with chunks before its image: `kind:content`, the content in hexadecimal digits.
+    /// A grey file of two pixels of 8 bits with chunks before its image: `kind:content`, the
+    /// content in hexadecimal digits.
     fn with_chunks(chunks: &str) -> Vec<u8> {
         let mut file = Vec::new();
         let mut writer = Encoder::new(&mut file, 2, 1)

@@ -14,8 +14,8 @@ use super::{
 ///
 /// # Errors
 ///
-/// Returns an error if the file cannot be read, is none of the formats, is empty or too large, does not
-/// have the part or the channel wanted, or holds a value that is no amount of light.
+/// Returns an error if the file cannot be read, is none of the formats, is empty or too large, does
+/// not have the part or the channel wanted, or holds a value that is no amount of light.
 pub fn read_image(path: &Path, reading: &Reading<'_>) -> Result<LoadedImage, ImageError> {
     let mut reading = *reading;
     let samples = match Format::of_path(path) {

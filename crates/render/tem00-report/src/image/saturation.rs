@@ -8,8 +8,8 @@ const FEWEST: usize = 8;
 
 /// The pixels of a pile by those of any value just below it.
 ///
-/// The peak of a line without noise, A − c d² at the distance d, has `√1` pixels within a step of A for
-/// each `√2 − √1` within the next one: 2.4 times as many.
+/// The peak of a line without noise, A − c d² at the distance d, has `√1` pixels within a step of A
+/// for each `√2 − √1` within the next one: 2.4 times as many.
 const PILE: usize = 4;
 
 /// The bits that cameras give to grey values.
@@ -17,9 +17,9 @@ const CAMERA_BITS: [u32; 5] = [8, 10, 12, 14, 16];
 
 /// Returns the value from which on a component is saturated; infinite if nothing tells.
 ///
-/// It is `full`, the largest value that the file can hold, unless the values end below it: at the largest
-/// value of a camera of fewer bits, in the lower bits of a word or in its upper ones; or at a pile, as
-/// values are clipped by what a camera computes before it writes them.
+/// It is `full`, the largest value that the file can hold, unless the values end below it: at the
+/// largest value of a camera of fewer bits, in the lower bits of a word or in its upper ones; or at
+/// a pile, as values are clipped by what a camera computes before it writes them.
 pub(super) fn saturation_level(values: impl Iterator<Item = f32>, full: Option<f32>) -> f32 {
     let largest = largest_values(values);
     let otherwise = full.unwrap_or(f32::INFINITY);

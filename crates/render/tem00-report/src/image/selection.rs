@@ -57,8 +57,8 @@ pub(super) struct Selection {
 }
 
 impl Selection {
-    /// Takes the component of the name `channel`, or without one the grey value or all colours, never
-    /// alpha.
+    /// Takes the component of the name `channel`, or without one the grey value or all colours,
+    /// never alpha.
     pub(super) fn new(of: Components, channel: Option<&str>) -> Result<Self, ImageError> {
         let names = of.names();
         let (chosen, description) = match channel {

@@ -120,8 +120,8 @@ impl Number {
     }
 }
 
-/// Returns the number that the bits of a `float16` stand for: IEEE 754 binary16, whose exponent has 5 bits and the
-/// bias 15, its fraction 10 bits.
+/// Returns the number that the bits of a `float16` stand for: IEEE 754 binary16, whose exponent has
+/// 5 bits and the bias 15, its fraction 10 bits.
 fn half(bits: u16) -> f32 {
     let [exponent, fraction] = [(bits >> 10) & 31, bits & 1023].map(u32::from);
     let magnitude = match exponent {

@@ -10,7 +10,8 @@ use super::NpyError;
 const MAGIC: &[u8; 6] = b"\x93NUMPY";
 /// The values begin at a multiple of this.
 const BLOCK: usize = 64;
-/// Maximum length of a header, in bytes: NumPy itself reads 10 000 unless it is told to trust the file.
+/// Maximum length of a header, in bytes: NumPy itself reads 10 000 unless it is told to trust the
+/// file.
 const LONGEST: usize = 1 << 16;
 /// NumPy leaves room for the first side to grow to this many digits.
 const GROWTH: usize = 21;
@@ -89,7 +90,8 @@ impl Header {
     }
 }
 
-/// Returns a dictionary of Python, like `{'descr': '<c8', 'fortran_order': False, 'shape': (2, 3), }`, as JSON.
+/// Returns a dictionary of Python, like
+/// `{'descr': '<c8', 'fortran_order': False, 'shape': (2, 3), }`, as JSON.
 fn json(python: &str) -> String {
     let mut json = String::with_capacity(python.len());
     for c in python.chars() {

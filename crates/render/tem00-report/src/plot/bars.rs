@@ -17,8 +17,8 @@ pub struct Bars {
 }
 
 impl Bars {
-    /// Starts bars of the series, each of a name and a colour, with the label of the axis of values; one
-    /// series needs no name.
+    /// Starts bars of the series, each of a name and a colour, with the label of the axis of
+    /// values; one series needs no name.
     pub fn new(title: &str, value_label: &str, series: &[(&str, Colour)]) -> Self {
         Self {
             title: title.to_owned(),

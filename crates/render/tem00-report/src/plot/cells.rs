@@ -41,7 +41,8 @@ impl Cells {
         })
     }
 
-    /// Puts the cells back into the scene, and returns the SVG with the picture in place of the mark.
+    /// Puts the cells back into the scene, and returns the SVG with the picture in place of the
+    /// mark.
     pub(super) fn put_back(self, scene: &mut Scene, svg: &str) -> String {
         scene.elements.remove(self.index + 1);
         scene.elements[self.index] = self.rectangles;

@@ -14,13 +14,14 @@ use super::{
 };
 use crate::digits::number;
 
-/// The largest number with a position on an axis: differences and squares of such are numbers still.
+/// The largest number with a position on an axis: differences and squares of such are numbers
+/// still.
 const LARGEST: f64 = 1e100;
 
 /// Points and lines over two axes, each linear or logarithmic.
 ///
-/// A point that has no position on its axes, because it is not finite, beyond 1e100 or not positive on a
-/// logarithmic axis, is left out, and breaks the line or the band that it is of.
+/// A point that has no position on its axes, because it is not finite, beyond 1e100 or not positive
+/// on a logarithmic axis, is left out, and breaks the line or the band that it is of.
 #[derive(Clone, Debug)]
 pub struct Chart {
     title: String,
@@ -80,8 +81,8 @@ impl Chart {
         self.with(name, Mark::Points(MarkerShape::Cross, 3.0), points)
     }
 
-    /// Adds the area between two curves: x, lower y and upper y of each point. It has no entry in the
-    /// legend: name the curve that it belongs to, as in "profile ± u".
+    /// Adds the area between two curves: x, lower y and upper y of each point. It has no entry in
+    /// the legend: name the curve that it belongs to, as in "profile ± u".
     pub fn band(mut self, points: impl IntoIterator<Item = (f64, f64, f64)>) -> Self {
         let points = points.into_iter().map(<[f64; 3]>::from).collect();
         self.add("", Mark::Band, points);
@@ -236,8 +237,8 @@ impl Series {
     }
 }
 
-/// Returns the range of a logarithmic axis: from 1, 2 or 5 times a power of ten below all numbers to one
-/// above them, and not the whole decades, in which a few points would be lost.
+/// Returns the range of a logarithmic axis: from 1, 2 or 5 times a power of ten below all numbers
+/// to one above them, and not the whole decades, in which a few points would be lost.
 fn log_range(numbers: impl Iterator<Item = f64>) -> (f64, f64) {
     let extent = |(low, high): (f64, f64), number| (low.min(number), high.max(number));
     let (low, high) = numbers.fold((f64::MAX, f64::MIN_POSITIVE), extent);

@@ -83,8 +83,9 @@ impl Drawing {
     }
 }
 
-/// Returns what is drawn with the axes about it, and no axes of their own without anything. It is read on a telephone, and two
-/// diagrams stand side by side on a desk: hence its size and the sizes of its letters.
+/// Returns what is drawn with the axes about it, and no axes of their own without anything. It is
+/// read on a telephone, and two diagrams stand side by side on a desk: hence its size and the sizes
+/// of its letters.
 pub(super) fn panel(plots: Vec<Plot>, title: &str, [across, up]: [&str; 2]) -> Panel {
     const EMPTY: (f64, f64) = (0.0, 1.0);
     let layout = if plots.is_empty() {
@@ -133,10 +134,12 @@ fn svg(scene: &mut Scene) -> String {
     }
 }
 
-/// How the drawing library begins the names of elements, before a number that counts through the process.
+/// How the drawing library begins the names of elements, before a number that counts through the
+/// process.
 const COUNTED: &str = "kuva-clip-";
 
-/// Returns SVG whose elements have names that depend on it alone, and are its own among all drawings of a page.
+/// Returns SVG whose elements have names that depend on it alone, and are its own among all
+/// drawings of a page.
 fn with_own_ids(svg: &str) -> String {
     let mut parts = svg.split(COUNTED);
     let mut texts = vec![parts.next().unwrap_or_default()];

@@ -197,7 +197,8 @@ impl Frame {
         edges
     }
 
-    /// Returns where a label of an axis stands, outside of an edge of the box that is in front at first.
+    /// Returns where a label of an axis stands, outside of an edge of the box that is in front at
+    /// first.
     fn label(&self, axis: usize, value: f64) -> [f64; 3] {
         const OUT: f64 = 400.0;
         let mut point = [self.low[0], self.low[1], self.low[2]];

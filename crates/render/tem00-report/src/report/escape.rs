@@ -6,8 +6,8 @@ use tem00_config::is_hazard;
 
 /// Returns text as HTML and XML show it, between tags and in quoted attributes.
 ///
-/// Characters that no such file may have, and those that turn the direction of writing, become the replacement
-/// character.
+/// Characters that no such file may have, and those that turn the direction of writing, become the
+/// replacement character.
 pub fn escaped(text: &str) -> Cow<'_, str> {
     let special = |c: char| matches!(c, '&' | '<' | '>' | '"' | '\'') || is_unwanted(c);
     if !text.contains(special) {

@@ -19,8 +19,8 @@ impl Report {
             .map_err(|error| Failure::writing(path, error))
     }
 
-    /// Returns the page. It refers to nothing outside of itself: scripts, styles, fonts or pictures; a browser
-    /// is forbidden to load any.
+    /// Returns the page. It refers to nothing outside of itself: scripts, styles, fonts or
+    /// pictures; a browser is forbidden to load any.
     pub(super) fn html(&self) -> String {
         let (title, style, dark) = (escaped(&self.title), style::CSS, style::dark());
         let version = env!("CARGO_PKG_VERSION");

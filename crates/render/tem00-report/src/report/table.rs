@@ -2,7 +2,8 @@
 
 use super::cell::Cell;
 
-/// A table: one description for columns on a terminal, an array of objects in JSON and a table on a page.
+/// A table: one description for columns on a terminal, an array of objects in JSON and a table on a
+/// page.
 #[derive(Clone, Debug)]
 pub struct Table {
     pub(super) key: Option<&'static str>,

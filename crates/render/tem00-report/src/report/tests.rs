@@ -163,7 +163,8 @@ fn a_report_refers_to_nothing_outside() {
     for outside in "http fetch import XMLHttp src //www Date random".split(' ') {
         assert!(!script.contains(outside), "{outside} is in the script");
     }
-    // The name of the language of drawings is no address to load anything from, and Base64 may hold two slashes in a row.
+    // The name of the language of drawings is no address to load anything from, and Base64 may hold
+    // two slashes in a row.
     let html = html.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
     for line in html.lines().filter(|line| !line.contains(";base64,")) {
         for outside in "http: https: // <link <script @import <iframe".split(' ') {

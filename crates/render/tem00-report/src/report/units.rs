@@ -25,7 +25,8 @@ pub const MILLIRADIANS: Unit = Unit::new("mrad", 1e-3);
 pub const DEGREES: Unit = Unit::new("°", core::f64::consts::PI / 180.0);
 
 impl Unit {
-    /// Creates a unit, whose values are shown with four digits, from its symbol and its size in SI units.
+    /// Creates a unit, whose values are shown with four digits, from its symbol and its size in SI
+    /// units.
     pub const fn new(symbol: &'static str, size: f64) -> Self {
         let digits = 4;
         Self {
@@ -50,7 +51,8 @@ impl Unit {
         Self { digits, ..self }
     }
 
-    /// Returns the unit for a value known no better than this: to the place of the second digit of its uncertainty.
+    /// Returns the unit for a value known no better than this: to the place of the second digit of
+    /// its uncertainty.
     pub fn with_digits_known(self, value: f64, uncertainty: f64) -> Self {
         let place = |number: f64| number.abs().log10().floor();
         let digits = place(value) - place(uncertainty) + 2.0;

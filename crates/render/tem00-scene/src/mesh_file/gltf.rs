@@ -17,7 +17,8 @@ use super::error::{MeshFileError, wrong};
 use super::faces::strip;
 use super::polygons::{Polygons, note};
 
-/// Reads all triangles of the scene of a glTF 2.0 file, text or binary, each where its nodes put it.
+/// Reads all triangles of the scene of a glTF 2.0 file, text or binary, each where its nodes put
+/// it.
 ///
 /// Buffers in files of their own are looked for in a folder.
 pub(super) fn parse(
@@ -216,8 +217,8 @@ fn local_placement(node: &Node<'_>) -> DMat4 {
     }
 }
 
-/// The bytes that a vertex takes with its normal, in the file's data and in the mesh: more than the corners
-/// of a triangle.
+/// The bytes that a vertex takes with its normal, in the file's data and in the mesh: more than the
+/// corners of a triangle.
 const BYTES_PER_ELEMENT: u64 = 2 * 2 * size_of::<DVec3>() as u64;
 
 struct Reader {
@@ -276,8 +277,8 @@ impl Reader {
         Ok(())
     }
 
-    /// Checks that there is memory for so many more vertices and corners. Few bytes can ask for many: nodes
-    /// and primitives may share their data.
+    /// Checks that there is memory for so many more vertices and corners. Few bytes can ask for
+    /// many: nodes and primitives may share their data.
     fn check_room(&mut self, vertices: usize, corners: usize) -> Result<(), String> {
         let held = self.polygons.vertices.len() + self.polygons.triangles.len();
         let needed = held.saturating_add(vertices).saturating_add(corners) as u64;

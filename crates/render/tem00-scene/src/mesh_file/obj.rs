@@ -123,9 +123,9 @@ impl ObjFile {
 
     /// Makes a vertex of each pair of a vertex and a normal.
     ///
-    /// The first normal of a vertex stays with it; for every other one the vertex is repeated at the
-    /// end. So the order of the file is kept, and nothing is looked up in the common case of one
-    /// normal to each vertex.
+    /// The first normal of a vertex stays with it; for every other one the vertex is repeated at
+    /// the end. So the order of the file is kept, and nothing is looked up in the common case of
+    /// one normal to each vertex.
     fn into_polygons(self) -> Result<Polygons, MeshFileError> {
         let vertices = self.vertices;
         let cut = self.faces.cut(|corner| vertices[corner.vertex as usize])?;

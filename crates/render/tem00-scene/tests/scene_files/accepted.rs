@@ -43,7 +43,8 @@ fn a_scene_needs_a_camera_a_laser_and_a_surface_and_no_more() {
     }
 }
 
-/// Returns the fan and the profile of the minimal scene's laser with a line of 0.2 mm and 30°, and other keys.
+/// Returns the fan and the profile of the minimal scene's laser with a line of 0.2 mm and 30°, and
+/// other keys.
 fn line(keys: &str) -> (FanGeometry, LineProfile) {
     let line = format!("line = {{ fan_angle = \"30 deg\", thickness = \"0.2 mm\"{keys} }}");
     let scene = parse(&with("spot.waist_radius = \"0.5 mm\"", &line)).unwrap();

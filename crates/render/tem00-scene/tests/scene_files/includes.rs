@@ -25,7 +25,8 @@ fn write(files: &[(&str, &str)]) -> TempDir {
     folder
 }
 
-/// Asserts that the scene is refused in `file` at `line`, with a message that contains all of `words`.
+/// Asserts that the scene is refused in `file` at `line`, with a message that contains all of
+/// `words`.
 #[track_caller]
 fn assert_refused(files: &[(&str, &str)], (file, line): (&str, usize), words: &[&str]) {
     let error = read(files).expect_err("this scene should not be read");

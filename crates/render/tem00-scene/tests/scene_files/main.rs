@@ -1,4 +1,5 @@
-//! What the reader of scene files accepts and refuses, and that their page and their JSON schema say the same.
+//! What the reader of scene files accepts and refuses, and that their page and their JSON schema
+//! say the same.
 
 #![expect(
     clippy::expect_used,

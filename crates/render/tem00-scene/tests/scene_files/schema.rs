@@ -27,8 +27,8 @@ pub(super) fn assert_allowed(text: &str) {
     }
 }
 
-/// Every table of a scene file: the name of its definition in the schema, the section that it stands in, and a line there
-/// that gives it a key that no table has.
+/// Every table of a scene file: the name of its definition in the schema, the section that it
+/// stands in, and a line there that gives it a key that no table has.
 const TABLES: &str = "
     scene => ?
     camera => [camera] ?

@@ -9,10 +9,12 @@ use crate::TracerError;
 const LAYERS_PER_LASER: u64 = 5;
 const COMMON_LAYERS: u64 = 7;
 
-/// Layers of what first samples tell: two, two for neighbours, and a quarter for what follows from it.
+/// Layers of what first samples tell: two, two for neighbours, and a quarter for what follows from
+/// it.
 const PILOT_LAYERS: u64 = 5;
 
-/// Layers of the light followed from one laser, before it is added to its own: four sums in double precision.
+/// Layers of the light followed from one laser, before it is added to its own: four sums in double
+/// precision.
 const LIGHT_LAYERS: u64 = 8;
 
 /// Checks that the layers fit into the memory that the system says is available (Linux).

@@ -134,7 +134,8 @@ mod tests {
         for value in [2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0] {
             moments.add(value);
         }
-        // Mean 5 and sum of squared deviations 32: 32/7 is the variance of a value, 32/56 of the mean.
+        // Mean 5 and sum of squared deviations 32: 32/7 is the variance of a value, 32/56 of the
+        // mean.
         let variance = moments.variance_of_mean(8);
         assert!((variance - 32.0 / 56.0).abs() < 1e-15, "{variance}");
         let of_one = moments.variance_of_mean(1);

@@ -56,8 +56,8 @@ impl HalfTable {
         self.integral
     }
 
-    /// Returns the position up to which the density integrates to `target`, in [0, 1], and the density
-    /// there.
+    /// Returns the position up to which the density integrates to `target`, in [0, 1], and the
+    /// density there.
     pub(super) fn sample(&self, target: f64) -> (f64, f64) {
         let behind = self.cumulative.partition_point(|sum| *sum <= target);
         let piece = behind.min(self.cumulative.len() - 1) - 1;

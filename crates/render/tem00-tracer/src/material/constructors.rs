@@ -38,8 +38,8 @@ impl Material {
     /// # References
     ///
     /// - M. Oren and S. K. Nayar, *Generalization of Lambert's Reflectance Model*, 1994, eq. 30.
-    /// - J. Portsmouth, P. Kutz and S. Hill, *EON: A Practical Energy-Preserving Rough Diffuse BRDF*,
-    ///   2025.
+    /// - J. Portsmouth, P. Kutz and S. Hill, *EON: A Practical Energy-Preserving Rough Diffuse
+    ///   BRDF*, 2025.
     pub fn oren_nayar(reflectance: f64, sigma: f64) -> Result<Self, TracerError> {
         check_reflectance(reflectance)?;
         check("sigma", sigma, 0.0..=FRAC_PI_2, "between 0 and π/2")?;
@@ -52,8 +52,8 @@ impl Material {
     /// Creates a rough metal: microfacets with the GGX distribution of slopes.
     ///
     /// `roughness` is the parameter α: facets over half of the surface are inclined by less than
-    /// arctan α. The reflectance of each facet is Fresnel's, without approximation. Light that would
-    /// meet a second facet is lost, as in all single-scattering models.
+    /// arctan α. The reflectance of each facet is Fresnel's, without approximation. Light that
+    /// would meet a second facet is lost, as in all single-scattering models.
     ///
     /// # Validity
     ///
@@ -90,8 +90,9 @@ impl Material {
     ///
     /// `roughness` is that of [`conductor`](Self::conductor). Light that the first facet does not
     /// reflect enters the coat; the base and the inner side of the coat pass it to and fro until it
-    /// is absorbed or leaves. A white base loses nothing. A grey one looks darker than it is: with an
-    /// index of 1.5 and a nearly smooth coat, a base of 0.5 returns 0.29 of the light that enters.
+    /// is absorbed or leaves. A white base loses nothing. A grey one looks darker than it is: with
+    /// an index of 1.5 and a nearly smooth coat, a base of 0.5 returns 0.29 of the light that
+    /// enters.
     ///
     /// # Validity
     ///
@@ -117,8 +118,8 @@ impl Material {
     ///
     /// # References
     ///
-    /// - C. Kelemen and L. Szirmay-Kalos, *A Microfacet Based Coupled Specular-Matte BRDF Model with
-    ///   Importance Sampling*, 2001.
+    /// - C. Kelemen and L. Szirmay-Kalos, *A Microfacet Based Coupled Specular-Matte BRDF Model
+    ///   with Importance Sampling*, 2001.
     pub fn plastic(reflectance: f64, index: f64, roughness: f64) -> Result<Self, TracerError> {
         check_reflectance(reflectance)?;
         check("index", index, 1.1..=3.0, "between 1.1 and 3")?;

@@ -44,10 +44,10 @@ pub struct OpticalRoughnessQuery {
 ///
 /// # Validity
 ///
-/// GGX has no rms slope of its own: its roughness is taken for that of Beckmann's facets, whose lobe
-/// has the same height, and whose light is therefore correlated over the same area. The relations hold for Gaussian surfaces without
-/// shadowing. For N patches the variance of the intensity departs from that of fully developed
-/// speckle by the order of 1/N.
+/// GGX has no rms slope of its own: its roughness is taken for that of Beckmann's facets, whose
+/// lobe has the same height, and whose light is therefore correlated over the same area. The
+/// relations hold for Gaussian surfaces without shadowing. For N patches the variance of the
+/// intensity departs from that of fully developed speckle by the order of 1/N.
 ///
 /// # Examples
 ///
@@ -101,8 +101,8 @@ impl OpticalRoughness {
         self.roughness
     }
 
-    /// Returns the rms deviation `σ_φ` of the phase of scattered light, in radians, if the rms height
-    /// is known.
+    /// Returns the rms deviation `σ_φ` of the phase of scattered light, in radians, if the rms
+    /// height is known.
     pub fn phase_deviation(&self) -> Option<f64> {
         let turns_per_height = self.cosines / self.query.wavelength;
         self.query
@@ -165,11 +165,12 @@ impl fmt::Display for OpticalRoughness {
 }
 
 impl Material {
-    /// Judges whether the surface is rough enough for the theory of speckle, or returns `None` for a
-    /// specular material, which makes no speckle.
+    /// Judges whether the surface is rough enough for the theory of speckle, or returns `None` for
+    /// a specular material, which makes no speckle.
     ///
-    /// Metals are judged by their roughness, plastics by that of their coat, which matters where the
-    /// camera sees it shine. Diffuse materials scatter everywhere and count as a roughness of 1.
+    /// Metals are judged by their roughness, plastics by that of their coat, which matters
+    /// where the camera sees it shine. Diffuse materials scatter everywhere and count as a
+    /// roughness of 1.
     ///
     /// # Errors
     ///

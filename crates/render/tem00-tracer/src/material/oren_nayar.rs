@@ -10,7 +10,8 @@ use super::{
 /// `½ − 2/(3π)`: what retro-reflection adds to the albedo at grazing incidence, per ratio.
 const GRAZING: f64 = 0.5 - 2.0 / (3.0 * PI);
 
-/// `6/(5π) − 1/6`: the mean over all directions of what is [missing](OrenNayar::missing), per ratio.
+/// `6/(5π) − 1/6`: the mean over all directions of what is [missing](OrenNayar::missing), per
+/// ratio.
 const MEAN_MISSING: f64 = 6.0 / (5.0 * PI) - 1.0 / 6.0;
 
 /// Lambertian facets that shadow and light each other. All directions are above the surface.

@@ -213,8 +213,8 @@ proptest! {
             prop_assert!((wi.length() - 1.0).abs() < 1e-13, "|wi| = {}", wi.length());
             prop_assert!(wi.z * wo.z > 0.0, "wi = {wi}");
             // Metals and Lambertian surfaces draw so well that no weight exceeds the reflectance.
-            // The others draw from two lobes: plaster's weights stay below 4, and a coat's below the
-            // sum of both lobes' own, 1 each.
+            // The others draw from two lobes: plaster's weights stay below 4, and a coat's below
+            // the sum of both lobes' own, 1 each.
             let largest = match material.scattering {
                 Scattering::OrenNayar(_) => 4.0,
                 Scattering::Plastic(_) => 2.0,

@@ -1,5 +1,5 @@
-//! Light that a laser sends through mirrors and glass, which no path from the camera finds: followed from the laser, one
-//! path at a time, and connected to the camera at each rough surface.
+//! Light that a laser sends through mirrors and glass, which no path from the camera finds:
+//! followed from the laser, one path at a time, and connected to the camera at each rough surface.
 
 use core::sync::atomic::{AtomicBool, Ordering};
 
@@ -26,7 +26,8 @@ struct Splat {
     power: f64,
 }
 
-/// Sums over the paths of a laser in one pixel; of the radiance, and of the squares of that of groups.
+/// Sums over the paths of a laser in one pixel; of the radiance, and of the squares of that of
+/// groups.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     single: f64,
@@ -166,7 +167,8 @@ impl Reference<'_> {
         }
     }
 
-    /// Returns what the light at a rough surface brings to the pixel that sees it through a drawn point of the lens.
+    /// Returns what the light at a rough surface brings to the pixel that sees it through a drawn
+    /// point of the lens.
     fn splat(
         &self,
         laser: usize,
@@ -210,8 +212,9 @@ impl Reference<'_> {
 }
 
 impl Arrival<'_> {
-    /// Returns the gain over scattering with the normal of the surface itself, which makes light carry as much as a path
-    /// from the camera finds: E. Veach, 1997, § 5.3. `shaded` are the cosines with the normal of the shading.
+    /// Returns the gain over scattering with the normal of the surface itself, which makes light
+    /// carry as much as a path from the camera finds: E. Veach, 1997, § 5.3. `shaded` are the
+    /// cosines with the normal of the shading.
     fn adjoint(&self, out: DVec3, shaded: [f64; 2]) -> f64 {
         let back = -self.direction.dot(self.hit.normal);
         let out = out.dot(self.hit.normal);

@@ -45,7 +45,8 @@ impl Reference<'_> {
         sum * path.throughput[self.lasers.len()]
     }
 
-    /// Returns the radiance of the light that a ray meets, or of the environment if it meets nothing.
+    /// Returns the radiance of the light that a ray meets, or of the environment if it meets
+    /// nothing.
     pub(super) fn lights_met(&self, path: &Path, hit: Option<&Hit>) -> f64 {
         let lights = self.scene.lights.iter();
         let areas = lights

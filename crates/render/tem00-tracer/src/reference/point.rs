@@ -17,7 +17,8 @@ pub(super) struct Point<'a> {
 }
 
 impl<'a> Point<'a> {
-    /// Returns the point where a ray meets a surface; `None` along the surface, of which the ray sees no area.
+    /// Returns the point where a ray meets a surface; `None` along the surface, of which the ray
+    /// sees no area.
     pub(super) fn new(ray: &Ray, hit: &Hit, material: &'a Material) -> Option<Self> {
         let axes = LocalFrame::from_normal(hit.normal_seen_from(-ray.direction));
         let point = Self {
@@ -35,7 +36,8 @@ impl<'a> Point<'a> {
         self.axes.normal() * self.back.z.signum()
     }
 
-    /// Returns the local components of a direction towards light, unless surface and shading disagree about its side.
+    /// Returns the local components of a direction towards light, unless surface and shading
+    /// disagree about its side.
     pub(super) fn towards(&self, direction: DVec3) -> Option<DVec3> {
         let wi = self.axes.to_local(direction);
         (wi.z * self.hit.normal.dot(direction) > 0.0).then_some(wi)

@@ -63,8 +63,8 @@ impl CertificateData {
     ///
     /// # Errors
     ///
-    /// Returns a problem, placed in the file, if a key is missing or unknown, a value cannot be, or the set-up has
-    /// no measured height that a certificate could state.
+    /// Returns a problem, placed in the file, if a key is missing or unknown, a value cannot be, or
+    /// the set-up has no measured height that a certificate could state.
     pub(in crate::budget) fn read(
         document: &Document<'_>,
         measures_height: bool,

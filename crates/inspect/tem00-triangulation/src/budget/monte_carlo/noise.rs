@@ -10,8 +10,8 @@ use crate::{
 
 /// The frames of one trial, with one source of noise each.
 ///
-/// Noise of a single source is drawn here, apart from [`Sensor::expose`](crate::Sensor::expose), in grey
-/// values that are not rounded.
+/// Noise of a single source is drawn here, apart from [`Sensor::expose`](crate::Sensor::expose), in
+/// grey values that are not rounded.
 pub(super) struct Frames<'a> {
     setup: &'a Setup,
     image: &'a LineImage,
@@ -49,7 +49,8 @@ impl<'a> Frames<'a> {
         self.column.centre
     }
 
-    /// Returns the frames that are averaged, with the noise of one source: one where all would be equal.
+    /// Returns the frames that are averaged, with the noise of one source: one where all would be
+    /// equal.
     pub(super) fn of(
         &self,
         source: UncertaintySource,

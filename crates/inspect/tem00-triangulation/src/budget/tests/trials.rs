@@ -19,7 +19,8 @@ fn trials_agree_with_first_order_term_by_term() {
         Source::Dsnu,
     ] {
         let (first, found) = (budget.contribution(source), trials.term(source).unwrap());
-        // Four standard errors of 40 · 64 independent positions, and 1 % for what is not first order.
+        // Four standard errors of 40 · 64 independent positions, and 1 % for what is not first
+        // order.
         let apart = (found.uncertainty - first).abs();
         let allowed = 4.0 * found.standard_error + 0.01 * first;
         assert!(apart < allowed, "{source}: {found:?}, {first:e}");
@@ -30,7 +31,8 @@ fn trials_agree_with_first_order_term_by_term() {
     let speckle = trials.term(Source::Speckle).unwrap();
     let ratio = speckle.uncertainty / budget.contribution(Source::Speckle);
     let chance = 4.0 * speckle.standard_error / speckle.uncertainty;
-    // First order takes a pattern times the line, which is within 2 % for one of 2.8 speckles in full width.
+    // First order takes a pattern times the line, which is within 2 % for one of 2.8 speckles in
+    // full width.
     assert!((ratio - 1.0).abs() < 0.02 + chance, "{ratio} ± {chance}");
     assert_eq!(
         trials.term(Source::Calibration),
@@ -45,7 +47,8 @@ fn there_is_no_uncertainty_by_trials_below_half_of_the_columns() {
     for factor in [1.0, 2.0, 3.0, 5.0] {
         let setup = setup_of(|d| d.laser.power *= factor);
         let (trials, clipped) = (simulated(&setup, 10), clipped_columns(&setup));
-        // 10 · 128 columns of which six go together, and as many here: four standard errors of a half.
+        // 10 · 128 columns of which six go together, and as many here: four standard errors of a
+        // half.
         let chance = 4.0 * 0.5 / 213.0_f64.sqrt() * 2.0_f64.sqrt();
         assert!(
             (trials.invalid() - clipped).abs() < chance,
@@ -78,7 +81,8 @@ fn an_expanded_uncertainty_by_trials_holds_as_much_as_it_says() {
             found.total().unwrap().uncertainty,
         );
         let case = format!("{thickness:e}, {calibration:e}");
-        // Other frames; how much of the normal error of the calibration is small enough, is a closed form.
+        // Other frames; how much of the normal error of the calibration is small enough, is a
+        // closed form.
         let simulator = Simulator::new(&setup, *setup.line()).unwrap();
         let errors = (1000..1100).flat_map(|seed| simulator.deviations(seed).unwrap().0);
         let held = errors.map(|deviation| {

@@ -25,9 +25,9 @@ fn compare(method: LineMethod, sigmas: &[f64], tolerance: f64, law: impl Fn(f64,
 
 #[test]
 fn centre_of_gravity_errs_by_the_light_outside_of_the_window() {
-    // Over the window from a to b: ∫ y f dy = −σ² (f(b) − f(a)), and pixels, whose light counts at their
-    // middle, take 1/12 of the same difference more (Euler and Maclaurin). Their next term is of the
-    // order of f''/500: 2e−5 f(b)/σ² f(0)⁻¹ < 2e−6. The rounding of 31 pixels adds 1e−6.
+    // Over the window from a to b: ∫ y f dy = −σ² (f(b) − f(a)), and pixels, whose light counts at
+    // their middle, take 1/12 of the same difference more (Euler and Maclaurin). Their next term is
+    // of the order of f''/500: 2e−5 f(b)/σ² f(0)⁻¹ < 2e−6. The rounding of 31 pixels adds 1e−6.
     let law = |sigma: f64, phase: f64| {
         let (a, b) = (-15.5 - phase, 15.5 - phase);
         let light = cumulative(b, sigma) - cumulative(a, sigma);
@@ -47,9 +47,10 @@ fn centre_of_gravity_errs_by_the_light_outside_of_the_window() {
 
 #[test]
 fn a_window_about_the_line_itself_cuts_as_much_from_both_sides() {
-    // Grey values are constant over a pixel. Of the pixels at the ends of the window, x and 1 − x of them
-    // inside, the light is off by f' x (1 − x)/2 on both sides alike, and by f'' x (1 − x)(1 − 2x)/6, at
-    // most f''/62, the other way. That is 31 pixels apart; the window that follows makes it more.
+    // Grey values are constant over a pixel. Of the pixels at the ends of the window, x and 1 − x
+    // of them inside, the light is off by f' x (1 − x)/2 on both sides alike, and by f'' x (1 −
+    // x)(1 − 2x)/6, at most f''/62, the other way. That is 31 pixels apart; the window that follows
+    // makes it more.
     let b = 15.5;
     for sigma in [1.0_f64, 3.0, 5.0, 10.0] {
         let f = density(b, sigma);
@@ -71,9 +72,9 @@ fn a_threshold_at_zero_is_no_threshold() {
 
 #[test]
 fn a_threshold_lets_only_the_pixels_at_it_err() {
-    // What lies above t f(0) is symmetric. The pixels in which the flanks cross the threshold see the
-    // part of a triangle: of the slope s over the width 1 at most s/8 too much or too little, at the
-    // distance σ √(2 ln 1/t) on both sides. With the light above the threshold below:
+    // What lies above t f(0) is symmetric. The pixels in which the flanks cross the threshold see
+    // the part of a triangle: of the slope s over the width 1 at most s/8 too much or too little,
+    // at the distance σ √(2 ln 1/t) on both sides. With the light above the threshold below:
     let (t, sigma) = (0.2_f64, 2.0);
     let reach = sigma * (2.0 * (1.0 / t).ln()).sqrt();
     let slope = reach / (sigma * sigma) * density(reach, sigma);
@@ -116,9 +117,9 @@ fn three_point_methods_err_on_points_as_their_formulas_say() {
 
 #[test]
 fn pixels_draw_the_logarithmic_fit_by_the_sixth_power_of_their_size() {
-    // A pixel adds ln(1 + (y²/σ⁴ − 1/σ²)/24 + …) to the logarithm. What is quadratic in y only widens the
-    // line; the term y⁴/(2880 σ⁸) that is left moves the vertex by δ (1 − 4 δ²) / (1440 σ⁶). The next
-    // order is 1/σ² of it: 7 · 10⁻⁵/σ⁸ with a factor of about one. Rounding: 2e−7 σ².
+    // A pixel adds ln(1 + (y²/σ⁴ − 1/σ²)/24 + …) to the logarithm. What is quadratic in y only
+    // widens the line; the term y⁴/(2880 σ⁸) that is left moves the vertex by δ (1 − 4 δ²) / (1440
+    // σ⁶). The next order is 1/σ² of it: 7 · 10⁻⁵/σ⁸ with a factor of about one. Rounding: 2e−7 σ².
     for sigma in [1.0, 1.3] {
         let tolerance = 7e-5 * f64::powi(sigma, -8) + 5e-7;
         compare(LineMethod::LogGaussian, &[sigma], tolerance, |s, d| {
@@ -155,7 +156,8 @@ fn filters_err_as_the_light_below_the_edges_of_their_taps_says() {
             let i = if phase < 0.0 { -1.0 } else { 0.0 };
             i + filtered(i) / (filtered(i) - filtered(i + 1.0)) - phase
         };
-        // The slope of the filtered derivative is about m²/σ² of the peak: rounding counts σ²/m² times.
+        // The slope of the filtered derivative is about m²/σ² of the peak: rounding counts σ²/m²
+        // times.
         compare(order(taps), &[1.0, 2.0, 4.0], 5e-6, law);
         assert!(law(1.0, 0.25).abs() > 1e-3, "{taps} taps err");
     }
@@ -178,10 +180,11 @@ fn the_fit_finds_the_line_that_the_pixels_integrated() {
 
 #[test]
 fn one_step_of_steger_errs_by_the_cube_of_the_distance() {
-    // The line, convolved with the Gaussian, its pixels and those of the kernel, is all but a Gaussian of
-    // s² = σ² + σ_l² + 1/6. At the distance δ from its middle −r'/r'' = δ / (1 − δ²/s²). The boxes of the
-    // pixels have the fourth cumulant −1/120 each, together −4e−3 s⁴ of the thinnest: half of that times
-    // δ is 8e−4. The kernel ends at 4 standard deviations, where it is 3e−4.
+    // The line, convolved with the Gaussian, its pixels and those of the kernel, is all but a
+    // Gaussian of s² = σ² + σ_l² + 1/6. At the distance δ from its middle −r'/r'' = δ / (1 −
+    // δ²/s²). The boxes of the pixels have the fourth cumulant −1/120 each, together −4e−3 s⁴ of
+    // the thinnest: half of that times δ is 8e−4. The kernel ends at 4 standard deviations, where
+    // it is 3e−4.
     for kernel in [1.0, 2.0, 3.0] {
         let law = |sigma: f64, phase: f64| {
             let s = kernel * kernel + sigma * sigma + 1.0 / 6.0;

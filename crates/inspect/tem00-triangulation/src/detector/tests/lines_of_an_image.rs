@@ -5,7 +5,8 @@ use super::*;
 const SIGMA: f64 = 2.5;
 const WINDOW: usize = 25;
 
-/// An image of lines whose positions depend on the column; a line is where its position is a number.
+/// An image of lines whose positions depend on the column; a line is where its position is a
+/// number.
 fn image(width: usize, height: usize, lines: &[&dyn Fn(f64) -> Option<f64>]) -> Grid<f32> {
     let columns: Vec<Vec<f32>> = (0..width)
         .map(|x| {
@@ -103,8 +104,9 @@ fn scatter(x: f64) -> f64 {
 
 #[test]
 fn a_line_that_has_ended_takes_no_points_of_one_that_goes_on() {
-    // The first ends at column 80; the straight line through its end crosses the second at column 104, for
-    // whose points it is within reach from the second column on. Both scatter as lines under speckle do.
+    // The first ends at column 80; the straight line through its end crosses the second at column
+    // 104, for whose points it is within reach from the second column on. Both scatter as lines
+    // under speckle do.
     let ended = |x: f64| (x < 80.0).then(|| 60.0 + 0.5 * x + 0.8 * scatter(x));
     for seen_in in [
         |_: f64| true,

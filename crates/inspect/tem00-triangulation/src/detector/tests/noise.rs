@@ -6,8 +6,9 @@ use super::*;
 
 const COLUMNS: usize = 4000;
 
-/// Compares the variance of the positions found in noisy columns with a law. The variance of n Gaussian
-/// numbers has the relative standard error √(2/n), here 2.2 %; 3.3 of them are exceeded once in 1000.
+/// Compares the variance of the positions found in noisy columns with a law. The variance of n
+/// Gaussian numbers has the relative standard error √(2/n), here 2.2 %; 3.3 of them are exceeded
+/// once in 1000.
 fn compare(detector: &LineDetector, variance: f64, mut column: impl FnMut(u64) -> Vec<f32>) {
     let positions: Vec<f64> = (0..COLUMNS as u64)
         .map(|seed| only(detector, &column(seed)).position - MIDDLE)
@@ -33,8 +34,8 @@ fn with_white_noise(line: &[f32], noise: f64, seed: u64) -> Vec<f32> {
 
 #[test]
 fn centre_of_gravity_is_as_good_as_photons_allow() {
-    // The centre of gravity of N electrons scatters as the mean of N positions: σ²/N, the bound of Cramér
-    // and Rao for a Gaussian; (w/2)/√N. Pixels add their own variance, 1/12.
+    // The centre of gravity of N electrons scatters as the mean of N positions: σ²/N, the bound of
+    // Cramér and Rao for a Gaussian; (w/2)/√N. Pixels add their own variance, 1/12.
     let (sigma, electrons) = (3.0, 10_000.0);
     let scale = electrons / (PEAK * TAU.sqrt() * sigma);
     let line = integrated(101, 50.5, sigma);
@@ -61,8 +62,9 @@ fn centre_of_gravity_is_as_good_as_photons_allow() {
 
 #[test]
 fn white_noise_moves_the_centre_of_gravity_by_its_lever_arms() {
-    // δŷ = Σ (y_i − ŷ) δI_i / Σ I: over 31 pixels Σ y² = 15 · 16 · 31 / 3. The sum of the light is 1 %
-    // uncertain, and that 31 pixels scatter moves the estimate in the second order, (31 s²)/(Σ I)², too.
+    // δŷ = Σ (y_i − ŷ) δI_i / Σ I: over 31 pixels Σ y² = 15 · 16 · 31 / 3. The sum of the light is
+    // 1 % uncertain, and that 31 pixels scatter moves the estimate in the second order, (31 s²)/(Σ
+    // I)², too.
     let (sigma, noise) = (3.0, PEAK / 100.0);
     let line = integrated(LENGTH, MIDDLE, sigma);
     let light = PEAK * TAU.sqrt() * sigma;
@@ -75,9 +77,9 @@ fn white_noise_moves_the_centre_of_gravity_by_its_lever_arms() {
 
 #[test]
 fn the_fit_is_as_good_as_white_noise_allows() {
-    // The bound of Cramér and Rao is s²/Σ (∂I_i/∂c)² for white noise of the variance s². With
-    // ∂I/∂c = P u/σ² e^{−u²/2σ²} the sum is P² √π/(2σ); the pixels, of 1/12 σ², take 1.5/12 σ² of it.
-    // The second order of the fit is (s/P)² of the first.
+    // The bound of Cramér and Rao is s²/Σ (∂I_i/∂c)² for white noise of the variance s². With ∂I/∂c
+    // = P u/σ² e^{−u²/2σ²} the sum is P² √π/(2σ); the pixels, of 1/12 σ², take 1.5/12 σ² of it. The
+    // second order of the fit is (s/P)² of the first.
     let (sigma, noise) = (3.0, PEAK / 100.0);
     let line = integrated(LENGTH, MIDDLE, sigma);
     let pixels = 1.0 + 0.125 / (sigma * sigma);

@@ -49,7 +49,8 @@ fn ragged(values: &[f32], before: usize) -> Vec<f32> {
     column
 }
 
-/// Nearly flat about its minimum, and much of the light is left over: Gauss-Newton's steps shrink slowly.
+/// Nearly flat about its minimum, and much of the light is left over: Gauss-Newton's steps shrink
+/// slowly.
 #[test]
 fn a_fit_of_slow_steps_is_mirrored_too() {
     let values = [

@@ -12,9 +12,10 @@ fn of_the_centre_of_gravity_are_the_lever_arms() {
     let sensitivities = detector.sensitivities(&column, &point);
     for (i, found) in sensitivities.iter().enumerate().take(216).skip(185) {
         let lever = (i as f64 + 0.5 - point.position) / point.integral;
-        // The 370 pixels of the background take the sum of the window, 31 · 0.2 / 370 of a pixel. The
-        // difference over 1e−4 of the peak errs by the square of that, the rest is rounding over it. The
-        // ends of the window, at e^(−18) of the peak, move the position by 1e−7 for each pixel that it moves.
+        // The 370 pixels of the background take the sum of the window, 31 · 0.2 / 370 of a pixel.
+        // The difference over 1e−4 of the peak errs by the square of that, the rest is rounding
+        // over it. The ends of the window, at e^(−18) of the peak, move the position by 1e−7 for
+        // each pixel that it moves.
         assert_absolute(found - lever, 0.0, 1e-9 * lever.abs() + 1e-10);
     }
     let outside = 31.0 * (point.position - MIDDLE) / (370.0 * point.integral);
@@ -32,8 +33,8 @@ fn moved(sensitivities: &[f64], [more, less]: [&[f32]; 2], step: f64) -> f64 {
 
 #[test]
 fn follow_a_line_that_moves_and_ignore_a_background_that_rises() {
-    // Σ g_i dI_i/dc is the derivative of the position by c: 1 but for the derivative of the bias. Rounding
-    // of f32 over the step: 1e−7/1e−2 each.
+    // Σ g_i dI_i/dc is the derivative of the position by c: 1 but for the derivative of the bias.
+    // Rounding of f32 over the step: 1e−7/1e−2 each.
     let step = 0.01;
     for method in methods() {
         let detector = detector(method, 31);
@@ -44,8 +45,9 @@ fn follow_a_line_that_moves_and_ignore_a_background_that_rises() {
             let expected = (position(&more) - position(&less)) / (2.0 * step);
             let sensitivities = detector.sensitivities(&column, &only(&detector, &column));
             let moved = moved(&sensitivities, [&more, &less], step);
-            // The difference errs by step²/6 of the third derivative of the position: up to 40 where linear
-            // interpolation, whose flanks change at the middle of a pixel, is near to that.
+            // The difference errs by step²/6 of the third derivative of the position: up to 40
+            // where linear interpolation, whose flanks change at the middle of a pixel, is near to
+            // that.
             assert_absolute(moved, expected, 7e-4);
             assert!(
                 (expected - 1.0).abs() < 0.7,
@@ -62,8 +64,9 @@ fn follow_a_line_that_moves_and_ignore_a_background_that_rises() {
 
 #[test]
 fn take_the_window_along_with_a_line_that_has_wings() {
-    // A line that moves on by a pixel is found a pixel further on: over all positions in a pixel
-    // Σ g_i dI_i/dc is 1 in the mean, with the light that the window loses at one end and gains at the other.
+    // A line that moves on by a pixel is found a pixel further on: over all positions in a pixel Σ
+    // g_i dI_i/dc is 1 in the mean, with the light that the window loses at one end and gains at
+    // the other.
     let line = |centre: f64| -> Vec<f32> {
         let wings = |i: usize| 1000.0 / (1.0 + ((i as f64 + 0.5 - centre) / 2.0).powi(2));
         (0..LENGTH).map(|i| to_f32(wings(i))).collect()
@@ -86,8 +89,8 @@ fn take_the_window_along_with_a_line_that_has_wings() {
             )
         };
         let mean = (0..32).map(follows).sum::<f64>() / 32.0;
-        // What the ends of the window are worth changes over a pixel, and the vertex of the smoothed column
-        // does not move evenly: a twentieth of the fraction of the window.
+        // What the ends of the window are worth changes over a pixel, and the vertex of the
+        // smoothed column does not move evenly: a twentieth of the fraction of the window.
         assert_absolute(mean, 1.0, 1e-3 + 0.05 * by_window);
     }
 }

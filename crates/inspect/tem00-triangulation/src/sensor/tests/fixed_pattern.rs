@@ -80,7 +80,8 @@ fn the_pattern_belongs_to_the_camera_and_not_to_the_frame() {
 
 #[test]
 fn a_seed_that_is_the_serial_number_draws_other_numbers() {
-    // Without electrons, noise takes one number per pixel and the pattern two: a response, an offset.
+    // Without electrons, noise takes one number per pixel and the pattern two: a response, an
+    // offset.
     let offsets = sensor(|d| (d.dark_noise, d.dsnu, d.dark_current) = (0.0, 50.0, 0.0));
     let noise = sensor(|d| (d.dark_noise, d.dsnu, d.dark_current) = (50.0, 0.0, 0.0));
     let of = |sensor: &Sensor| {

@@ -9,8 +9,8 @@ fn poisson(count: u32, mean: f64) -> f64 {
     (f64::from(count) * mean.ln() - mean - log_factorial).exp()
 }
 
-/// The numbers of pixels for all counts of a range, and what theory says of them. The first and the last
-/// count stand for all that lie beyond.
+/// The numbers of pixels for all counts of a range, and what theory says of them. The first and the
+/// last count stand for all that lie beyond.
 fn histogram(frame: &RawFrame, mean: f64, [least, most]: [u32; 2]) -> (Vec<u64>, Vec<f64>) {
     let values = frame.values.values();
     let bin = |value: u16| u32::from(value).clamp(least, most);

@@ -16,8 +16,8 @@ pub(in crate::interpolation) fn spline(x: f64) -> f64 {
     }
 }
 
-/// What a look-up at r = `f` makes of the pupil point k, by the sum over its taps: the phase of each tap,
-/// and of k itself where the tap stands.
+/// What a look-up at r = `f` makes of the pupil point k, by the sum over its taps: the phase of
+/// each tap, and of k itself where the tap stands.
 fn looked_up(k: f64, f: f64, size: f64) -> Complex<f64> {
     let turn = |x: f64| Complex::cis(-2.0 * PI * k * x / size);
     let half = PI * k / size;
@@ -60,8 +60,8 @@ fn wave(field: &PupilField, k: [i64; 2], r: [f64; 2]) -> Complex<f64> {
     Complex::cis(-2.0 * PI * turns)
 }
 
-/// All that each lattice point does to the blend of two slices, of which one shows it as `value` and
-/// the other in the frame turned by `frame`.
+/// All that each lattice point does to the blend of two slices, of which one shows it as `value`
+/// and the other in the frame turned by `frame`.
 fn blended(
     field: &PupilField,
     place: &Place,
@@ -168,9 +168,9 @@ fn the_mean_square_between_slices_is_the_sum_over_the_points_of_both_pupils() {
                     let expected = square(&points) / field.mask.power();
                     let got = mean_square_of_look_ups(&field, &place);
                     worst = worst.max((got - expected).abs());
-                    // On a slice sums of 16 terms of at most 4 in f32. Between slices sums of some ten
-                    // terms (1e−6), the polynomials (1e−6) and the odd terms that are left out (2e−6),
-                    // each halved by 2 f (1 − f).
+                    // On a slice sums of 16 terms of at most 4 in f32. Between slices sums of some
+                    // ten terms (1e−6), the polynomials (1e−6) and the odd terms that are left out
+                    // (2e−6), each halved by 2 f (1 − f).
                     let tolerance = if f > 0.0 { 2e-6 } else { 1e-6 };
                     assert_absolute(got, expected, tolerance);
                 }

@@ -93,8 +93,8 @@ fn without_a_lens_the_field_is_correlated_as_the_lit_area_demands() {
     let pitch = wavelength * distance / width / 2.5;
     let areas = [
         (Pupil::Circle, LitArea::Disc { diameter: width }, 2e-3),
-        // 161 by 73 lattice points for 160 by 72 have speckles finer by 1/160 and 1/72, and the correlation a slope of
-        // 1.1 per logarithm of the lag at most.
+        // 161 by 73 lattice points for 160 by 72 have speckles finer by 1/160 and 1/72, and the
+        // correlation a slope of 1.1 per logarithm of the lag at most.
         (
             Pupil::Rectangle {
                 height: height / width,

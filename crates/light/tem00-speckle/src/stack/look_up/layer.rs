@@ -63,8 +63,8 @@ impl Layer<'_> {
         period / (period / speckle_size + step.abs())
     }
 
-    /// The amplitudes, as real and imaginary parts, at points whose fractions of the way to the next slice
-    /// are `f`, and their mean squares.
+    /// The amplitudes, as real and imaginary parts, at points whose fractions of the way to the
+    /// next slice are `f`, and their mean squares.
     #[inline(always)]
     pub(super) fn amplitudes<const L: usize>(
         &self,

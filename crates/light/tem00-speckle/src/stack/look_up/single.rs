@@ -12,8 +12,8 @@ impl SpeckleStack {
     /// # Validity
     ///
     /// Rounding the intensity costs 6e−8 of it. Coordinates are exact where they are kept in `f32`
-    /// alone; a place that is rounded to it moves by up to 3e−8 of its distance from 0, half of 2.4e−4
-    /// samples beyond 2048. Whole periods taken off before cost nothing.
+    /// alone; a place that is rounded to it moves by up to 3e−8 of its distance from 0, half of
+    /// 2.4e−4 samples beyond 2048. Whole periods taken off before cost nothing.
     ///
     /// # Panics
     ///

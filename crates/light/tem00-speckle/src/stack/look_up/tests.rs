@@ -94,7 +94,8 @@ proptest! {
         }
     }
 
-    /// Coordinates are whole numbers of 2⁻²⁰, so that those whole periods away are numbers of f64 too.
+    /// Coordinates are whole numbers of 2⁻²⁰, so that those whole periods away are numbers of f64
+    /// too.
     #[test]
     fn look_ups_whole_periods_apart_are_the_same_bits(
         x in -(1_i64 << 33)..1 << 33, y in -(1_i64 << 33)..1 << 33, u in -(1_i64 << 33)..1 << 33,
@@ -136,8 +137,8 @@ proptest! {
         let [width, height] = speckles.map(|count| count * speckle_size);
         let field = PupilField::from_speckle_size(size, speckle_size, 11).unwrap();
         let stack = stack(&field, circle(2));
-        // The oracle is the midpoint rule: over n points it errs by at most π q / (6 n²) of a wave of q
-        // periods, 1e-4. Between two slices there are up to two waves in a speckle.
+        // The oracle is the midpoint rule: over n points it errs by at most π q / (6 n²) of a wave
+        // of q periods, 1e-4. Between two slices there are up to two waves in a speckle.
         let midpoints = |centre: f64, size: f64| {
             let least = (PI * (2.0 * size / speckle_size) / 6e-4).sqrt();
             let count = (1_u32..).find(|count| f64::from(*count) >= least).unwrap();
@@ -218,8 +219,8 @@ fn batches_of_unlike_lengths_are_refused() {
     stack.intensity_batch(&[0.0], &[0.0, 1.0], &[0.0], &mut [0.0]);
 }
 
-/// The look-up between two slices of an external field against fields from single transforms, and their
-/// mean square over the whole tile.
+/// The look-up between two slices of an external field against fields from single transforms, and
+/// their mean square over the whole tile.
 #[test]
 fn slices_of_unlike_light_are_blended_in_one_frame() {
     let stack = stack(&measured([128, 144], 16.0), circle(2));
@@ -240,8 +241,8 @@ fn slices_of_unlike_light_are_blended_in_one_frame() {
     for (x, y) in cells().step_by(7) {
         let expected = blend(x, y) / mean_square;
         let got = stack.intensity_at(x as f64, y as f64, index as f64 + f);
-        // The error of the spline falls with the fourth power of the speckle size: 2e-4 at 4, 8e-7 here. And the
-        // rounding of f32 in some ten operations.
+        // The error of the spline falls with the fourth power of the speckle size: 2e-4 at 4, 8e-7
+        // here. And the rounding of f32 in some ten operations.
         let error = (got - expected).abs() / (1.0 + expected);
         assert!(error < 1e-5, "({x}, {y}): {got} | {expected}");
     }
@@ -250,7 +251,8 @@ fn slices_of_unlike_light_are_blended_in_one_frame() {
 #[test]
 fn fringes_between_slices_are_those_of_both_pupils_together() {
     let field = PupilField::new(64, 16, 1).unwrap();
-    // Four slices, three diameters: the pupil moves by 12 samples of its lattice from one to the next.
+    // Four slices, three diameters: the pupil moves by 12 samples of its lattice from one to the
+    // next.
     let path = SlicePath::Straight {
         half_period: 2,
         length: 3,

@@ -29,8 +29,8 @@ fn gaussian(linewidth: f64) -> SpectralLine {
     SpectralLine::new(650e-9, linewidth, LineShape::Gaussian).unwrap()
 }
 
-/// Means over the line of the speckle factor in a frame, at image points some `offset` from a lattice that is wider than
-/// a speckle, in pixels.
+/// Means over the line of the speckle factor in a frame, at image points some `offset` from a
+/// lattice that is wider than a speckle, in pixels.
 fn picture(
     scene: &Scene,
     model: &SpeckleModel,
@@ -124,7 +124,8 @@ fn contrasts_are_those_of_the_law() {
 
 #[test]
 fn frames_of_motions_along_and_across_the_tilt_are_those_of_the_law() {
-    // What the camera sees the plate move by in a frame, in diameters of its pupil: along the tilt, and across it.
+    // What the camera sees the plate move by in a frame, in diameters of its pupil: along the tilt,
+    // and across it.
     for (way, line, height) in [
         ([0.25, 0.0], gaussian(5e-9), 0.0),
         ([0.0, 0.25], gaussian(5e-9), 0.0),

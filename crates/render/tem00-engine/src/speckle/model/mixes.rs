@@ -12,7 +12,8 @@ use super::{
     Block, Mix, SpeckleFrame, Window, in_samples,
 };
 
-/// The fraction of light below which a pattern counts as even: many such leave a contrast below 0.04.
+/// The fraction of light below which a pattern counts as even: many such leave a contrast below
+/// 0.04.
 const FAINT_PATTERN: f64 = 0.02;
 
 /// Where a point is looked up.
@@ -27,10 +28,12 @@ struct Place {
 }
 
 impl SpeckleFrame<'_> {
-    /// Looks up points in light of one wave number each, drawn from the line of the laser, and in sums of patterns.
+    /// Looks up points in light of one wave number each, drawn from the line of the laser, and in
+    /// sums of patterns.
     ///
-    /// Another wave number sees the pupil displaced along the axis of the surface, as after a motion; and the heights of
-    /// the relief in other phases. Multiple light adds patterns, each at a position of its own.
+    /// Another wave number sees the pupil displaced along the axis of the surface, as after a
+    /// motion; and the heights of the relief in other phases. Multiple light adds patterns, each at
+    /// a position of its own.
     pub(super) fn look_up_mixes(
         &self,
         laser: usize,
@@ -110,7 +113,8 @@ impl SpeckleFrame<'_> {
         }
     }
 
-    /// The intensities, of mean 1, of one of the independent patterns of a component of polarisation.
+    /// The intensities, of mean 1, of one of the independent patterns of a component of
+    /// polarisation.
     fn intensities(
         &self,
         laser: usize,

@@ -29,7 +29,8 @@ pub(super) struct Pattern {
     /// One for each stack.
     fields: Vec<PupilField>,
     path: SlicePath,
-    /// The lattice points about which the slices of each frame lie; empty where one stack holds those of all frames.
+    /// The lattice points about which the slices of each frame lie; empty where one stack holds
+    /// those of all frames.
     middles: Vec<[i64; 2]>,
     /// The slices that the last frame has looked up.
     last: Arc<Mutex<Option<Arc<Window>>>>,

@@ -39,7 +39,8 @@ impl Lattice {
         })
     }
 
-    /// The four cells whose middles surround an image point, with the weights of bilinear interpolation.
+    /// The four cells whose middles surround an image point, with the weights of bilinear
+    /// interpolation.
     pub(super) fn around(self, pixel: DVec2) -> impl Iterator<Item = (usize, f64)> {
         let axis = |position: f64, count: usize| {
             let last = (count - 1) as f64;

@@ -14,28 +14,30 @@ pub(crate) struct MultipleLight {
     /// The mutual coherence in the line of the laser: with itself, and with the single light.
     pub within: f64,
     pub with_single: f64,
-    /// What the motion since the reference frame leaves of its fields, squared, but for the displacement of the pupil:
-    /// of its own, and of the product with that of the single light.
+    /// What the motion since the reference frame leaves of its fields, squared, but for the
+    /// displacement of the pupil: of its own, and of the product with that of the single light.
     pub kept: f64,
     pub kept_with_single: f64,
     /// The degree of polarisation.
     pub polarisation: f64,
-    /// The relative variance over a resolution cell of the speckle that the lit surfaces send there.
+    /// The relative variance over a resolution cell of the speckle that the lit surfaces send
+    /// there.
     pub cascade: f64,
     /// A point where it is seen.
     pub point: SpecklePoint,
 }
 
 impl MultipleLight {
-    /// Returns what has become of the speckle of single and multiple light together, of which this is the given
-    /// `fraction`, at a point, from the shifts of both.
+    /// Returns what has become of the speckle of single and multiple light together, of which this
+    /// is the given `fraction`, at a point, from the shifts of both.
     ///
     /// ```text
     /// γ = |f₁ chat(s₁) + f₂ chat(s₂) ⟨e^{ik(δ − δ₁)}⟩|²
     /// ```
     ///
-    /// s₁ is the displacement of the pupil over the speckle of the single light; s₂ that without the source, which other
-    /// surfaces take the place of: their paths change by δ, over which the mean is taken.
+    /// s₁ is the displacement of the pupil over the speckle of the single light; s₂ that without
+    /// the source, which other surfaces take the place of: their paths change by δ, over which the
+    /// mean is taken.
     pub(in crate::speckle) fn shift(
         &self,
         [single, multiple]: [SpeckleShift; 2],

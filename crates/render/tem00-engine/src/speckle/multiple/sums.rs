@@ -28,11 +28,13 @@ pub(crate) struct MultipleSums {
 pub(crate) struct MultiplePath {
     /// In W/(m² sr).
     pub radiance: f64,
-    /// The optical path beyond that of the single light, in metres, and what motion has added to it.
+    /// The optical path beyond that of the single light, in metres, and what motion has added to
+    /// it.
     pub delay: f64,
     pub added: f64,
     pub polarisation: f64,
-    /// Where in the pupil a change of the direction from which it arrives moves the field, in pupil diameters.
+    /// Where in the pupil a change of the direction from which it arrives moves the field, in pupil
+    /// diameters.
     pub pupil: DVec3,
 }
 
@@ -52,8 +54,8 @@ impl MultipleSums {
         }
     }
 
-    /// Sums over the pairs of two independent groups, of so many paths each, to a point that has the radiance `single` of
-    /// light which has met its surface only.
+    /// Sums over the pairs of two independent groups, of so many paths each, to a point that has
+    /// the radiance `single` of light which has met its surface only.
     pub(crate) fn of_groups(
         line: &SpectralLine,
         (point, single): (SpecklePoint, f64),

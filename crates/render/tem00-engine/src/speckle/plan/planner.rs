@@ -27,7 +27,8 @@ pub(super) struct Planner<'a> {
     pub lights: &'a [SurfaceLight],
 }
 
-/// The largest change of the motion of the pupil from speckle to speckle, in its diameters, that leaves their size.
+/// The largest change of the motion of the pupil from speckle to speckle, in its diameters, that
+/// leaves their size.
 const WIDEST_SPREAD: f64 = 0.25;
 
 /// The patterns that the speckle of a surface is the sum of.

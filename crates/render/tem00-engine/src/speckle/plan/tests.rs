@@ -101,8 +101,8 @@ fn nothing_repeats_within_the_image() {
 #[test]
 fn motion_of_several_frames_widens_the_pattern_and_asks_for_slices() {
     let three = plan(&scene(3, 2e-3 * DVec3::X));
-    // 4 mm are 105.4 pixels: 405.4 pixels hold 246.6 speckles. The pupil of 3.125 mm is left behind,
-    // so that the path of the slices is three diameters long.
+    // 4 mm are 105.4 pixels: 405.4 pixels hold 246.6 speckles. The pupil of 3.125 mm is left
+    // behind, so that the path of the slices is three diameters long.
     assert_eq!(three.stack().size(), [512, 256], "{three}");
     assert_absolute(three.largest_shift(), 4.0 / 3.125, 1e-2);
     let (half_period, length) = (48, 3);
@@ -288,8 +288,8 @@ fn slices_that_do_not_fit_the_memory_are_those_of_one_frame_at_a_time() {
 
 #[test]
 fn frames_share_no_speckle_while_a_smaller_field_fits_the_memory() {
-    // 1.28 diameters take a path of 3, of 12 slices or more: 12 MiB of 512 × 256 samples for the image
-    // and where it came from, 9 MiB of 384 × 256 for the image alone.
+    // 1.28 diameters take a path of 3, of 12 slices or more: 12 MiB of 512 × 256 samples for the
+    // image and where it came from, 9 MiB of 384 × 256 for the image alone.
     let plan = |mebibytes| plan_within(mebibytes, scene(3, 2e-3 * DVec3::X));
     for (memory, width) in [(12.0, 512), (11.0, 384), (9.0, 384)] {
         let plan = plan(memory).unwrap();
@@ -301,7 +301,8 @@ fn frames_share_no_speckle_while_a_smaller_field_fits_the_memory() {
 
 #[test]
 fn every_frame_of_a_long_sequence_is_sampled() {
-    // A plate of 0.1 m leaves the field after so many frames; 16 that are spread evenly would see it in the first.
+    // A plate of 0.1 m leaves the field after so many frames; 16 that are spread evenly would see
+    // it in the first.
     for (frames, step, seen) in [(65, 2e-3, 27.0), (1000, 6.25e-3, 8.0), (1000, 12.5e-3, 4.0)] {
         let plan = plan_within(8192.0, scene(frames, step * DVec3::X)).unwrap();
         assert_absolute(plan.largest_shift(), step / 3.125e-3 * seen, 0.02);

@@ -25,7 +25,8 @@ pub(super) struct FrameSample {
     pub kept: Vec<ReferencePoint>,
 }
 
-/// Samples one frame with so many rays per image side, and keeps the points of the middle one of so many along each.
+/// Samples one frame with so many rays per image side, and keeps the points of the middle one of so
+/// many along each.
 pub(super) fn frame_samples(
     laser_groups: LaserGroups<'_>,
     intersector: &Intersector,

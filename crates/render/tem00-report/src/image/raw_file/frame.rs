@@ -35,7 +35,8 @@ pub struct RawImage {
     pub saturated: Grid<bool>,
     /// A description of what was read from the file.
     pub interpretation: String,
-    /// The way in which viewers turn the image, from 1 (not at all) to 8; here its rows are those of the sensor.
+    /// The way in which viewers turn the image, from 1 (not at all) to 8; here its rows are those
+    /// of the sensor.
     pub orientation: u16,
     /// `true` if the file has images after this one.
     pub has_further_images: bool,

@@ -14,7 +14,8 @@ const LONGEST_SIDE: usize = 65_535;
 /// The most pixels of a byte of coded data: a block of 64 has a bit at least.
 const PIXELS_PER_BYTE: u64 = 64 * 8;
 
-/// Coded ones, which no complete image reads: no Huffman code consists of ones (ITU-T T.81, annex C).
+/// Coded ones, which no complete image reads: no Huffman code consists of ones (ITU-T T.81, annex
+/// C).
 const ONES: [u8; 64] = {
     let mut ones = [0xff; 64];
     let mut index = 1;
@@ -82,8 +83,8 @@ fn without_the_end(error: DecodeErrors) -> ImageError {
     error.into()
 }
 
-/// Returns the position of the marker at the end of the first image; none if it is not there, or if restarts or scans
-/// before it are missing.
+/// Returns the position of the marker at the end of the first image; none if it is not there, or if
+/// restarts or scans before it are missing.
 fn end_of_image(file: &[u8]) -> Option<usize> {
     const END: u8 = 0xd9;
     let byte = |at: usize| file.get(at).copied().map(usize::from);
@@ -124,7 +125,8 @@ fn end_of_image(file: &[u8]) -> Option<usize> {
     }
 }
 
-/// The coefficients of a progressive image that its scans have brought to their last bit, by component.
+/// The coefficients of a progressive image that its scans have brought to their last bit, by
+/// component.
 #[derive(Default)]
 struct Scans {
     /// The name of each component, and a bit for each coefficient.
@@ -139,8 +141,8 @@ impl Scans {
         self.done = names.filter(|_| is_progressive).collect();
     }
 
-    /// Adds a scan: two bytes of each of its components, the first and the last coefficient, and the bits that are left in
-    /// the lower half of a byte.
+    /// Adds a scan: two bytes of each of its components, the first and the last coefficient, and
+    /// the bits that are left in the lower half of a byte.
     fn add(&mut self, scan: &[u8]) {
         let [components @ .., first, last, bits] = scan else {
             return;

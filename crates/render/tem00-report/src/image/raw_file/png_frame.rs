@@ -45,9 +45,9 @@ pub(super) fn read(reader: impl BufRead + Seek) -> Result<Samples, ImageError> {
     })
 }
 
-/// Returns the reader of a PNG file of any colour type and depth, and its number of pixels, once it is known
-/// that the file can have as many and that there is memory for them: what the reader needs, and so many bytes
-/// of each component and of each pixel.
+/// Returns the reader of a PNG file of any colour type and depth, and its number of pixels, once it
+/// is known that the file can have as many and that there is memory for them: what the reader
+/// needs, and so many bytes of each component and of each pixel.
 fn decoder<R: BufRead + Seek>(
     mut source: R,
     [per_component, per_pixel]: [usize; 2],
@@ -82,7 +82,8 @@ fn extend(values: &mut Vec<f32>, data: &[u8], stored: u32) {
     }
 }
 
-/// The curve by the chunk that goes before the others (PNG, third edition, 4.3): cICP, iCCP, sRGB, gAMA.
+/// The curve by the chunk that goes before the others (PNG, third edition, 4.3): cICP, iCCP, sRGB,
+/// gAMA.
 fn curve(info: &png::Info<'_>) -> StoredCurve {
     let gamma = info.gama_chunk.map(png::ScaledFloat::into_scaled);
     if let Some(points) = info.coding_independent_code_points {

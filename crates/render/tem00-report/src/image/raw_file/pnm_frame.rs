@@ -58,8 +58,8 @@ pub(super) fn read(mut reader: impl BufRead + Seek) -> Result<Samples, ImageErro
     })
 }
 
-/// Takes the first of two characters away with which a header ends on Windows, before pixels in bytes: its other lines
-/// tell, and if it has none the length.
+/// Takes the first of two characters away with which a header ends on Windows, before pixels in
+/// bytes: its other lines tell, and if it has none the length.
 fn end_header_in_one_character(file: &mut Vec<u8>) -> Result<(), ImageError> {
     let mut rest = &file[..];
     let decoder = PnmDecoder::new(&mut rest)?;

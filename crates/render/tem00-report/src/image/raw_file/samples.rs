@@ -18,7 +18,8 @@ pub(in crate::image) struct Samples {
     pub(super) components: Components,
     /// All components of all pixels, in DN.
     pub(super) values: Vec<f32>,
-    /// The bits of a grey value, as the file says or as it stores them; none of numbers without a largest value.
+    /// The bits of a grey value, as the file says or as it stores them; none of numbers without a
+    /// largest value.
     pub(super) bit_depth: Option<u32>,
     /// The relation of grey values to light, from the file.
     pub(super) curve: StoredCurve,
@@ -157,8 +158,8 @@ impl JudgedSamples {
         })
     }
 
-    /// Returns the light: in units of the largest that the grey values can hold, if there is one. What `reading`
-    /// asks for overrules what the file says.
+    /// Returns the light: in units of the largest that the grey values can hold, if there is one.
+    /// What `reading` asks for overrules what the file says.
     pub(in crate::image) fn light(self, reading: &Reading<'_>) -> Result<LoadedImage, ImageError> {
         let samples = &self.samples;
         let selection = Selection::new(samples.components, reading.channel)?;
@@ -242,8 +243,8 @@ impl JudgedSamples {
         levels.all(|level| level.is_finite())
     }
 
-    /// Returns what was taken from the file, and from which value on it counts as saturated where that is not
-    /// its largest.
+    /// Returns what was taken from the file, and from which value on it counts as saturated where
+    /// that is not its largest.
     fn description(&self, selection: &Selection, differ: &str) -> String {
         let samples = &self.samples;
         let bits = samples
@@ -267,7 +268,8 @@ impl JudgedSamples {
         format!("{taken}{differ}{bits}{remark}{level}")
     }
 
-    /// Returns the smallest difference of two grey values of one chosen component, if they are whole numbers.
+    /// Returns the smallest difference of two grey values of one chosen component, if they are
+    /// whole numbers.
     fn step(&self, selection: &Selection) -> Option<f32> {
         let bits = self.samples.bit_depth?;
         let steps = (0..selection.chosen.len()).filter_map(|component| {

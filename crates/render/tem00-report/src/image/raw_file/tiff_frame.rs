@@ -90,7 +90,8 @@ fn whole(mut decoder: Decoder<impl Read + Seek>, area: usize) -> Result<Pixels, 
     })
 }
 
-/// Returns numbers in single precision, their bits where they have a largest value, and what they are.
+/// Returns numbers in single precision, their bits where they have a largest value, and what they
+/// are.
 fn numbers(read: DecodingResult) -> (Vec<f32>, Option<u32>, &'static str) {
     const SIGNED: &str = ", signed numbers";
     const FRACTIONS: &str = ", floating-point numbers";

@@ -1,7 +1,7 @@
 //! TIFF files whose grey values are not whole bytes, or are indices of a palette.
 //!
-//! The library for TIFF leaves them out. Its rows of bytes are what both consist of: the tags are changed so that it
-//! reads those, and the values are taken out of them here.
+//! The library for TIFF leaves them out. Its rows of bytes are what both consist of: the tags are
+//! changed so that it reads those, and the values are taken out of them here.
 
 use std::io::{Cursor, Read, Seek};
 
@@ -103,7 +103,8 @@ impl Packing {
     fn set(&self, file: &mut [u8], tag: Tag, value: usize) -> Option<()> {
         const LONG: u64 = 4;
         let is_big = matches!(file.get(2..4)?, [43, 0] | [0, 43]);
-        // The bytes of the number of entries, of an entry and of its fields: tag, type, count, value.
+        // The bytes of the number of entries, of an entry and of its fields: tag, type, count,
+        // value.
         let (head, length, field) = if is_big { (8, 20, 8) } else { (2, 12, 4) };
         let entries = self.number(file, self.directory, head)?;
         let mut places = (0..usize::try_from(entries).ok()?)
@@ -183,7 +184,8 @@ pub(super) fn read(
     Ok(coloured(numbers, palette))
 }
 
-/// Returns the colours of a palette: grey where all of them are, and of 8 bits where 16 say no more.
+/// Returns the colours of a palette: grey where all of them are, and of 8 bits where 16 say no
+/// more.
 fn coloured(numbers: impl Iterator<Item = usize>, palette: &[u16]) -> Pixels {
     let count = palette.len() / 3;
     let colour = |index: usize| [0, 1, 2].map(|part| palette[part * count + index]);

@@ -22,8 +22,8 @@ fn broken_obj_files_are_explained() {
     }
 }
 
-/// Asserts what is said about a file in which one thing is replaced: each row has that, the replacement and how the
-/// message begins.
+/// Asserts what is said about a file in which one thing is replaced: each row has that, the
+/// replacement and how the message begins.
 #[track_caller]
 pub(super) fn assert_broken(name: &str, text: &str, table: &str) {
     for [from, to, expected] in rows(table) {

@@ -4,8 +4,8 @@ use glam::DQuat;
 
 use super::{broken::assert_broken, *};
 
-/// A buffer of the pyramid's vertices (offset 0), the corners of its sides (60, bytes) and of its base
-/// (72, shorts), and one normal for each vertex (84).
+/// A buffer of the pyramid's vertices (offset 0), the corners of its sides (60, bytes) and of its
+/// base (72, shorts), and one normal for each vertex (84).
 pub(super) fn pyramid_buffer() -> Vec<u8> {
     let mut bytes = VERTICES
         .as_flattened()

@@ -1,7 +1,7 @@
 use super::*;
 
-/// A roof with a normal of its own for each side, and a gable without normals. One corner of the right
-/// side repeats a pair, and one normal comes after its face.
+/// A roof with a normal of its own for each side, and a gable without normals. One corner of the
+/// right side repeats a pair, and one normal comes after its face.
 const ROOF: &str = "\
 v 0 0 0
 v 1 0 1

@@ -1,4 +1,5 @@
-//! Tests of the formats that cameras and their programs write, made byte by byte or by another program.
+//! Tests of the formats that cameras and their programs write, made byte by byte or by another
+//! program.
 
 use std::io::Cursor;
 
@@ -25,7 +26,8 @@ fn light(file: &[u8], format: RawFormat, transfer: Option<Transfer>) -> LoadedIm
     light.expect("the file is light")
 }
 
-/// A bitmap of so many bits and rows from the bottom up, with its rows given as they stand in the file.
+/// A bitmap of so many bits and rows from the bottom up, with its rows given as they stand in the
+/// file.
 fn bitmap(size: [i32; 2], bits: u16, palette: &[[u8; 4]], rows: &[u8]) -> Vec<u8> {
     let colours = u32::try_from(palette.len()).expect("a palette");
     let mut file = b"BM\0\0\0\0\0\0\0\0".to_vec();

@@ -10,9 +10,10 @@ use crate::image::{ImageError, LoadedImage, RawImage, Reading};
 /// An entry of a directory: its tag, and its numbers of 16 bits.
 type Entry = (u16, Vec<u16>);
 
-/// Returns the entries of a directory: `tag:number,number`. Beside those of every file, the tags are 258 (bits), 262 (0 white
-/// is zero, 1 black is zero, 2 RGB, 3 palette, 5 inks), 277 (samples), 284 (2 planes), 259 (compression), 339 (2 signed,
-/// 3 floating-point numbers), 320 (palette), 338 (2 opacity, 1 the same, multiplied), 266 (2 bits in reverse), 274 (orientation).
+/// Returns the entries of a directory: `tag:number,number`. Beside those of every file, the tags
+/// are 258 (bits), 262 (0 white is zero, 1 black is zero, 2 RGB, 3 palette, 5 inks), 277 (samples),
+/// 284 (2 planes), 259 (compression), 339 (2 signed, 3 floating-point numbers), 320 (palette), 338
+/// (2 opacity, 1 the same, multiplied), 266 (2 bits in reverse), 274 (orientation).
 fn entries(text: &str) -> Vec<Entry> {
     let number = |word: &str| word.parse().expect(word);
     let entry = |word: &str| {
@@ -89,8 +90,9 @@ fn tiff(order: &str, size: [u16; 2], entries: &str, strips: &[&[u8]]) -> Vec<u8>
 
 #[test]
 fn grey_values_of_all_kinds_are_read() {
-    // Three pixels: order of bytes and entries, their bytes, their values, and their bits, 0 without a largest value. Rows are
-    // whole bytes, the highest bits first; PackBits has a run of five bytes as they are.
+    // Three pixels: order of bytes and entries, their bytes, their values, and their bits, 0
+    // without a largest value. Rows are whole bytes, the highest bits first; PackBits has a run of
+    // five bytes as they are.
     let table = "
         II 258:12 262:1 => 12 3a bc ff f0 => 291 2748 4095 => 12
         MM 258:12 262:1 => 12 3a bc ff f0 => 291 2748 4095 => 12
@@ -132,8 +134,8 @@ fn grey_values_of_all_kinds_are_read() {
 
 #[test]
 fn colours_stand_pixel_by_pixel_in_planes_or_in_a_palette() {
-    // Two pixels: entries, strips, and what is added to all values. Palettes have 8 bits, twice in 16 or in their upper half,
-    // or 16.
+    // Two pixels: entries, strips, and what is added to all values. Palettes have 8 bits, twice in
+    // 16 or in their upper half, or 16.
     let table = "
         II 258:8,8,8 262:2 277:3 => 09 0a 14 50 5a 64 => 0
         II 258:8,8,8 262:2 277:3 284:2 => 09 50/0a 5a/14 64 => 0

@@ -183,17 +183,19 @@ typedef enum {
 } tem00_line_shape;
 
 /**
- * The light of a laser with a linewidth in one resolution cell of a camera. It never changes: any number of threads may ask it
- * at once.
+ * The light of a laser with a linewidth in one resolution cell of a camera. It never changes: any
+ * number of threads may ask it at once.
  *
- * To show it, draw a wave for each camera sample, and add what it finds in the stacks of pattern j and height h:
+ * To show it, draw a wave for each camera sample, and add what it finds in the stacks of pattern j
+ * and height h:
  *
  * `I = sum_j patterns[j] |sum_h heights[2h + 1] exp(i heights[2h] wave.phase_per_height) U_jh(x, y, u)|^2`
  *
- * `U_jh` is `tem00_stack_amplitude` of stacks of one description but their own seeds, on a straight path whose x axis
- * leads along `tilt` in the image. The shift of the wave adds to u: `wave.pupil_shift` times the slices of a diameter,
- * `2 half_period / length`. With 32 of them the contrast is right to 1 %, with 8 it is 4 % too high. Without heights
- * the intensities of one wavelength add, `I = sum_j patterns[j] I_j`.
+ * `U_jh` is `tem00_stack_amplitude` of stacks of one description but their own seeds, on a
+ * straight path whose x axis leads along `tilt` in the image. The shift of the wave adds to u:
+ * `wave.pupil_shift` times the slices of a diameter, `2 half_period / length`. With 32 of them the
+ * contrast is right to 1 %, with 8 it is 4 % too high. Without heights the intensities of one
+ * wavelength add, `I = sum_j patterns[j] I_j`.
  */
 typedef struct tem00_bandwidth tem00_bandwidth;
 
@@ -204,8 +206,8 @@ typedef struct tem00_bandwidth tem00_bandwidth;
 typedef struct tem00_camera tem00_camera;
 
 /**
- * A camera focused on a surface: a lens, its pupils and the sensor behind it. It never changes: any
- * number of threads may ask it at once.
+ * A camera focused on a surface: a lens, its pupils and the sensor behind it. It never changes:
+ * any number of threads may ask it at once.
  */
 typedef struct tem00_imaging tem00_imaging;
 
@@ -282,8 +284,8 @@ typedef struct {
 } tem00_spot_description;
 
 /**
- * An elliptic Gaussian beam with two principal axes, as of a laser diode. Its arrays hold the value
- * of the first axis, then that of the second; a refusal names one as "`waist_radius[1]`".
+ * An elliptic Gaussian beam with two principal axes, as of a laser diode. Its arrays hold the
+ * value of the first axis, then that of the second; a refusal names one as "`waist_radius[1]`".
  */
 typedef struct {
     /**
@@ -621,7 +623,8 @@ typedef struct {
 } tem00_next_event_columns_f32;
 
 /**
- * A light as plain numbers in single precision: what a kernel that cannot call a library evaluates.
+ * A light as plain numbers in single precision: what a kernel that cannot call a library
+ * evaluates.
  */
 typedef struct {
     /**
@@ -680,8 +683,8 @@ typedef struct {
      */
     double principal_offset[2];
     /**
-     * Angle by which the sensor is tilted, right-handed about a line in it, and the azimuth of that
-     * line, from the right of the image towards its top; both in radians.
+     * Angle by which the sensor is tilted, right-handed about a line in it, and the azimuth of
+     * that line, from the right of the image towards its top; both in radians.
      */
     double tilt[2];
     /**
@@ -805,8 +808,9 @@ typedef struct {
      */
     double displacement[2];
     /**
-     * Displacement of the pupil over the speckle, in pupil diameters. A motion along the axis counts
-     * by the displacement that leaves the same correlation. Infinite where the speckle is new.
+     * Displacement of the pupil over the speckle, in pupil diameters. A motion along the axis
+     * counts by the displacement that leaves the same correlation. Infinite where the speckle is
+     * new.
      */
     double pupil_shift;
     /**
@@ -829,8 +833,8 @@ typedef struct {
      */
     size_t height;
     /**
-     * Diameter of the pupil along the width, in lattice points: the speckles after which the pattern
-     * repeats, from 8 to half the width. 0 if `speckle_size` is to say it.
+     * Diameter of the pupil along the width, in lattice points: the speckles after which the
+     * pattern repeats, from 8 to half the width. 0 if `speckle_size` is to say it.
      */
     size_t diameter;
     /**
@@ -859,8 +863,8 @@ typedef struct {
      */
     uint64_t memory_limit;
     /**
-     * Number of threads that generate it, at most 1024; 0 for all the cores of the machine. The stack is
-     * the same, to the last bit, for any number.
+     * Number of threads that generate it, at most 1024; 0 for all the cores of the machine. The
+     * stack is the same, to the last bit, for any number.
      */
     uint32_t threads;
 } tem00_stack_description;
@@ -874,8 +878,8 @@ typedef struct {
      */
     double image[2];
     /**
-     * Width and height of all that is looked up in any frame, in pixels: the image, and what motion
-     * brings in.
+     * Width and height of all that is looked up in any frame, in pixels: the image, and what
+     * motion brings in.
      */
     double region[2];
     /**
@@ -939,8 +943,8 @@ typedef struct {
 } tem00_stack_info;
 
 /**
- * The light of a laser, and how a camera sees the surface that it lights, in focus. Directions lead away from the surface, of any
- * length; lengths in metres.
+ * The light of a laser, and how a camera sees the surface that it lights, in focus. Directions
+ * lead away from the surface, of any length; lengths in metres.
  */
 typedef struct {
     /**
@@ -968,8 +972,8 @@ typedef struct {
      */
     double to_source[3];
     /**
-     * Half-angle of the disc from which light reaches the surface, seen from there, at most 0.3 rad; 0 for a point. Light of
-     * its parts does not interfere.
+     * Half-angle of the disc from which light reaches the surface, seen from there, at most 0.3
+     * rad; 0 for a point. Light of its parts does not interfere.
      */
     double source_half_angle;
     /**
@@ -989,7 +993,8 @@ typedef struct {
      */
     double rms_height;
     /**
-     * Distance at which the correlation of the heights falls to 1/e, at most 1 mm; 0 if they differ as soon as scatterers do.
+     * Distance at which the correlation of the heights falls to 1/e, at most 1 mm; 0 if they
+     * differ as soon as scatterers do.
      */
     double correlation_length;
 } tem00_bandwidth_description;
@@ -1007,16 +1012,19 @@ typedef struct {
      */
     double coherence_length;
     /**
-     * Unit vector along which the field moves across the pupil where the wave number grows; 0, 0, 0 without a tilt of the cell.
+     * Unit vector along which the field moves across the pupil where the wave number grows; 0, 0,
+     * 0 without a tilt of the cell.
      */
     double tilt[3];
     /**
-     * Difference of wave numbers that moves it by the pupil's diameter, in rad/m; infinite without a tilt.
+     * Difference of wave numbers that moves it by the pupil's diameter, in rad/m; infinite without
+     * a tilt.
      */
     double tilt_wave_number;
     /**
-     * Fractions of the light in patterns whose intensities add: one; or, of heights that dominate or of the directions of a
-     * source, as many as its contrast asks for, at most 1024. They belong to the handle.
+     * Fractions of the light in patterns whose intensities add: one; or, of heights that dominate
+     * or of the directions of a source, as many as its contrast asks for, at most 1024. They
+     * belong to the handle.
      */
     const double *patterns;
     /**
@@ -1024,8 +1032,8 @@ typedef struct {
      */
     size_t pattern_count;
     /**
-     * Heights of the relief in metres whose fields add, each with the root of its fraction of the light. They belong
-     * to the handle.
+     * Heights of the relief in metres whose fields add, each with the root of its fraction of the
+     * light. They belong to the handle.
      */
     const double *heights;
     /**
@@ -1191,9 +1199,9 @@ const char *tem00_version(void);
  * Returns why the last call that failed on this thread failed, in UTF-8, with the parameter, its
  * value and what is allowed; empty if none has failed.
  *
- * The text stays in one place for as long as the thread lives: the pointer never dangles meanwhile, and
- * after the next call that fails on this thread it has the text of that one. Copy what is to be kept
- * longer. Not to be freed. Messages are cut off after 2047 bytes.
+ * The text stays in one place for as long as the thread lives: the pointer never dangles
+ * meanwhile, and after the next call that fails on this thread it has the text of that one. Copy
+ * what is to be kept longer. Not to be freed. Messages are cut off after 2047 bytes.
  */
 const char *tem00_last_error(void);
 
@@ -1254,22 +1262,21 @@ tem00_status tem00_light_irradiance(const tem00_light *light,
                                     double *irradiance);
 
 /**
- * Computes the energy-flow vector at `point`, in W/m²: a surface whose normal n lies on the lit side
- * receives the irradiance max(0, -flux . n).
+ * Computes the energy-flow vector at `point`, in W/m²: a surface whose normal n lies on the lit
+ * side receives the irradiance max(0, -flux . n).
  *
  * `point` and `flux` hold x, y, z.
  *
  * The pointers are null or valid, `flux` for three numbers.
  */
-tem00_status tem00_light_flux(const tem00_light *light,
-                              const double *point,
-                              double *flux);
+tem00_status tem00_light_flux(const tem00_light *light, const double *point, double *flux);
 
 /**
  * Computes the light at `point` as one direction, that of the mean energy flow: a delta light.
  *
- * A surface of normal n reflects f |n . wi| V times `e_perp`. Where it is dark, beyond the cut-off and behind
- * the aperture, all of `event` is 0 and no shadow ray is needed. `point` holds x, y, z in metres.
+ * A surface of normal n reflects f |n . wi| V times `e_perp`. Where it is dark, beyond the cut-off
+ * and behind the aperture, all of `event` is 0 and no shadow ray is needed. `point` holds x, y, z
+ * in metres.
  *
  * The pointers are null or valid.
  */
@@ -1289,8 +1296,8 @@ tem00_status tem00_light_next_event_f32(const tem00_light *light,
 /**
  * Draws a direction from the light that arrives at `point`, with two random numbers `u` in [0, 1).
  *
- * The estimate of the reflected radiance is f |n . wi| V times `value`, which has been divided by the
- * density. Where it is dark, all of `event` is 0. `point` holds x, y, z in metres.
+ * The estimate of the reflected radiance is f |n . wi| V times `value`, which has been divided by
+ * the density. Where it is dark, all of `event` is 0. `point` holds x, y, z in metres.
  *
  * The pointers are null or valid.
  */
@@ -1315,7 +1322,8 @@ tem00_status tem00_light_next_event_pdf(const tem00_light *light,
 /**
  * Draws a ray that leaves the aperture, with four random numbers `u` in [0, 1).
  *
- * Every ray stands for the same power, so straight rays reproduce the irradiance at every distance.
+ * Every ray stands for the same power, so straight rays reproduce the irradiance at every
+ * distance.
  *
  * The pointers are null or valid.
  */
@@ -1364,8 +1372,8 @@ tem00_status tem00_light_bounds(const tem00_light *light, double distance, tem00
 tem00_status tem00_light_describe(const tem00_light *light, tem00_light_info *info);
 
 /**
- * Finds the light that a ray from `point` along `wi` meets, for a direction that a material has drawn:
- * the other technique beside `tem00_light_next_event_sampled`.
+ * Finds the light that a ray from `point` along `wi` meets, for a direction that a material has
+ * drawn: the other technique beside `tem00_light_next_event_sampled`.
  *
  * A direction of the density q, per steradian, has the weight q / (q + `pdf`) of the balance
  * heuristic. Only what is nearer than `distance` hides the light. Where the ray meets none, all of
@@ -1379,8 +1387,8 @@ tem00_status tem00_light_hit(const tem00_light *light,
                              tem00_aperture_hit *hit);
 
 /**
- * Computes a bound of the power, in watts, that reaches the box from `min` to `max`, for a hierarchy
- * of lights: 0 if the box is behind the aperture, beyond the cut-off or empty.
+ * Computes a bound of the power, in watts, that reaches the box from `min` to `max`, for a
+ * hierarchy of lights: 0 if the box is behind the aperture, beyond the cut-off or empty.
  *
  * `min` and `max` hold x, y, z in metres.
  *
@@ -1421,8 +1429,8 @@ tem00_status tem00_light_irradiance_batch_f32(const tem00_light *light,
 /**
  * Computes the next events at `count` points: the bits of `tem00_light_next_event`.
  *
- * `x`, `y`, `z` hold the coordinates, in metres. The columns of `events` are written; they must not
- * overlap with each other nor with the coordinates.
+ * `x`, `y`, `z` hold the coordinates, in metres. The columns of `events` are written; they must
+ * not overlap with each other nor with the coordinates.
  *
  * The pointers are null or valid for `count` numbers.
  */
@@ -1449,8 +1457,8 @@ tem00_status tem00_light_next_event_batch_f32(const tem00_light *light,
  * Draws a direction from the light that arrives at each of `count` points: the bits of
  * `tem00_light_next_event_sampled`.
  *
- * `points` holds x, y, z in metres of one point after the other, `u` two random numbers in [0, 1) for
- * each; `events` must not overlap with them. Where it is dark, all of an event is 0.
+ * `points` holds x, y, z in metres of one point after the other, `u` two random numbers in [0, 1)
+ * for each; `events` must not overlap with them. Where it is dark, all of an event is 0.
  *
  * The pointers are null or valid, for `3 * count` and `2 * count` numbers and for `count` events.
  */
@@ -1528,8 +1536,8 @@ tem00_status tem00_camera_project(const tem00_camera *camera, const double *poin
  * state: chooses sizes, slices and seeds for the motions and the memory. `tem00_speckle_describe`
  * says what it chose.
  *
- * The light must be a spot or a line; its wavelength counts as that in vacuum. Speckle does not need
- * camera and light any more once it is created. On failure `*speckle` is null.
+ * The light must be a spot or a line; its wavelength counts as that in vacuum. Speckle does not
+ * need camera and light any more once it is created. On failure `*speckle` is null.
  *
  * The pointers are null or valid, those to points and normals for three numbers each.
  */
@@ -1650,14 +1658,14 @@ tem00_status tem00_speckle_frame_shift(const tem00_speckle_frame *frame,
 void tem00_stack_destroy(tem00_stack *stack);
 
 /**
- * Generates a stack, 8 bytes for each sample of each slice, on the threads that its description asks for.
+ * Generates a stack, 8 bytes for each sample of each slice, on the threads that its description
+ * asks for.
  *
  * On failure `*stack` is null.
  *
  * The pointers are null or valid.
  */
-tem00_status tem00_stack_create(const tem00_stack_description *description,
-                                tem00_stack **stack);
+tem00_status tem00_stack_create(const tem00_stack_description *description, tem00_stack **stack);
 
 /**
  * Chooses a stack that repeats nothing in the region and takes no more memory than allowed: writes
@@ -1686,10 +1694,11 @@ tem00_status tem00_stack_intensity(const tem00_stack *stack,
                                    double *intensity);
 
 /**
- * Looks up the amplitude whose squared magnitude is the intensity, for light whose fields add: `amplitude` holds its
- * real and imaginary part.
+ * Looks up the amplitude whose squared magnitude is the intensity, for light whose fields add:
+ * `amplitude` holds its real and imaginary part.
  *
- * It is the field in the frame of the pupil of the slice at u or before it: stacks along one path have one frame.
+ * It is the field in the frame of the pupil of the slice at u or before it: stacks along one path
+ * have one frame.
  *
  * The pointers are null or valid, `amplitude` for two numbers.
  */
@@ -1715,7 +1724,8 @@ tem00_status tem00_stack_intensity_batch(const tem00_stack *stack,
                                          double *intensity);
 
 /**
- * As `tem00_stack_intensity_batch`, in single precision: the intensities at these coordinates, rounded.
+ * As `tem00_stack_intensity_batch`, in single precision: the intensities at these coordinates,
+ * rounded.
  *
  * A place that is rounded to single precision moves by up to 3e-8 of its distance from 0: take off
  * whole periods before.
@@ -1730,8 +1740,8 @@ tem00_status tem00_stack_intensity_batch_f32(const tem00_stack *stack,
                                              float *intensity);
 
 /**
- * Computes the means of the intensity over boxes about `count` points, in single precision: those of
- * `tem00_stack_average` at these coordinates, rounded.
+ * Computes the means of the intensity over boxes about `count` points, in single precision: those
+ * of `tem00_stack_average` at these coordinates, rounded.
  *
  * `size` holds the width and the height of the boxes, in samples.
  *
@@ -1746,8 +1756,8 @@ tem00_status tem00_stack_average_batch_f32(const tem00_stack *stack,
                                            float *average);
 
 /**
- * Computes the mean of the intensity over a box about `centre`, at `u`: what a pixel sees whose whole
- * area takes part.
+ * Computes the mean of the intensity over a box about `centre`, at `u`: what a pixel sees whose
+ * whole area takes part.
  *
  * `centre` holds x, y and `size` the width and the height of the box, all in samples; `u` is in
  * slices.
@@ -1761,16 +1771,16 @@ tem00_status tem00_stack_average(const tem00_stack *stack,
                                  double *average);
 
 /**
- * Computes the coordinate u, in slices, at which the intensity has a given `correlation` to that at
- * u = 0: 0 for 1 or more, and the first slice of no correlation for 0 or less.
+ * Computes the coordinate u, in slices, at which the intensity has a given `correlation` to that
+ * at u = 0: 0 for 1 or more, and the first slice of no correlation for 0 or less.
  *
  * The pointers are null or valid.
  */
 tem00_status tem00_stack_coordinate_of(const tem00_stack *stack, double correlation, double *u);
 
 /**
- * Computes the correlation of the intensities at u = 0 and u = `distance`, in slices: the inverse of
- * `tem00_stack_coordinate_of`.
+ * Computes the correlation of the intensities at u = 0 and u = `distance`, in slices: the inverse
+ * of `tem00_stack_coordinate_of`.
  *
  * The pointers are null or valid.
  */
@@ -1779,7 +1789,8 @@ tem00_status tem00_stack_correlation_at(const tem00_stack *stack,
                                         double *correlation);
 
 /**
- * Computes the correlation of the intensities at two coordinates u and v, on slices or between, exactly.
+ * Computes the correlation of the intensities at two coordinates u and v, on slices or between,
+ * exactly.
  *
  * The pointers are null or valid.
  */
@@ -1789,8 +1800,8 @@ tem00_status tem00_stack_correlation_between(const tem00_stack *stack,
                                              double *correlation);
 
 /**
- * Gives the coefficients of a slice, for upload to a GPU: width * height complex numbers row by row,
- * each a real and an imaginary part.
+ * Gives the coefficients of a slice, for upload to a GPU: width * height complex numbers row by
+ * row, each a real and an imaginary part.
  *
  * They are the samples of the amplitude, or for the cubic spline its prefiltered coefficients, and
  * belong to the stack.
@@ -1809,8 +1820,8 @@ tem00_status tem00_stack_coefficients(const tem00_stack *stack,
 tem00_status tem00_stack_offset(const tem00_stack *stack, size_t slice, double *offset);
 
 /**
- * Prepares the light of a laser with a linewidth: in milliseconds, or in seconds for a correlation length of a thousand
- * speckles. One serves all places at which the directions differ by little.
+ * Prepares the light of a laser with a linewidth: in milliseconds, or in seconds for a correlation
+ * length of a thousand speckles. One serves all places at which the directions differ by little.
  *
  * On failure `*bandwidth` is null.
  *
@@ -1834,7 +1845,8 @@ void tem00_bandwidth_destroy(tem00_bandwidth *bandwidth);
 tem00_status tem00_bandwidth_describe(const tem00_bandwidth *bandwidth, tem00_bandwidth_info *info);
 
 /**
- * Draws a wave number with a random number from 0 to 1: stratified ones, among the samples of a pixel, leave the least noise.
+ * Draws a wave number with a random number from 0 to 1: stratified ones, among the samples of a
+ * pixel, leave the least noise.
  *
  * The pointers are null or valid.
  */
@@ -1843,9 +1855,11 @@ tem00_status tem00_bandwidth_draw(const tem00_bandwidth *bandwidth,
                                   tem00_wave *wave);
 
 /**
- * Computes the covariance of two frames over the square of the mean intensity: what a motion leaves of the contrast squared.
+ * Computes the covariance of two frames over the square of the mean intensity: what a motion
+ * leaves of the contrast squared.
  *
- * `displacement` holds the motion of the field between them, in pupil diameters along the tilt and across it. In focus.
+ * `displacement` holds the motion of the field between them, in pupil diameters along the tilt and
+ * across it. In focus.
  *
  * The pointers are null or valid, that to the displacement for two numbers.
  */
@@ -1854,11 +1868,11 @@ tem00_status tem00_bandwidth_covariance(const tem00_bandwidth *bandwidth,
                                         double *covariance);
 
 /**
- * Computes the standard deviation of the position of a laser line over that in light of one wavelength: what counts for its
- * noise, where the contrast does not.
+ * Computes the standard deviation of the position of a laser line over that in light of one
+ * wavelength: what counts for its noise, where the contrast does not.
  *
- * `row_height` is the height of the rows along which the line is looked for, in speckle sizes: 0 for rows finer than a
- * speckle; rows taller than 40 count as tall, and so do round spots.
+ * `row_height` is the height of the rows along which the line is looked for, in speckle sizes: 0
+ * for rows finer than a speckle; rows taller than 40 count as tall, and so do round spots.
  *
  * The pointers are null or valid.
  */
@@ -1904,8 +1918,8 @@ tem00_status tem00_imaging_describe(const tem00_imaging *imaging, tem00_imaging_
  * Computes where in a speckle pattern a pixel lies, in pattern samples, not wrapped to its period.
  *
  * `pixel` holds its position in pixels, x to the right and y down as rows count, from any origin;
- * `displacement` the motion of the speckle since the reference state to the right and up, in metres on
- * the sensor; `pattern_speckle_size` is the speckle size of the pattern in samples.
+ * `displacement` the motion of the speckle since the reference state to the right and up, in
+ * metres on the sensor; `pattern_speckle_size` is the speckle size of the pattern in samples.
  *
  * The pointers are null or valid, those to numbers for two.
  */

@@ -4,8 +4,9 @@ use std::sync::atomic::AtomicBool;
 
 use tem00::{
     scan::SetupSensor,
+    statistics::laws::imaged_line_power_contrast,
     topography::{Estimate, Options, characterise},
-    triangulation::{Budget, parse_setup},
+    triangulation::{Budget, Setup, UncertaintySource, parse_setup},
 };
 use tem00_testkit::{assert_absolute, assert_relative};
 
@@ -39,6 +40,23 @@ fn is(found: Estimate, truth: f64) {
     assert_absolute(found.value, truth, 3.5 * found.uncertainty);
 }
 
+/// The noise of repeated measurements at one place. It goes with the inverse of a column's power, as
+/// shot noise, or of its square; the power is a sum of 1/K² equal grains.
+fn instrument_noise(setup: &Setup, budget: &Budget) -> f64 {
+    let (line, speckle) = (setup.line(), setup.line().speckle_size[1]);
+    let radius = 0.5 * line.projected_thickness / speckle;
+    let grains = imaged_line_power_contrast(radius, 1.0 / speckle).powi(-2);
+    let inverse = grains / (grains - 1.0);
+    let inverse_square = inverse * grains / (grains - 2.0);
+    let squares = [
+        (UncertaintySource::ShotNoise, inverse),
+        (UncertaintySource::DarkNoise, inverse_square),
+        (UncertaintySource::Quantisation, inverse_square),
+    ]
+    .map(|(source, more)| more * budget.contribution(source).powi(2));
+    squares.iter().sum::<f64>().sqrt()
+}
+
 #[test]
 fn a_rendered_set_up_has_the_characteristics_of_its_budget() {
     let setup = parse_setup(SETUP).expect("a set-up");
@@ -49,6 +67,10 @@ fn a_rendered_set_up_has_the_characteristics_of_its_budget() {
     let flat = found.flat.expect("seen");
 
     assert_relative(flat.measurement_noise.value, budget.combined(), 0.1);
+    // A few dim columns decide.
+    let instrument = instrument_noise(&setup, &budget);
+    let allowed = 0.1 * instrument + 3.5 * flat.instrument_noise.uncertainty;
+    assert_absolute(flat.instrument_noise.value, instrument, allowed);
     // 95 % of normal numbers lie within ± 1.95996 σ; with speckle the line's places are nearly
     // normal.
     let of_noise = 2.0 * 1.959_96 * flat.measurement_noise.value;

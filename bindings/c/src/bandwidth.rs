@@ -34,7 +34,7 @@ pub struct Bandwidth {
     patterns: PatternSum,
 }
 
-/// What a linewidth makes of speckle, and what stands for it in a renderer.
+/// Effect of a linewidth on speckle, and its representation in a renderer.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandwidthInfo {

@@ -30,7 +30,7 @@ use crate::{pointers, status::Failure};
 #[derive(Debug)]
 pub struct Light {
     placed: Placed,
-    /// As speckle needs it.
+    /// The light as a laser of the shading crate, or why it cannot be one.
     laser: Result<tem00_shading::Laser, Failure>,
 }
 

@@ -19,7 +19,7 @@ pub(crate) struct Values {
     seeded: Option<Seeded>,
 }
 
-/// What random phasors are made of.
+/// Parameters of random phasors.
 struct Seeded {
     pipeline: ComputePipeline,
     spans: Buffer,

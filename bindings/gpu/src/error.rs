@@ -2,7 +2,7 @@ use core::{error::Error, fmt};
 
 use tem00_speckle::{PupilField, SpeckleError};
 
-/// What a graphics card did not do.
+/// Error of a graphics card.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum GpuError {
@@ -16,7 +16,7 @@ pub enum GpuError {
     Size(usize),
     /// The device has no buffer that holds something.
     TooLarge {
-        /// What was to be held.
+        /// Content of the buffer.
         what: &'static str,
         /// Its bytes.
         needed: u64,

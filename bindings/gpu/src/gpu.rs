@@ -129,7 +129,7 @@ impl Gpu {
             })
     }
 
-    /// What the device refuses on the way is an error, not a panic.
+    /// Runs `orders` and returns errors of the device as errors instead of panics.
     pub(crate) fn guarded<T>(
         &self,
         orders: impl FnOnce() -> Result<T, GpuError>,

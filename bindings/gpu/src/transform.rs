@@ -17,7 +17,7 @@ const RADICES: [usize; 6] = [16, 8, 4, 2, 3, 5];
 /// Threads of a workgroup.
 const GROUP: usize = 64;
 
-/// What a stage writes of the values that it comes to.
+/// Output of a stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Finish {
     /// The values themselves.
@@ -32,10 +32,10 @@ pub(crate) enum Finish {
 pub(crate) struct Transform {
     size: [usize; 2],
     values: Values,
-    /// All stages but the last.
+    /// Stages before the last.
     stages: Vec<Order>,
     last: Stage,
-    /// What the last stage reads.
+    /// Input of the last stage.
     before: Buffer,
 }
 
@@ -56,7 +56,7 @@ struct Stage {
     /// The product of the radices before.
     done: usize,
     lines: usize,
-    /// Where points and lines lie in what is read, and in what is written.
+    /// Strides of points and lines in the input and in the output.
     input: [usize; 2],
     output: [usize; 2],
 }
@@ -179,7 +179,7 @@ impl Stage {
         ]
     }
 
-    /// Whether neighbouring points belong to neighbouring lines.
+    /// Returns whether neighbouring points belong to neighbouring lines.
     const fn is_across(&self) -> bool {
         self.output[1] == 1
     }

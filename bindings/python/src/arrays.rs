@@ -1,8 +1,8 @@
 //! Arrays in and out: numbers of any shape, broadcast together as NumPy does it, and images.
 //!
 //! What lies in memory row by row in the right type is read where it is; anything else NumPy copies
-//! first. Results are moved to Python without a copy. While a function works, the interpreter is free
-//! for other threads; these must leave its arguments alone.
+//! first. Results are moved to Python without a copy. While a function works, the interpreter is
+//! free for other threads; these must leave its arguments alone.
 
 mod blocks;
 mod columns;
@@ -22,7 +22,8 @@ pub(crate) use whole::Whole;
 
 use crate::error::{IntoPython, OrRaise};
 
-/// Applies a function that can fail to an argument, and raises its first error, which names the argument.
+/// Applies a function that can fail to an argument, and raises its first error, which names the
+/// argument.
 pub(crate) fn try_map<'py, E: IntoPython + Send>(
     py: Python<'py>,
     (name, argument): (&'static str, &Numbers<'py>),
@@ -47,8 +48,8 @@ pub(crate) fn try_map<'py, E: IntoPython + Send>(
     Ok(values)
 }
 
-/// Applies `f` to columns, broadcast together, without the interpreter's lock; its values lie in the shape
-/// `inner` in the last axes of the result.
+/// Applies `f` to columns, broadcast together, without the interpreter's lock; its values lie in
+/// the shape `inner` in the last axes of the result.
 pub(crate) fn map_inner<'py, const N: usize, const K: usize>(
     py: Python<'py>,
     columns: [Column<'_>; N],
@@ -63,7 +64,8 @@ pub(crate) fn map_inner<'py, const N: usize, const K: usize>(
     Ok(values)
 }
 
-/// As [`map_inner`], for complex values by their real and imaginary parts: a complex number for numbers.
+/// Maps complex values, by real and imaginary parts, otherwise as [`map_inner`]; numbers give a
+/// complex number.
 pub(crate) fn map_complex<'py, const N: usize>(
     py: Python<'py>,
     columns: [Column<'_>; N],

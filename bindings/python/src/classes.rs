@@ -23,8 +23,8 @@ macro_rules! class {
     };
 }
 
-/// Declares a class that keeps how it was made beside the object of the library, for its `__repr__` and
-/// for pickle; otherwise as [`class`].
+/// Declares a class that keeps how it was made beside the object of the library, for its `__repr__`
+/// and for pickle; otherwise as [`class`].
 macro_rules! kept_class {
     ($(#[$doc:meta])* $module:literal $class:ident($inner:ty)) => {
         $(#[$doc])*

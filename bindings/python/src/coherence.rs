@@ -10,8 +10,9 @@ pub(crate) use self::line::SpectralLine;
 
 /// Speckle in light that is not of one wavelength.
 ///
-/// Directions are arrays of shape (3,) and lead away from the surface. Displacements across the pupil are in pupil
-/// diameters, lags on the object in speckle sizes; both along the tilt of the resolution cell, then across it.
+/// Directions are arrays of shape (3,) and lead away from the surface. Displacements across the
+/// pupil are in pupil diameters, lags on the object in speckle sizes; both along the tilt of the
+/// resolution cell, then across it.
 #[pymodule(submodule)]
 pub(crate) mod coherence {
     #[pymodule_export]

@@ -85,11 +85,12 @@ pub(crate) trait OrRaise<T> {
     /// Returns the value, or the error as an exception.
     fn or_raise(self) -> PyResult<T>;
 
-    /// As [`or_raise`](Self::or_raise), for a function of one argument, whatever the error names.
+    /// Raises for a function of one argument, whatever name the error has; otherwise as
+    /// [`or_raise`](Self::or_raise).
     fn or_raise_of(self, argument: &'static str) -> PyResult<T>;
 
-    /// As [`or_raise`](Self::or_raise), for a function whose argument `to` has another name in the
-    /// error: one of `from`.
+    /// Raises for a function whose argument `to` has another name in the error, one of `from`;
+    /// otherwise as [`or_raise`](Self::or_raise).
     fn or_raise_renamed(self, from: &[&str], to: &'static str) -> PyResult<T>;
 }
 

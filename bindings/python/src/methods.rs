@@ -1,8 +1,8 @@
-//! One declaration for each class, method, attribute and function.
+//! Macros that declare classes, methods, attributes and functions once.
 //!
-//! What Python passes becomes a value of the library by [`Take`](crate::arguments::Take), which knows
-//! the name of the argument; what the library returns becomes the declared type by [`From`]. The
-//! library works without the interpreter's lock.
+//! What Python passes becomes a value of the library by [`Take`](crate::arguments::Take), which
+//! knows the name of the argument; what the library returns becomes the declared type by [`From`].
+//! The library works without the interpreter's lock.
 
 /// Declares methods of a class that hand on to the object of the library that it holds.
 ///
@@ -14,11 +14,11 @@
 /// - `get name -> Type = expression;` is an attribute of any other origin;
 /// - `map name(x, y);` is a query over numbers or arrays, broadcast together, the library's method
 ///   `name`; `map name(x, y) = expression;` has another origin. `x: not_negative` has the argument
-///   checked by this method of [`Numbers`](crate::arrays::Numbers) first. The magnitude of arguments is
-///   that of the constant `LIMIT` in scope at most;
+///   checked by this method of [`Numbers`](crate::arrays::Numbers) first. The magnitude of
+///   arguments is that of the constant `LIMIT` in scope at most;
 /// - `over name(x, y, v: 3) -> [2] = |[x, y, v @ ..]| expression;` is a query over numbers and over
-///   vectors in the last axis, `v` of three components, broadcast together: the expression is an array,
-///   of one number for `-> []`, else in the last axes of the result;
+///   vectors in the last axis, `v` of three components, broadcast together: the expression is an
+///   array, of one number for `-> []`, else in the last axes of the result;
 /// - `try_map name(x);` is a query over one argument that the library may refuse;
 /// - `fn name(x: Type) -> Type = expression;` is a method, from values of the library to one;
 /// - `try name(x: Type) -> Type = expression;` is a method whose expression is a `Result`;
@@ -30,7 +30,8 @@
 /// - `unmade "from_x or from_y";` has `Class(…)` say how the class is made;
 /// - `made_by name(x, y);` declares `__repr__` and `__reduce__` of what `Class.name(x, y)` makes
 ///   again, where `x` and `y` are attributes; `Class(x, y)` if the name is `new`;
-/// - `made_as expression;` declares them where the constructor and its arguments depend on the value:
+/// - `made_as expression;` declares them where the constructor and its arguments depend on the
+///   value:
 ///   the expression is a tuple of the name and of a `Vec` of [`Value`](crate::pickling::Value)s;
 /// - `shown x, y;` declares the `__repr__` of what only other objects make, by its attributes.
 macro_rules! methods {

@@ -1,4 +1,4 @@
-//! How objects show themselves, and how pickle makes them again.
+//! Representation and pickling of objects.
 
 use numpy::Complex32;
 use pyo3::{
@@ -85,7 +85,8 @@ pub(crate) fn listed(py: Python<'_>, arguments: Vec<Value>) -> PyResult<String> 
     Ok(text.join(", "))
 }
 
-/// The call of a static method, by keywords, that makes an object which does not keep its arguments.
+/// The call of a static method, by keywords, that makes an object which does not keep its
+/// arguments.
 #[derive(Clone, Debug)]
 pub(crate) struct Made {
     pub(crate) name: &'static str,

@@ -11,7 +11,7 @@ mod space;
 
 use pyo3::prelude::*;
 
-/// All rooms of the crate.
+/// Modules of the statistics crate in one.
 mod physics {
     pub(super) use tem00_statistics::{estimate::*, laws::*, test::*};
 }
@@ -19,8 +19,8 @@ mod physics {
 /// Closed forms of speckle theory, estimators and hypothesis tests.
 ///
 /// Intensities of the closed forms are in units of their mean, lengths in units of the speckle size
-/// h = λ d / D. Estimates from images are in pixels; images are arrays [row, column], taken in single
-/// precision. Samples are arrays of any shape.
+/// h = λ d / D. Estimates from images are in pixels; images are arrays [row, column], taken in
+/// single precision. Samples are arrays of any shape.
 #[pymodule(submodule)]
 pub(crate) mod statistics {
     use pyo3::prelude::*;

@@ -12,12 +12,12 @@ pub const SAMPLES: u32 = 3;
 pub struct Measured {
     /// Standard deviation over mean of the speckle in the lit pixels.
     pub contrast: f64,
-    /// The same by theory, for the speckle size of the lens.
+    /// Theoretical contrast for the speckle size of the lens.
     pub contrast_in_theory: f64,
     /// Speckle size, in pixels: that whose neighbouring pixels are as much alike as those of the
     /// frame.
     pub size: f64,
-    /// The same by theory, λ d / D.
+    /// Theoretical speckle size, λ d / D.
     pub size_in_theory: f64,
     /// Correlation with the part at rest, in the mean over the lit pixels, by theory.
     pub correlation: f64,

@@ -1,4 +1,4 @@
-//! What a browser sees.
+//! Interface for JavaScript in a browser.
 
 use core::fmt::Display;
 
@@ -35,7 +35,7 @@ pub struct Page {
     surface: Surface<'static>,
     passes: Passes,
     values: Values,
-    /// What has to be made again for the next picture.
+    /// Parts to rebuild for the next picture.
     changed: Changes,
     /// Samples along a side of a pixel of the film.
     samples: u32,

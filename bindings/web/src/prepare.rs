@@ -1,5 +1,5 @@
-//! What a renderer in JavaScript needs to call the function files itself: their text, a light,
-//! frames and a stack.
+//! Data for a JavaScript renderer that calls the function files itself: their text, a light, frames
+//! and a stack.
 
 use glam::DVec3;
 use tem00_camera::{Camera, CameraDescription};

@@ -1,4 +1,4 @@
-//! What can be set, in the units that a person thinks in.
+//! Settings of the page, in units for people.
 
 use crate::AnyError;
 
@@ -7,13 +7,13 @@ use crate::AnyError;
 pub struct Setting {
     /// Its name.
     pub name: &'static str,
-    /// What a person reads beside the control, the unit included.
+    /// Label of the control, including its unit.
     pub label: &'static str,
-    /// What it may be.
+    /// Allowed values.
     pub allowed: Allowed,
     /// The value at the start.
     pub start: f64,
-    /// What a change asks for.
+    /// Parts to rebuild after a change of this setting.
     pub changes: Changes,
 }
 
@@ -39,7 +39,7 @@ impl Allowed {
 /// Off or on.
 const SWITCH: Allowed = Allowed::OneOf(&["off", "on"]);
 
-/// What has to be made again after a change.
+/// Parts to rebuild after a change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Changes {
     /// The picture from the same light.

@@ -86,7 +86,7 @@ impl Speckle {
         })
     }
 
-    /// The same, with a stack that the library has made: to be compared.
+    /// Builds the speckle with a stack made by the library, for comparison.
     ///
     /// # Errors
     ///
@@ -115,7 +115,7 @@ impl Speckle {
         Ok(Self { stack, plan })
     }
 
-    /// Whether these settings, of the same lens and seed, find their slices here.
+    /// Returns whether the slices here suffice for settings with the same lens and seed.
     pub fn suffices(&self, values: &Values) -> bool {
         is_at_rest(values) || self.stack.slice_count() > 1
     }

@@ -40,8 +40,8 @@ fn is(found: Estimate, truth: f64) {
     assert_absolute(found.value, truth, 3.5 * found.uncertainty);
 }
 
-/// The noise of repeated measurements at one place. It goes with the inverse of a column's power, as
-/// shot noise, or of its square; the power is a sum of 1/K² equal grains.
+/// The noise of repeated measurements at one place. It goes with the inverse of a column's power,
+/// as shot noise, or of its square; the power is a sum of 1/K² equal grains.
 fn instrument_noise(setup: &Setup, budget: &Budget) -> f64 {
     let (line, speckle) = (setup.line(), setup.line().speckle_size[1]);
     let radius = 0.5 * line.projected_thickness / speckle;

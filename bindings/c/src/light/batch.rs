@@ -25,7 +25,7 @@ pub struct NextEventColumns {
     pub e_perp: *mut f64,
 }
 
-/// As `tem00_next_event_columns`, in single precision.
+/// Columns of next events in single precision, otherwise as `tem00_next_event_columns`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct NextEventColumnsF32 {
@@ -165,7 +165,7 @@ pub unsafe extern "C" fn tem00_light_irradiance_batch(
     })
 }
 
-/// As `tem00_light_irradiance_batch`, in single precision.
+/// Single-precision form of `tem00_light_irradiance_batch`.
 ///
 /// # Safety
 ///
@@ -211,7 +211,7 @@ pub unsafe extern "C" fn tem00_light_next_event_batch(
     next_events!(light, [x, y, z], count, events)
 }
 
-/// As `tem00_light_next_event_batch`, in single precision.
+/// Single-precision form of `tem00_light_next_event_batch`.
 ///
 /// # Safety
 ///

@@ -167,7 +167,7 @@ impl EllipticDescription {
         Ok(Light::spot(light, shape))
     }
 
-    /// One axis of the beam; a refusal says which.
+    /// Returns the beam along one axis; a refusal names the axis.
     fn axis(&self, i: usize) -> Result<LocatedBeam, Failure> {
         let beam = GaussianBeam::from_waist(self.wavelength, self.waist_radius[i]);
         let beam = beam.and_then(|beam| beam.with_m_squared(self.m_squared[i]));

@@ -19,7 +19,7 @@ pub struct NextEvent {
     pub e_perp: f64,
 }
 
-/// As `tem00_next_event`, in single precision.
+/// Next event in single precision, otherwise as `tem00_next_event`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NextEventF32 {
@@ -150,7 +150,7 @@ pub unsafe extern "C" fn tem00_light_next_event(
     })
 }
 
-/// As `tem00_light_next_event`, in single precision.
+/// Single-precision form of `tem00_light_next_event`.
 ///
 /// # Safety
 ///

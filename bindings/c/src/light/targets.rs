@@ -5,7 +5,7 @@ use crate::{
     status::Status,
 };
 
-/// What a light was made with.
+/// Parameters of a light.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LightInfo {

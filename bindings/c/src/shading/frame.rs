@@ -7,7 +7,7 @@ use crate::{
     status::{Status, call},
 };
 
-/// What has become of the speckle at a point since the reference state.
+/// Displacement and correlation of the speckle at a point since the reference state.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpeckleShift {

@@ -71,7 +71,7 @@ pub struct SpeckleDescription {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct SpeckleInfo {
-    /// What was chosen and why, in UTF-8. The text belongs to the speckle.
+    /// Choices with their reasons, in UTF-8. The text belongs to the speckle.
     pub summary: *const c_char,
     /// Speckle size on the sensor, in pixels.
     pub speckle_size: f64,

@@ -12,7 +12,7 @@ use crate::{
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SlicePath {
-    /// One slice: the pattern moves, but does not change.
+    /// Single slice: the pattern moves, but does not change.
     Still = 0,
     /// A circle, as of Bergmann et al. 2016: slices are uncorrelated after `half_period`.
     Circle = 1,

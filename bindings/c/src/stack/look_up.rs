@@ -138,8 +138,7 @@ pub unsafe extern "C" fn tem00_stack_intensity_batch(
     })
 }
 
-/// As `tem00_stack_intensity_batch`, in single precision: the intensities at these coordinates,
-/// rounded.
+/// Single-precision form of `tem00_stack_intensity_batch`: the same intensities, rounded.
 ///
 /// A place that is rounded to single precision moves by up to 3e-8 of its distance from 0: take off
 /// whole periods before.

@@ -7,13 +7,13 @@ use crate::error::refused;
 /// Elements that are worked on at a time: they stay in the cache.
 pub(super) const BLOCK: usize = 4096;
 
-/// One argument as the elements of the common shape.
+/// Elements of one argument in the common shape.
 pub(super) enum Walk<'a> {
-    /// It has that shape, and is read where it lies.
+    /// Array of the common shape, read in place.
     Whole(&'a [f64]),
-    /// It is one number, repeated over a block.
+    /// Single number, repeated over a block.
     Same(Vec<f64>),
-    /// It repeats along some axes.
+    /// Array that repeats along some axes.
     Spread(Iter<'a, f64, IxDyn>, Vec<f64>),
 }
 

@@ -14,7 +14,8 @@ pub(crate) struct Column<'a> {
     pub(crate) name: &'static str,
     /// The values, in a shape that broadcasts with the others.
     pub(crate) values: ArrayViewD<'a, f64>,
-    /// The largest magnitude that is allowed; infinite where any value is, also one that is no number.
+    /// The largest magnitude that is allowed; infinite where any value is, also one that is no
+    /// number.
     pub(crate) limit: f64,
 }
 
@@ -82,17 +83,17 @@ pub(crate) fn columns<'a, const N: usize>(
         .map_err(|_| PyRuntimeError::new_err("an argument is missing"))
 }
 
-/// Hands columns, broadcast together, to `f` block by block as slices of equal length, and returns what
-/// it writes to the `M` slices beside them: in the common shape, followed by the shape `inner` of each
-/// result, which is empty for a number. Floats for numbers. Without the interpreter's lock.
+/// Hands columns, broadcast together, to `f` block by block as slices of equal length, and returns
+/// what it writes to the `M` slices beside them: in the common shape, followed by the shape `inner`
+/// of each result, which is empty for a number. Floats for numbers. Without the interpreter's lock.
 ///
-/// Only the results take memory. `f` is called with at most 4096 elements at a time; not at all where
-/// there are none.
+/// Only the results take memory. `f` is called with at most 4096 elements at a time; not at all
+/// where there are none.
 ///
 /// # Errors
 ///
-/// Refuses values beyond their limit or not finite, shapes that do not fit together, and what memory
-/// does not hold.
+/// Refuses values beyond their limit or not finite, shapes that do not fit together, and what
+/// memory does not hold.
 pub(crate) fn evaluate<'py, const N: usize, const M: usize>(
     py: Python<'py>,
     columns: [Column<'_>; N],

@@ -15,8 +15,8 @@ use crate::error::refused;
 
 /// A number, or an array of real numbers of any shape, as an argument of a function.
 ///
-/// Arrays that are not in `float64`, row by row, are copied. What is not a number (text, truth values,
-/// complex numbers) is a `TypeError`, which names the argument.
+/// Arrays that are not in `float64`, row by row, are copied. What is not a number (text, truth
+/// values, complex numbers) is a `TypeError`, which names the argument.
 #[derive(Debug)]
 pub(crate) enum Numbers<'py> {
     /// A number.
@@ -146,8 +146,8 @@ pub(crate) fn length(name: &'static str, value: f64) -> PyResult<f64> {
     Err(refused(name, message))
 }
 
-/// Returns an array of `T` that is aligned and lies in memory row by row: the argument itself where it
-/// is one, else a copy. `kinds` are NumPy's letters for the kinds of numbers that are allowed.
+/// Returns an array of `T` that is aligned and lies in memory row by row: the argument itself where
+/// it is one, else a copy. `kinds` are NumPy's letters for the kinds of numbers that are allowed.
 pub(super) fn row_by_row<'py, T: Element>(
     argument: &Bound<'py, PyAny>,
     kinds: &[u8],

@@ -86,8 +86,8 @@ pub(crate) type Values<'py> = Bound<'py, PyAny>;
 /// An array, with vectors or matrices in its last axes.
 pub(crate) type Array<'py> = Bound<'py, PyAny>;
 
-/// Numbers by their shape: in Python an array of float64. A vector has the shape (K,), a list (n,) and
-/// a matrix, by its rows, (3, 3).
+/// Numbers by their shape: in Python an array of float64. A vector has the shape (K,), a list (n,)
+/// and a matrix, by its rows, (3, 3).
 #[derive(Clone, Debug)]
 pub(crate) struct Floats(Vec<usize>, Vec<f64>);
 

@@ -49,8 +49,9 @@ class! {
     ///     s'  = C x + D s        s: slope dx/dz
     ///     det = A D − B C = n_in / n_out
     ///
-    /// The static methods are the elements, ``then`` joins them in the order of travel. Curvatures 1/R are
-    /// in 1/m, refractive indices from 0.001 to 1000, lengths signed, in metres, within ±1e30.
+    /// The static methods are the elements, ``then`` joins them in the order of travel. Curvatures
+    /// 1/R are in 1/m, refractive indices from 0.001 to 1000, lengths signed, in metres, within
+    /// ±1e30.
     ///
     /// Parameters
     /// ----------
@@ -98,8 +99,9 @@ methods! {
     /// index : float
     ///     Refractive index of the glass.
     /// front_curvature, back_curvature : float
-    ///     Curvatures of the surfaces that the light enters and leaves by, positive where the centre of the
-    ///     sphere lies beyond the surface. A biconvex lens has a positive front and a negative back curvature.
+    ///     Curvatures of the surfaces that the light enters and leaves by, positive where the
+    ///     centre of the sphere lies beyond the surface. A biconvex lens has a positive front and a
+    ///     negative back curvature.
     /// thickness : float
     ///     Distance of the surfaces on the axis, 0 or more.
     make thick_lens(index: f64, front_curvature: f64, back_curvature: f64, thickness: f64) = {
@@ -118,7 +120,8 @@ methods! {
     make flat_interface(index_before: f64, index_after: f64) =
         interface(index_before, index_after, 0.0);
 
-    /// Return a curved interface, of a positive curvature where the centre of the sphere lies beyond it.
+    /// Return a curved interface, of a positive curvature where the centre of the sphere lies
+    /// beyond it.
     make curved_interface(index_before: f64, index_after: f64, curvature: f64) =
         interface(index_before, index_after, curvature);
 
@@ -152,7 +155,8 @@ methods! {
     /// Of the round trip of a resonator it is that of the eigenmode.
     try eigenmode() -> Parameter = this.0.eigenmode();
 
-    /// Return the complex beam parameter in the output plane for that in the input plane, in metres.
+    /// Return the complex beam parameter in the output plane for that in the input plane, in
+    /// metres.
     try transform_parameter(parameter: ComplexBeamParameter) -> Parameter =
         this.0.transform_parameter(&parameter);
 

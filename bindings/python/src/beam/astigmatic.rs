@@ -12,8 +12,8 @@ use crate::{
 class! {
     /// An elliptic Gaussian beam with simple astigmatism.
     ///
-    /// Two principal axes at right angles, each with its own waist, place of the waist and M². The beam
-    /// travels along +z from the reference plane z = 0, the aperture.
+    /// Two principal axes at right angles, each with its own waist, place of the waist and M². The
+    /// beam travels along +z from the reference plane z = 0, the aperture.
     ///
     /// Parameters
     /// ----------
@@ -115,7 +115,8 @@ methods! {
     ///     Distance from the reference plane, in metres.
     over radii_at(z) -> [2] = |[z]| this.0.radii_at(z);
 
-    /// Return the wavefront curvatures along the principal axes, in 1/m, in the last axis; positive where diverging.
+    /// Return the wavefront curvatures along the principal axes, in 1/m, in the last axis; positive
+    /// where diverging.
     ///
     /// Parameters
     /// ----------
@@ -125,8 +126,8 @@ methods! {
 
     /// Return the energy-flow vector per watt of beam power, in 1/m².
     ///
-    /// Its integral over any surface that cuts the whole beam is 1. A surface whose normal ``n`` lies
-    /// on the lit side receives the irradiance ``max(0, -F·n)``.
+    /// Its integral over any surface that cuts the whole beam is 1. A surface whose normal ``n``
+    /// lies on the lit side receives the irradiance ``max(0, -F·n)``.
     ///
     /// Parameters
     /// ----------
@@ -151,7 +152,8 @@ methods! {
     /// Wavelength, in metres.
     get wavelength -> f64;
 
-    /// Distances, in metres and ascending, at which the beam is circular; None where there are fewer.
+    /// Distances, in metres and ascending, at which the beam is circular; None where there are
+    /// fewer.
     get circular_planes -> (Option<f64>, Option<f64>);
 
     /// Return the Gouy phase, in radians: the mean of those of the two axes.

@@ -9,8 +9,8 @@ use crate::{arrays::Floats, error::OrRaise};
 class! {
     /// The irradiance of a Gaussian beam of 1 W over a plane across it.
     ///
-    /// The principal axes of the distribution are x and y, its centre is the origin. Powers are fractions
-    /// of the whole, from 0 to 1; an aperture of negative size holds nothing.
+    /// The principal axes of the distribution are x and y, its centre is the origin. Powers are
+    /// fractions of the whole, from 0 to 1; an aperture of negative size holds nothing.
     ///
     /// Parameters
     /// ----------

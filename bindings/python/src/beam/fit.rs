@@ -13,7 +13,8 @@ pyo3::create_exception!(
     "Measured data that are valid each, but do not determine a beam together."
 );
 
-/// A fitted value and its standard error, in the same unit: `tem00._results.Estimate` in Python, a number.
+/// A fitted value and its standard error, in the same unit: `tem00._results.Estimate` in Python, a
+/// number.
 pub(crate) struct Estimate(physics::Estimate);
 
 impl From<physics::Estimate> for Estimate {
@@ -35,8 +36,8 @@ impl<'py> IntoPyObject<'py> for Estimate {
 class! {
     /// A Gaussian beam fitted to its radius measured at several positions: its caustic.
     ///
-    /// The model is ``w(z) = √(w₀² + δ² (z − z₀)²)``, and ``M² = π w₀ δ / λ``. M² is not confined to 1 and
-    /// above: noise may bring it below.
+    /// The model is ``w(z) = √(w₀² + δ² (z − z₀)²)``, and ``M² = π w₀ δ / λ``. M² is not confined
+    /// to 1 and above: noise may bring it below.
     ///
     /// Parameters
     /// ----------
@@ -48,7 +49,8 @@ class! {
     ///     Second-moment radii there, half of D4σ, in metres.
     /// errors : {"relative", "equal"} or array_like, shape (n,), optional
     ///     ``"relative"``, the default: proportional to the radius; ``"equal"``: the same for all. The size of
-    ///     both follows from the scatter of the data. Numbers: the known standard deviations, in metres.
+    ///     both follows from the scatter of the data. Numbers: the known standard deviations, in
+    ///     metres.
     ///
     /// Raises
     /// ------
@@ -107,8 +109,8 @@ methods! {
     /// Beam quality factor M².
     get m_squared -> Estimate;
 
-    /// Standard deviation of the data from the fit: relative to the radius, in metres for ``"equal"``
-    /// errors, in units of the known deviations for known ones.
+    /// Standard deviation of the data from the fit: relative to the radius, in metres for
+    /// ``"equal"`` errors, in units of the known deviations for known ones.
     get residual_deviation -> f64;
 
     /// Return the fitted beam radius (1/e²) in metres.
@@ -133,7 +135,8 @@ methods! {
 class! {
     /// A Gaussian beam fitted to the power that passes a knife edge moved across it.
     ///
-    /// The model is ``P(x) = P₀/2 · erfc(±√2 (x − x₀) / w)``, and a constant background if asked for.
+    /// The model is ``P(x) = P₀/2 · erfc(±√2 (x − x₀) / w)``, and a constant background if asked
+    /// for.
     ///
     /// Parameters
     /// ----------

@@ -13,8 +13,8 @@ use crate::{
 class! {
     /// A circular Gaussian beam, or its partially coherent relative with M² > 1.
     ///
-    /// The beam travels along +z and its waist lies at z = 0. The wavelength λ in the medium it travels
-    /// in, the waist radius w₀ and the beam quality factor M² determine everything else::
+    /// The beam travels along +z and its waist lies at z = 0. The wavelength λ in the medium it
+    /// travels in, the waist radius w₀ and the beam quality factor M² determine everything else::
     ///
     ///     z_R  = π w₀² / (M² λ)           Rayleigh range
     ///     w(z) = w₀ √(1 + (z / z_R)²)     beam radius, where the irradiance has fallen to 1/e²
@@ -77,8 +77,8 @@ methods! {
 
     /// Return the diffraction-limited beam (M² = 1) of a wavelength and a divergence.
     ///
-    /// Where a data sheet gives the divergence and an M², ask for the divergence ``δ / M²`` and then
-    /// for the M², which brings it back to ``δ``: ``with_m_squared`` keeps the waist.
+    /// Where a data sheet gives the divergence and an M², ask for the divergence ``δ / M²`` and
+    /// then for the M², which brings it back to ``δ``: ``with_m_squared`` keeps the waist.
     ///
     /// Parameters
     /// ----------
@@ -97,7 +97,8 @@ methods! {
     try with_m_squared(m_squared: f64) -> GaussianBeam =
         this.0.with_m_squared(m_squared).or_raise_renamed(&["waist_radius"], "m_squared");
 
-    /// Return the full length, in metres, over which the radius stays within ``growth`` times the waist.
+    /// Return the full length, in metres, over which the radius stays within ``growth`` times the
+    /// waist.
     ///
     /// Parameters
     /// ----------
@@ -116,8 +117,8 @@ methods! {
 
     /// Return the energy-flow vector per watt of beam power, in 1/m².
     ///
-    /// Its integral over any surface that cuts the whole beam is 1. A surface whose normal ``n`` lies
-    /// on the lit side receives the irradiance ``max(0, -F·n)``.
+    /// Its integral over any surface that cuts the whole beam is 1. A surface whose normal ``n``
+    /// lies on the lit side receives the irradiance ``max(0, -F·n)``.
     ///
     /// Parameters
     /// ----------
@@ -221,8 +222,8 @@ methods! {
 class! {
     /// A Gaussian beam and where its waist lies, seen from a reference plane.
     ///
-    /// The beam travels along +z, z = 0 is the reference plane, and the waist lies at
-    /// ``z = waist_distance``: positive where it is still to come, negative where it has been passed or
+    /// The beam travels along +z, z = 0 is the reference plane, and the waist lies at ``z =
+    /// waist_distance``: positive where it is still to come, negative where it has been passed or
     /// is virtual.
     ///
     /// Parameters

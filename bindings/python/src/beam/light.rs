@@ -17,16 +17,17 @@ use crate::arrays::{Array, Floats, Numbers, Values, Vectors, evaluate, named_cla
 class! {
     /// A beam or a laser line in a scene, which a renderer can evaluate and sample.
     ///
-    /// All points and vectors are in world coordinates, in metres, within ±1e30. The light shines from the
-    /// aperture plane into the half-space that its axis points to; points behind that plane receive nothing.
+    /// All points and vectors are in world coordinates, in metres, within ±1e30. The light shines
+    /// from the aperture plane into the half-space that its axis points to; points behind that
+    /// plane receive nothing.
     ///
     /// There are two ways to light a surface, which belong to different path spaces and must not be
     /// added up: ``next_event`` takes the mean direction of the energy flow, a delta light;
-    /// ``next_event_sampled``, ``sample_ray``, ``ray_pdf`` and ``radiance`` share the phase-space density
-    /// of the light and may be combined by multiple importance sampling.
+    /// ``next_event_sampled``, ``sample_ray``, ``ray_pdf`` and ``radiance`` share the phase-space
+    /// density of the light and may be combined by multiple importance sampling.
     ///
-    /// Light beyond the cut-off, 4 beam radii, is dropped by ``irradiance``, ``flux`` and both next-event
-    /// forms. Rays are not cut off.
+    /// Light beyond the cut-off, 4 beam radii, is dropped by ``irradiance``, ``flux`` and both
+    /// next-event forms. Rays are not cut off.
     "tem00.beam" Light(Placed)
 }
 
@@ -37,13 +38,14 @@ methods! {
 
     /// Return the fields of the light in the order of memory, as rows of four: what a kernel reads.
     ///
-    /// Those of a beam are ``origin, power | ex, cutoff | ey, wavelength | ez, 0 | x: w0_sq, theta_sq, z0, 0 |
-    /// y: likewise``, with ``w² = w0_sq + theta_sq (z − z0)²``. Those of a line are ``origin, power | ex, cutoff |
-    /// ey, apex_offset | ez, source_radius | y: w0_sq, theta_sq, z0, 0 | flat, sigma, variable, mass | half_slope,
-    /// focus_on_plane, wavelength, 0``: its thickness depends on the slant distance from the virtual apex, and the
-    /// power along the fan is uniform on ±``flat`` in a variable, convolved with a normal density of the standard
-    /// deviation ``sigma`` and divided by ``mass``. ``variable`` is 0 for ``tan θ``, 1 for ``θ``, 2 for ``sin θ`` and
-    /// 3 for a table.
+    /// Those of a beam are ``origin, power | ex, cutoff | ey, wavelength | ez, 0 | x: w0_sq,
+    /// theta_sq, z0, 0 | y: likewise``, with ``w² = w0_sq + theta_sq (z − z0)²``. Those of a line
+    /// are ``origin, power | ex, cutoff | ey, apex_offset | ez, source_radius | y: w0_sq, theta_sq,
+    /// z0, 0 | flat, sigma, variable, mass | half_slope, focus_on_plane, wavelength, 0``: its
+    /// thickness depends on the slant distance from the virtual apex, and the power along the fan
+    /// is uniform on ±``flat`` in a variable, convolved with a normal density of the standard
+    /// deviation ``sigma`` and divided by ``mass``. ``variable`` is 0 for ``tan θ``, 1 for ``θ``, 2
+    /// for ``sin θ`` and 3 for a table.
     ///
     /// Returns
     /// -------
@@ -100,8 +102,8 @@ methods! {
 
     /// Return the light at points as one direction each, drawn from the phase-space density there.
     ///
-    /// The estimate of the reflected radiance is ``f·|n·wi|·V·value``: ``value`` has been divided by
-    /// the density already. The mean over ``u`` is that of ``next_event``.
+    /// The estimate of the reflected radiance is ``f·|n·wi|·V·value``: ``value`` has been divided
+    /// by the density already. The mean over ``u`` is that of ``next_event``.
     ///
     /// Parameters
     /// ----------
@@ -113,8 +115,8 @@ methods! {
     /// Returns
     /// -------
     /// SampledEvent or None
-    ///     For numbers None outside the cut-off and behind the aperture. For arrays all members are 0
-    ///     there.
+    ///     For numbers None outside the cut-off and behind the aperture. For arrays all members are
+    ///     0 there.
     call next_event_sampled(py;
         x: Numbers<'py>, y: Numbers<'py>, z: Numbers<'py>, u: Vectors<'py>
     ) -> Option<Array<'py>> = {
@@ -135,9 +137,9 @@ methods! {
 
     /// Return the light that rays from points meet, for directions that a material has drawn.
     ///
-    /// It is the other technique beside ``next_event_sampled``: a direction of the density ``q`` has
-    /// the weight ``q / (q + pdf)`` of the balance heuristic. Only what is nearer than ``distance``
-    /// hides the light.
+    /// It is the other technique beside ``next_event_sampled``: a direction of the density ``q``
+    /// has the weight ``q / (q + pdf)`` of the balance heuristic. Only what is nearer than
+    /// ``distance`` hides the light.
     ///
     /// Parameters
     /// ----------
@@ -328,8 +330,8 @@ methods! {
 
     /// Return the radiance, in W/(m² sr), of the rays through points.
     ///
-    /// It is constant along a ray in free space, and 0 for a ray against the axis. Its integral over
-    /// direction, weighted with the cosine to the axis, is the irradiance.
+    /// It is constant along a ray in free space, and 0 for a ray against the axis. Its integral
+    /// over direction, weighted with the cosine to the axis, is the irradiance.
     ///
     /// Parameters
     /// ----------
@@ -348,8 +350,8 @@ methods! {
 
     /// Return bounds of the power, in watts, that reaches axis-aligned boxes.
     ///
-    /// A hierarchy of lights visits none whose bound is 0: behind the aperture, beyond the cut-off, or
-    /// for an empty box. The bound of a box within the beam is a small multiple of its power.
+    /// A hierarchy of lights visits none whose bound is 0: behind the aperture, beyond the cut-off,
+    /// or for an empty box. The bound of a box within the beam is a small multiple of its power.
     ///
     /// Parameters
     /// ----------

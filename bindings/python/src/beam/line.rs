@@ -15,10 +15,11 @@ class! {
     ///     Full angle, in radians in (0, π), between the edges of the line.
     /// apex_offset : float
     ///     Distance of the virtual apex behind the lens, in metres. A beam that is ``w_in`` wide
-    ///     (half-width at 1/e²) on the lens has its apex at ``w_in / tan(fan_angle / 2)`` behind it.
+    ///     (half-width at 1/e²) on the lens has its apex at ``w_in / tan(fan_angle / 2)`` behind
+    ///     it.
     /// focus_distance : float
-    ///     Distance from the lens along the axis to where the line is thinnest, in metres; negative for
-    ///     a line that diverges from a waist before the lens.
+    ///     Distance from the lens along the axis to where the line is thinnest, in metres; negative
+    ///     for a line that diverges from a waist before the lens.
     /// focus_curve : {"equal_distance", "equal_plane"}, optional
     ///     Where the line is thinnest off the axis: on the circle about the virtual apex, or on the
     ///     plane square to the axis.
@@ -51,7 +52,8 @@ methods! {
         }))
     };
 
-    /// Surface on which the line is thinnest off the axis, ``"equal_distance"`` or ``"equal_plane"``.
+    /// Surface on which the line is thinnest off the axis, ``"equal_distance"`` or
+    /// ``"equal_plane"``.
     get focus_curve -> &'static str = match this.0.focus_curve {
         FocusCurve::EqualDistance => "equal_distance",
         FocusCurve::EqualPlane => "equal_plane",
@@ -72,8 +74,9 @@ methods! {
 class! {
     /// A laser line: a Gaussian beam, fanned out in one plane by a cylinder or Powell lens.
     ///
-    /// The light travels along +z, z = 0 is the lens, the fan opens along x and its plane has the normal
-    /// y. The fan diverges from a virtual apex behind the lens. Points at z < 0 receive nothing.
+    /// The light travels along +z, z = 0 is the lens, the fan opens along x and its plane has the
+    /// normal y. The fan diverges from a virtual apex behind the lens. Points at z < 0 receive
+    /// nothing.
     ///
     /// Parameters
     /// ----------
@@ -161,7 +164,8 @@ methods! {
     /// Parameters
     /// ----------
     /// a, b : float or array_like
-    ///     Angles from the axis, in radians; they broadcast together. There is no power beyond ±π/2.
+    ///     Angles from the axis, in radians; they broadcast together. There is no power beyond
+    ///     ±π/2.
     map power_between_angles(a, b);
 
     /// Return the fraction of the power between two places along the line, in either order.

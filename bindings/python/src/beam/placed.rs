@@ -24,8 +24,8 @@ class! {
     /// direction : array_like, shape (3,)
     ///     Direction of travel, of any length.
     /// fan_axis : array_like, shape (3,)
-    ///     Any vector that is not parallel to ``direction``. Its part at right angles to ``direction``
-    ///     is the x axis of the light, along which a fan opens.
+    ///     Any vector that is not parallel to ``direction``. Its part at right angles to
+    ///     ``direction`` is the x axis of the light, along which a fan opens.
     "tem00.beam" Placement(physics::Placement): Copy
 }
 
@@ -126,8 +126,8 @@ impl Placed {
     }
 }
 
-/// Applies `f` to columns, and spreads its values, one after the other, over arrays of the shapes `inner`, all 0
-/// where there are none.
+/// Applies `f` to columns, and spreads its values, one after the other, over arrays of the shapes
+/// `inner`, all 0 where there are none.
 pub(super) fn spread<'py, const N: usize, const M: usize, const S: usize>(
     py: Python<'py>,
     columns: [Column<'_>; N],

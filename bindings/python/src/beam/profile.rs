@@ -9,9 +9,9 @@ use crate::pickling::Value;
 class! {
     /// Distribution of the power of a laser line along the fan.
     ///
-    /// Each profile is a density in tan θ, in θ itself or in sin θ, where θ is the fan angle. The edges of
-    /// the fan are the 1/e² points of a Gaussian, the ends of a uniform profile, the half-value points of a
-    /// Powell profile.
+    /// Each profile is a density in tan θ, in θ itself or in sin θ, where θ is the fan angle. The
+    /// edges of the fan are the 1/e² points of a Gaussian, the ends of a uniform profile, the
+    /// half-value points of a Powell profile.
     "tem00.beam" LineProfile(Profile)
 }
 
@@ -46,8 +46,8 @@ methods! {
 
     /// Return the profile of a table: a data sheet, or a measurement.
     ///
-    /// Between the angles of the table the power per angle is linear, outside them there is none. Its
-    /// integral is normalised to 1. It need not end at the edges of the fan.
+    /// Between the angles of the table the power per angle is linear, outside them there is none.
+    /// Its integral is normalised to 1. It need not end at the edges of the fan.
     ///
     /// Parameters
     /// ----------
@@ -77,8 +77,8 @@ methods! {
 
 #[pymethods]
 impl LineProfile {
-    /// The table of a tabulated profile, shape (n, 3), or None: angle in radians, fraction of the power per
-    /// radian there, and fraction of the power below.
+    /// The table of a tabulated profile, shape (n, 3), or None: angle in radians, fraction of the
+    /// power per radian there, and fraction of the power below.
     #[getter]
     fn knots<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         let Profile::Tabulated(table) = &self.0 else {

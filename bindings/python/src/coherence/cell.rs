@@ -8,7 +8,8 @@ use crate::{
 };
 
 class! {
-    /// The paths of the light that one resolution cell of a camera brings to one point of the image.
+    /// The paths of the light that one resolution cell of a camera brings to one point of the
+    /// image.
     ///
     /// Parameters
     /// ----------
@@ -25,7 +26,8 @@ class! {
     /// defocus : float
     ///     Distance of the surface from the plane of focus, in metres.
     /// source_half_angle : float
-    ///     Half-angle in radians, at most 0.3, of the disc from which the light reaches the surface, seen from there.
+    ///     Half-angle in radians, at most 0.3, of the disc from which the light reaches the
+    ///     surface, seen from there.
     "tem00.coherence" ResolutionCell(physics::ResolutionCell)
 }
 
@@ -66,7 +68,8 @@ methods! {
         Ok(Self(cell.with_source_extent(extent.or_raise()?)))
     };
 
-    /// Return the standard deviation of the position of a laser line over that in light of one wavelength.
+    /// Return the standard deviation of the position of a laser line over that in light of one
+    /// wavelength.
     ///
     /// The tilt lies across the line, whose rows are finer than a speckle, or much taller.
     #[pyo3(signature = (line, tall_rows=false))]
@@ -76,15 +79,16 @@ methods! {
         Ok(py.detach(|| this.speckle(&line).line_noise_ratio(rows)))
     };
 
-    /// Return the patterns of one wavelength that together have the contrast, as two arrays of float64.
+    /// Return the patterns of one wavelength that together have the contrast, as two arrays of
+    /// float64.
     ///
     /// Returns
     /// -------
     /// fractions : (n,)
     ///     Fractions of the light in patterns whose intensities add, at most 1024.
     /// heights : (m, 2)
-    ///     Heights of the relief in metres whose fields add, each with the root of its fraction of the light; none where the
-    ///     patterns are looked up as in one wavelength.
+    ///     Heights of the relief in metres whose fields add, each with the root of its fraction of
+    ///     the light; none where the patterns are looked up as in one wavelength.
     call patterns(py; line: Bound<'py, PyAny>) -> (Floats, Array<'py>) = {
         take!(line: Line);
         let patterns = py.detach(|| {
@@ -100,11 +104,13 @@ methods! {
     /// Return the contrast of the speckle in the light of a line.
     fn contrast(line: Line) -> f64 = this.speckle(&line).contrast();
 
-    /// Return the covariance, over the squared mean, of two frames by the displacement of the pupil, of shape (2,).
+    /// Return the covariance, over the squared mean, of two frames by the displacement of the
+    /// pupil, of shape (2,).
     fn covariance(line: Line, displacement: [f64; 2]) -> f64 =
         this.speckle(&line).covariance(displacement);
 
-    /// Return the autocovariance, over the squared mean, at a lag of shape (2,), at most 1000 speckles long.
+    /// Return the autocovariance, over the squared mean, at a lag of shape (2,), at most 1000
+    /// speckles long.
     try autocovariance(line: Line, lag: [f64; 2]) -> f64 = {
         if lag[0].hypot(lag[1]) > 1e3 {
             let message = format!("lag must be at most 1000 speckles long, got {lag:?}");
@@ -113,10 +119,12 @@ methods! {
         PyResult::Ok(this.speckle(&line).autocovariance(lag))
     };
 
-    /// Return the fractions of the light in its coherent modes, float64 of shape (n,), the largest first.
+    /// Return the fractions of the light in its coherent modes, float64 of shape (n,), the largest
+    /// first.
     fn modes(line: Line) -> Floats = this.speckle(&line).modes();
 
-    /// Path per length on the object by the tilt of the cell, across the line of sight, of shape (3,).
+    /// Path per length on the object by the tilt of the cell, across the line of sight, of shape
+    /// (3,).
     get tilt -> Floats;
 
     /// Path per height.
@@ -125,7 +133,8 @@ methods! {
     /// Standard deviation of the paths by heights, in metres.
     get path_spread -> f64;
 
-    /// Difference of wave numbers by which the tilt displaces the field by the pupil's diameter, in rad/m.
+    /// Difference of wave numbers by which the tilt displaces the field by the pupil's diameter, in
+    /// rad/m.
     get tilt_wave_number -> f64;
 
     /// Size of a speckle on the object, in metres.

@@ -13,7 +13,8 @@ class! {
     /// wavelength : float
     ///     Central wavelength in metres.
     /// linewidth : float
-    ///     Full width at half maximum in metres, at most a tenth of the wavelength; 0 for light of one wavelength.
+    ///     Full width at half maximum in metres, at most a tenth of the wavelength; 0 for light of
+    ///     one wavelength.
     "tem00.coherence" SpectralLine(physics::SpectralLine)
 }
 
@@ -35,7 +36,8 @@ methods! {
     make rectangular(wavelength: f64, linewidth: f64) =
         physics::SpectralLine::new(wavelength, linewidth, LineShape::Rectangular);
 
-    /// Return ``count`` equal peaks without a width, the first and the last ``span`` apart, in metres.
+    /// Return ``count`` equal peaks without a width, the first and the last ``span`` apart, in
+    /// metres.
     make comb(wavelength: f64, span: f64, count: usize) =
         physics::SpectralLine::comb(wavelength, span, count).or_raise_renamed(&["peaks"], "count");
 
@@ -71,8 +73,8 @@ methods! {
     ///     Path difference in metres.
     map squared_coherence(path);
 
-    /// Standard deviation, in rad/m, of a Gaussian line that is as wide between the quantiles where that has half its
-    /// maximum.
+    /// Standard deviation, in rad/m, of a Gaussian line that is as wide between the quantiles where
+    /// that has half its maximum.
     get effective_spread -> f64;
 
     /// Return the difference between a wave number drawn from the line and the mean one, in rad/m.

@@ -3,9 +3,11 @@ use tem00_coherence as physics;
 
 use crate::error::OrRaise;
 
-/// Return the contrast of light that met one rough surface, single, mixed with light that met several, multiple.
+/// Return the contrast of light that met one rough surface, single, mixed with light that met
+/// several, multiple.
 ///
-/// By default all light is polarised alike and coherent, as behind a laser of one wavelength: the contrast is 1.
+/// By default all light is polarised alike and coherent, as behind a laser of one wavelength: the
+/// contrast is 1.
 ///
 /// Parameters
 /// ----------
@@ -14,11 +16,11 @@ use crate::error::OrRaise;
 /// within_single : float
 ///     The squared contrast of the polarised single light alone, from 0 to 1.
 /// with_single : float
-///     What multiple light shares with single light, from 0 to 1: the mean of ``SpectralLine.squared_coherence`` over the
-///     delays of the multiple light, by its energy.
+///     What multiple light shares with single light, from 0 to 1: the mean of
+///     ``SpectralLine.squared_coherence`` over the delays of the multiple light, by its energy.
 /// within_multiple : float
-///     What multiple light shares with itself, from 0 to 1: the mean of ``SpectralLine.squared_coherence`` over the
-///     differences of two delays.
+///     What multiple light shares with itself, from 0 to 1: the mean of
+///     ``SpectralLine.squared_coherence`` over the differences of two delays.
 /// polarisation : (float, float)
 ///     Degrees of polarisation of the single and of the multiple light, from 0 to 1.
 #[pyfunction]
@@ -43,7 +45,8 @@ pub(super) fn mixed_contrast(
 }
 
 functions! {
-    /// Return the relative variance, over a resolution cell, of light from a small lit part of another rough surface.
+    /// Return the relative variance, over a resolution cell, of light from a small lit part of
+    /// another rough surface.
     ///
     /// Its own speckle makes it: of multiple light alone the squared contrast is 1 plus twice this.
     ///

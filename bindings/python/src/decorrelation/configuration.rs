@@ -8,9 +8,11 @@ use crate::{
 };
 
 class! {
-    /// A point of a rough surface, its light and its camera, all in the world: one state of a scene.
+    /// A point of a rough surface, its light and its camera, all in the world: one state of a
+    /// scene.
     ///
-    /// One state is made with ``Configuration(…)``, the other from it, by moving the bodies or changing the light.
+    /// One state is made with ``Configuration(…)``, the other from it, by moving the bodies or
+    /// changing the light.
     ///
     /// Parameters
     /// ----------

@@ -17,7 +17,8 @@ functions! {
     ///     Axial displacement in axial decorrelation lengths.
     map axial_correlation(shift);
 
-    /// Return the intensity correlation left at the peak of the cross-correlation, which defocus moves.
+    /// Return the intensity correlation left at the peak of the cross-correlation, which defocus
+    /// moves.
     ///
     /// Parameters
     /// ----------
@@ -47,7 +48,8 @@ functions! {
     ///     Intensity correlation, from 0 to 1.
     try_map equivalent_pupil_shift(correlation);
 
-    /// Return the axial displacement, in axial decorrelation lengths, that alone leaves a correlation.
+    /// Return the axial displacement, in axial decorrelation lengths, that alone leaves a
+    /// correlation.
     ///
     /// Parameters
     /// ----------

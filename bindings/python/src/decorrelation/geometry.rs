@@ -10,7 +10,8 @@ use crate::{
 kept_class! {
     /// A camera focused on a surface: a lens, its pupils and the sensor behind it.
     ///
-    /// All lengths are in metres. Wavelengths are those in vacuum, f-numbers those of focus at infinity.
+    /// All lengths are in metres. Wavelengths are those in vacuum, f-numbers those of focus at
+    /// infinity.
     "tem00.decorrelation" ImagingGeometry(physics::ImagingGeometry)
 }
 
@@ -216,7 +217,8 @@ methods! {
     /// Depth of focus of the speckle at the sensor, in metres.
     get sensor_depth_of_focus -> f64;
 
-    /// Return the axial decorrelation length of points at positive depths before the pupil, in metres.
+    /// Return the axial decorrelation length of points at positive depths before the pupil, in
+    /// metres.
     map axial_decorrelation_length_at(depth: positive);
 
     /// Return the defocus 1/Z − 1/L of points at depths Z before the pupil, in 1/m.

@@ -98,8 +98,8 @@ methods! {
     ///     Upward direction of any length, not along the view.
     make look_at(position: DVec3, target: DVec3, up: DVec3);
 
-    /// Rotation matrix of shape (3, 3), whose columns lead right in the image (b1), up in it (b2) and from
-    /// the scene towards the camera (b3).
+    /// Rotation matrix of shape (3, 3), whose columns lead right in the image (b1), up in it (b2)
+    /// and from the scene towards the camera (b3).
     get axes -> Floats =
         DMat3::from_cols(this.0.right(), this.0.up(), this.0.towards_camera());
 

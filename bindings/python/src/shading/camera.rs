@@ -9,8 +9,8 @@ use crate::{
 class! {
     /// A camera: a thin lens, and a sensor that may be tilted.
     ///
-    /// What is left out is that of a lens of 25 mm at f/8 and 640 × 480 pixels of 3.45 µm, 0.3 m above the origin, which it
-    /// looks at and has in focus.
+    /// What is left out is that of a lens of 25 mm at f/8 and 640 × 480 pixels of 3.45 µm, 0.3 m
+    /// above the origin, which it looks at and has in focus.
     ///
     /// Parameters
     /// ----------
@@ -33,8 +33,9 @@ class! {
     /// principal_point : array_like, shape (2,), optional
     ///     Image point on the axis of the lens, in pixels; the middle of the image if left out.
     /// tilt : array_like, shape (2,), optional
-    ///     Angle between the normal of the sensor and the axis of the lens, and the direction of the line about which the
-    ///     sensor turns, from the right of the image towards its top; in radians.
+    ///     Angle between the normal of the sensor and the axis of the lens, and the direction of
+    ///     the line about which the sensor turns, from the right of the image towards its top; in
+    ///     radians.
     /// distortion : array_like, shape (3,), optional
     ///     Coefficients k₁, k₂ and k₃ of the radial distortion, with the signs of OpenCV.
     /// depth_of_field : bool, optional
@@ -131,7 +132,8 @@ methods! {
     /// Returns
     /// -------
     /// ndarray, shape (..., 2)
-    ///     Image points, in pixels with y down, also beside the image; infinite where the camera cannot see.
+    ///     Image points, in pixels with y down, also beside the image; infinite where the camera
+    ///     cannot see.
     over project(points: 3) -> [2] = |point| {
         let seen = this.0.project(point.into()).filter(|pixel| pixel.is_finite());
         seen.unwrap_or(DVec2::INFINITY).to_array()

@@ -11,9 +11,9 @@ use crate::{
 
 /// The speckle of a body in a frame, made by ``Speckle.frame``.
 ///
-/// Points and normals are given as they are now, and broadcast together. Where the camera does not see a point the
-/// factor is 1; where the law has no value, as at a surface seen edge-on, the speckle is new. Neither points nor
-/// normals that are NaN give NaN.
+/// Points and normals are given as they are now, and broadcast together. Where the camera does not
+/// see a point the factor is 1; where the law has no value, as at a surface seen edge-on, the
+/// speckle is new. Neither points nor normals that are NaN give NaN.
 #[pyclass(frozen, module = "tem00.shading")]
 #[derive(Clone, Debug)]
 pub(crate) struct SpeckleFrame {
@@ -26,8 +26,8 @@ methods! {
 
     unmade "Speckle.frame";
 
-    /// Return the factors in light of one wave number of the laser's line each, for a renderer that draws one for each of
-    /// its samples; ``factor`` is their mean over the line.
+    /// Return the factors in light of one wave number of the laser's line each, for a renderer that
+    /// draws one for each of its samples; ``factor`` is their mean over the line.
     ///
     /// Parameters
     /// ----------
@@ -52,7 +52,8 @@ methods! {
         })
     };
 
-    /// Return the factors, with mean 1, that multiply the radiance which surfaces send from the laser to the camera.
+    /// Return the factors, with mean 1, that multiply the radiance which surfaces send from the
+    /// laser to the camera.
     ///
     /// Parameters
     /// ----------
@@ -74,7 +75,8 @@ methods! {
         Ok(factors)
     };
 
-    /// Return the complex amplitudes of the first pattern, of mean square 1, for a host that adds fields.
+    /// Return the complex amplitudes of the first pattern, of mean square 1, for a host that adds
+    /// fields.
     ///
     /// Parameters
     /// ----------
@@ -126,8 +128,8 @@ methods! {
         named(py, "SpeckleShift", shifts)
     };
 
-    /// Return the factors at points that camera samples see at image points: out of focus those lie beside the ones where
-    /// the centre of the lens sees the points.
+    /// Return the factors at points that camera samples see at image points: out of focus those lie
+    /// beside the ones where the centre of the lens sees the points.
     ///
     /// Parameters
     /// ----------
@@ -145,7 +147,8 @@ methods! {
         [this.frame.factor_at(pixel, point, normal.into())]
     };
 
-    /// Return the means of the factors over the pixels about the images of points, for a host with one sample per pixel.
+    /// Return the means of the factors over the pixels about the images of points, for a host with
+    /// one sample per pixel.
     ///
     /// Parameters
     /// ----------
@@ -159,8 +162,8 @@ methods! {
     over average(points: 3, normals: 3) -> [] =
         |[x, y, z, normal @ ..]| [this.frame.average(DVec3::new(x, y, z), normal.into())];
 
-    /// Side of the reference state on which the speckle is: 1.0, or -1.0 where the pupil has moved over it the other way
-    /// than in the frame in which it moves farthest.
+    /// Side of the reference state on which the speckle is: 1.0, or -1.0 where the pupil has moved
+    /// over it the other way than in the frame in which it moves farthest.
     get side -> f64;
 
     /// Poses of the surface, the camera and the laser.

@@ -24,7 +24,8 @@ fn disc(source_half_angle: f64) -> PyResult<SourceExtent> {
 }
 
 class! {
-    /// A laser in the scene: a spot or a line, placed, with its power and the spectrum of its light.
+    /// A laser in the scene: a spot or a line, placed, with its power and the spectrum of its
+    /// light.
     ///
     /// Made by ``spot`` or ``line``.
     "tem00.shading" Laser(physics::Laser)
@@ -42,21 +43,25 @@ methods! {
     /// wavelength : float or SpectralLine
     ///     Vacuum wavelength, in metres, or the spectrum of the light.
     /// waist_radius : float or array_like, shape (2,)
-    ///     Waist radius, in metres: of an elliptic spot that along ``line_direction`` and that across it.
+    ///     Waist radius, in metres: of an elliptic spot that along ``line_direction`` and that
+    ///     across it.
     /// origin : array_like, shape (3,)
     ///     Centre of the aperture, in metres.
     /// target : array_like, shape (3,)
     ///     A point on the axis, in metres.
     /// line_direction : array_like, shape (3,), optional
-    ///     Across the axis: the first axis of an elliptic spot. Its part along the axis is ignored; (1, 0, 0) if left out.
+    ///     Across the axis: the first axis of an elliptic spot. Its part along the axis is ignored;
+    ///     (1, 0, 0) if left out.
     /// power : float, optional
     ///     Power, in watts.
     /// focused_at : float, optional
-    ///     Distance of the waist from the aperture, in metres, negative behind it; that of the target if left out.
+    ///     Distance of the waist from the aperture, in metres, negative behind it; that of the
+    ///     target if left out.
     /// m_squared : float, optional
     ///     Beam quality factor M².
     /// source_half_angle : float, optional
-    ///     Half angle of the disc as which a surface sees the source, in radians; 0 for a point. It acts on speckle only.
+    ///     Half angle of the disc as which a surface sees the source, in radians; 0 for a point. It
+    ///     acts on speckle only.
     #[staticmethod]
     #[pyo3(signature = (
         wavelength, waist_radius, *, origin, target, line_direction = None, power = 1e-3,
@@ -93,17 +98,21 @@ methods! {
     /// target : array_like, shape (3,)
     ///     A point on the axis, in metres.
     /// line_direction : array_like, shape (3,), optional
-    ///     Across the axis: where the line opens. Its part along the axis is ignored; (1, 0, 0) if left out.
+    ///     Across the axis: where the line opens. Its part along the axis is ignored; (1, 0, 0) if
+    ///     left out.
     /// profile : LineProfile, optional
-    ///     Distribution of the power along the line; Gaussian along the line on a plane if left out.
+    ///     Distribution of the power along the line; Gaussian along the line on a plane if left
+    ///     out.
     /// power : float, optional
     ///     Power, in watts.
     /// focused_at : float, optional
-    ///     Distance along the axis at which the line is thinnest, in metres; that of the target if left out.
+    ///     Distance along the axis at which the line is thinnest, in metres; that of the target if
+    ///     left out.
     /// m_squared : float, optional
     ///     Beam quality factor M² across the line.
     /// source_half_angle : float, optional
-    ///     Half angle of the disc as which a surface sees the source, in radians; 0 for a point. It acts on speckle only.
+    ///     Half angle of the disc as which a surface sees the source, in radians; 0 for a point. It
+    ///     acts on speckle only.
     #[staticmethod]
     #[pyo3(signature = (
         wavelength, thickness, fan_angle, *, origin, target, line_direction = None, profile = None,

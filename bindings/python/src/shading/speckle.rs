@@ -9,10 +9,11 @@ use crate::{
     error::{OrRaise, refused},
 };
 
-/// The speckle of a laser in the image of a camera, prepared for the frames in which something moves.
+/// The speckle of a laser in the image of a camera, prepared for the frames in which something
+/// moves.
 ///
-/// It chooses sizes, slices and seeds and generates the patterns; ``print`` says what it chose. Two lasers want two
-/// seeds.
+/// It chooses sizes, slices and seeds and generates the patterns; ``print`` says what it chose. Two
+/// lasers want two seeds.
 ///
 /// Parameters
 /// ----------
@@ -23,21 +24,23 @@ use crate::{
 /// seed : int
 ///     Seed of the patterns, 0 to 2**64 - 1.
 /// poses, camera_poses, laser_poses : sequence of Pose, optional
-///     Poses of a body, of the camera and of the laser in each frame; what has none stands still in all. With several
-///     bodies that move, those of one after those of another.
+///     Poses of a body, of the camera and of the laser in each frame; what has none stands still in
+///     all. With several bodies that move, those of one after those of another.
 /// at_points : (array_like, array_like), shape (..., 3) each, optional
-///     Points of surfaces in the reference state, and their unit normals: there the largest shift of the speckle is
-///     looked for. Without them it is where the light of the laser crosses the plane in focus. A laser with a linewidth
-///     or an extent needs them.
+///     Points of surfaces in the reference state, and their unit normals: there the largest shift
+///     of the speckle is looked for. Without them it is where the light of the laser crosses the
+///     plane in focus. A laser with a linewidth or an extent needs them.
 /// memory : int, optional
 ///     Bytes that the patterns may take; 256 MiB if left out.
 /// looks : int, optional
-///     Number of equal independent patterns that add up, which lowers the contrast to 1/√looks; 1 if left out.
+///     Number of equal independent patterns that add up, which lowers the contrast to 1/√looks; 1
+///     if left out.
 /// polarisation : float, optional
 ///     Degree of polarisation of the light at the sensor, from 0 to 1: 1 behind a polariser.
 /// rms_height, correlation_length : float, optional
-///     Root mean square height of the relief that is finer than a resolution cell, and the distance at which the
-///     correlation of the heights falls to 1/e, in metres: they count in light that has a linewidth.
+///     Root mean square height of the relief that is finer than a resolution cell, and the distance
+///     at which the correlation of the heights falls to 1/e, in metres: they count in light that
+///     has a linewidth.
 #[pyclass(frozen, module = "tem00.shading")]
 #[derive(Clone, Debug)]
 pub(crate) struct Speckle(physics::PreparedSpeckle);
@@ -109,7 +112,8 @@ methods! {
     /// surface, camera, laser : Pose, optional
     ///     Where the body, the camera and the laser are now; what is left out has not moved.
     /// body : int, optional
-    ///     Number of the body: bodies that move apart have numbers, and speckle, of their own; 0 if left out.
+    ///     Number of the body: bodies that move apart have numbers, and speckle, of their own; 0 if
+    ///     left out.
     ///
     /// Returns
     /// -------
@@ -133,10 +137,11 @@ methods! {
         Ok(SpeckleFrame { frame, motion })
     };
 
-    /// Return the factors at points that stood elsewhere in the reference state, for a host that knows no bodies.
+    /// Return the factors at points that stood elsewhere in the reference state, for a host that
+    /// knows no bodies.
     ///
-    /// A point counts as carried along without a turn; those that are not finite have the factor 1. Points whose motion
-    /// is the same, one after the other, are looked up fastest.
+    /// A point counts as carried along without a turn; those that are not finite have the factor 1.
+    /// Points whose motion is the same, one after the other, are looked up fastest.
     ///
     /// Parameters
     /// ----------
@@ -167,7 +172,7 @@ methods! {
     get speckle_size -> f64 = this.0.geometry().speckle_size_in_pixels();
 }
 
-/// One motion for each frame.
+/// Returns one motion for each frame.
 fn motions(all: [Option<Vec<PyRef<'_, RigidMotion>>>; 3]) -> PyResult<Vec<Motion>> {
     let all = all.map(Option::unwrap_or_default);
     let frames = all.iter().map(Vec::len).max().unwrap_or(0);

@@ -30,7 +30,8 @@ class! {
     /// size : int
     ///     Side Q of the pattern in samples.
     /// diameter : int
-    ///     Diameter C of the pupil in lattice points, 8 to size / 2. Speckles are Q / C samples wide.
+    ///     Diameter C of the pupil in lattice points, 8 to size / 2. Speckles are Q / C samples
+    ///     wide.
     /// seed : int
     ///     Seed of the phasors, 0 to 2**64 - 1.
     "tem00.speckle" PupilField(Field)
@@ -68,8 +69,8 @@ methods! {
     /// offset : (float, float), optional
     ///     Displacement of the pupil in its diameters.
     /// defocus : float, optional
-    ///     In axial decorrelation lengths: at 1 the correlation first vanishes. Turns of phase from the
-    ///     centre of the pupil to its rim.
+    ///     In axial decorrelation lengths: at 1 the correlation first vanishes. Turns of phase from
+    ///     the centre of the pupil to its rim.
     /// image_drift : (float, float), optional
     ///     Drift of the pattern over the sensor during an exposure, in speckle sizes.
     /// pupil_drift : (float, float), optional
@@ -130,8 +131,9 @@ methods! {
 
     /// Return a field of unit phasors behind a circular pupil, for speckles of a given size.
     ///
-    /// Without a lens a lit area takes the place of the pupil: of the width w it makes speckles of the wavelength
-    /// times the distance over w, and ``with_pupil`` gives its shape. The law is ``tem00.statistics.ObjectiveSpeckle``.
+    /// Without a lens a lit area takes the place of the pupil: of the width w it makes speckles of
+    /// the wavelength times the distance over w, and ``with_pupil`` gives its shape. The law is
+    /// ``tem00.statistics.ObjectiveSpeckle``.
     ///
     /// Parameters
     /// ----------
@@ -149,8 +151,8 @@ methods! {
     /// Parameters
     /// ----------
     /// samples : array_like of complex, shape (rows, columns)
-    ///     Amplitude at the lattice points; sample [rows // 2, columns // 2] is the origin. They are
-    ///     copied as complex64.
+    ///     Amplitude at the lattice points; sample [rows // 2, columns // 2] is the origin. They
+    ///     are copied as complex64.
     /// size : (int, int)
     ///     Width and height of the pattern in samples.
     /// speckle_size : float
@@ -187,7 +189,8 @@ methods! {
     ///     Seed of the phasors, 0 to 2**64 - 1.
     fn with_seed(seed: u64) -> PupilField = this.0.clone().with_seed(seed);
 
-    /// Return fields of as many independent patterns: this one, then the same with seeds made from its own.
+    /// Return fields of as many independent patterns: this one, then the same with seeds made from
+    /// its own.
     ///
     /// Parameters
     /// ----------
@@ -300,7 +303,8 @@ fn finite(name: &str, x: f64) -> PyResult<f64> {
 }
 
 functions! {
-    /// Return the seed of one of several lasers or bodies, from a seed that they share: as ``tem00 render`` derives it.
+    /// Return the seed of one of several lasers or bodies, from a seed that they share: as ``tem00
+    /// render`` derives it.
     ///
     /// Parameters
     /// ----------
@@ -309,7 +313,8 @@ functions! {
     /// purpose : str
     ///     "laser" or "body".
     /// index : int
-    ///     Number of the laser or of the body, from 0. The first body has the seed of the laser itself.
+    ///     Number of the laser or of the body, from 0. The first body has the seed of the laser
+    ///     itself.
     ///
     /// Returns
     /// -------
@@ -327,8 +332,8 @@ functions! {
     /// polarisation : float
     ///     Degree of polarisation of the light that reaches the sensor, 0 to 1.
     /// weights : array_like, shape (n,)
-    ///     Mean intensities in any unit of the parts of each: of several lasers, or of the coherent modes of
-    ///     a broad spectrum.
+    ///     Mean intensities in any unit of the parts of each: of several lasers, or of the coherent
+    ///     modes of a broad spectrum.
     ///
     /// Returns
     /// -------

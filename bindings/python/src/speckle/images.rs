@@ -24,16 +24,17 @@ pub(crate) fn view<'py, C: PyClass<Frozen = True> + Sync, T: Element>(
     let rows = (grid.height(), grid.width());
     let values = ArrayView2::from_shape(rows, grid.values())
         .map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
-    // SAFETY: the array keeps `owner` alive, and with it the values, which nobody changes: not Rust,
-    // since `owner` is frozen, and not Python, for which they are made read-only here.
+    // SAFETY: the array keeps `owner` alive, and with it the values, which nobody changes: not
+    // Rust, since `owner` is frozen, and not Python, for which they are made read-only here.
     let array = unsafe { PyArray2::borrow_from_array(&values, owner.clone().into_any()) };
     // Not through a borrow to write, which fails while another thread reads the same values.
     array.call_method1("setflags", (false,))?;
     Ok(Some(array))
 }
 
-/// Checks that the machine has memory for an image of `bytes_each` bytes for each of its samples, and for another
-/// complex one to work with: one that grants more nevertheless ends the program later.
+/// Checks that the machine has memory for an image of `bytes_each` bytes for each of its samples,
+/// and for another complex one to work with: one that grants more nevertheless ends the program
+/// later.
 pub(crate) fn check_room([width, height]: [usize; 2], bytes_each: u64) -> PyResult<()> {
     const COMPLEX: u64 = 8;
     let samples = (width as u64).saturating_mul(height as u64);

@@ -9,8 +9,8 @@ use super::{
 use crate::{arguments::optional, error::OrRaise};
 
 class! {
-    /// Sizes of a stack that repeats nothing where it is looked up and takes no more memory than that
-    /// needs.
+    /// Sizes of a stack that repeats nothing where it is looked up and takes no more memory than
+    /// that needs.
     ///
     /// Parameters
     /// ----------
@@ -21,8 +21,8 @@ class! {
     /// speckle_size : float
     ///     Speckle size on the sensor in pixels.
     /// motion : float or None
-    ///     Largest motion of the pupil over the speckle, in its diameters; None if the speckle never
-    ///     changes.
+    ///     Largest motion of the pupil over the speckle, in its diameters; None if the speckle
+    ///     never changes.
     /// frames : int
     ///     Number of frames among which the speckle is compared.
     /// memory_limit : int
@@ -37,7 +37,8 @@ class! {
 
 #[pymethods]
 impl StackPlan {
-    /// Return the place in a stack of one of several patterns that share it, in periods along x and y.
+    /// Return the place in a stack of one of several patterns that share it, in periods along x and
+    /// y.
     ///
     /// Parameters
     /// ----------

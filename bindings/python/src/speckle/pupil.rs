@@ -43,7 +43,8 @@ methods! {
     ///     Distance from the centre at which 1/e² of the power is transmitted.
     make gaussian(radius: f64) = checked(Shape::Gaussian { radius });
 
-    /// Return a pupil of any transmission over its bounding square, with phase if there are aberrations.
+    /// Return a pupil of any transmission over its bounding square, with phase if there are
+    /// aberrations.
     ///
     /// Parameters
     /// ----------
@@ -73,7 +74,8 @@ methods! {
 
 #[pymethods]
 impl Pupil {
-    /// Amplitude transmission of a sampled pupil, complex64 [row, column], a read-only view; None for others.
+    /// Amplitude transmission of a sampled pupil, complex64 [row, column], a read-only view; None
+    /// for others.
     #[getter]
     fn values<'py>(slf: &Bound<'py, Self>) -> PyResult<View<'py, Complex32>> {
         view(slf, |this| match &this.0 {

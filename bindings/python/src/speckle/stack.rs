@@ -265,7 +265,8 @@ methods! {
     /// Parameters
     /// ----------
     /// shift : array_like
-    ///     Shift in pupil diameters, to one side or the other; beyond the reach of the path it counts as the reach.
+    ///     Shift in pupil diameters, to one side or the other; beyond the reach of the path it
+    ///     counts as the reach.
     map coordinate_at(shift);
 
     shown size, speckle_size, path;

@@ -28,7 +28,8 @@ functions! {
     /// Parameters
     /// ----------
     /// spread : float or array_like
-    ///     Standard deviation of the filter along either axis, in units of the speckle size, 0 or more.
+    ///     Standard deviation of the filter along either axis, in units of the speckle size, 0 or
+    ///     more.
     map gaussian_filter_contrast(spread: not_negative);
 
     /// Return the contrast of an exposure during which speckle boils and the image stands still.

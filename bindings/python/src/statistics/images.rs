@@ -23,12 +23,14 @@ functions! {
     /// image : array_like, shape (rows, columns)
     ///     The image.
     /// boundary : {"periodic", "finite"}
-    ///     Whether the image repeats, as a computed pattern does, or nothing is known beyond its edges.
+    ///     Whether the image repeats, as a computed pattern does, or nothing is known beyond its
+    ///     edges.
     ///
     /// Returns
     /// -------
     /// float32 ndarray, shape (rows, columns) or (2 rows, 2 columns)
-    ///     Lag (x, y) stands at [y, x], negative lags at the far end. Twice the shape for a finite image.
+    ///     Lag (x, y) stands at [y, x], negative lags at the far end. Twice the shape for a finite
+    ///     image.
     try autocovariance(image: Grid<f32>, boundary: Boundary) -> ImageArray<f32> =
         physics::autocovariance(&image, boundary).or_raise_renamed(VALUES, "image");
 
@@ -42,8 +44,8 @@ functions! {
     /// Returns
     /// -------
     /// float32 ndarray, shape (rows, columns)
-    ///     Pixels² per unit variance. Frequency (kx / columns, ky / rows), in cycles per pixel, stands at
-    ///     [ky, kx], negative ones at the far end.
+    ///     Pixels² per unit variance. Frequency (kx / columns, ky / rows), in cycles per pixel,
+    ///     stands at [ky, kx], negative ones at the far end.
     try power_spectrum(image: Grid<f32>) -> ImageArray<f32> =
         physics::power_spectrum(&image).or_raise_renamed(VALUES, "image");
 

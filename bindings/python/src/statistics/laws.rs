@@ -15,7 +15,8 @@ functions! {
     ///     Intensity in units of its mean.
     map exponential_density(intensity);
 
-    /// Return the probability that the intensity of fully developed speckle is at most ``intensity``.
+    /// Return the probability that the intensity of fully developed speckle is at most
+    /// ``intensity``.
     ///
     /// Parameters
     /// ----------
@@ -55,7 +56,8 @@ fn within<T: PartialOrd + core::fmt::Display>(
     Err(refused(name, message))
 }
 
-/// Declares the class of a law of one parameter: density, probability and contrast of the intensity.
+/// Declares the class of a law of one parameter: density, probability and contrast of the
+/// intensity.
 macro_rules! law {
     ($(#[$doc:meta])* $law:ident($parameter:ident: $type:ty) $($items:tt)*) => {
         class! { $(#[$doc])* "tem00.statistics" $law(physics::$law) }
@@ -73,7 +75,8 @@ macro_rules! law {
             /// Contrast, standard deviation over mean.
             get contrast -> f64;
 
-            /// Return the probability density at intensities in units of their mean, in their shape.
+            /// Return the probability density at intensities in units of their mean, in their
+            /// shape.
             map density(intensity) = this.0.density(intensity);
 
             /// Return the probability of at most an intensity in units of the mean, in its shape.
@@ -163,8 +166,8 @@ methods! {
 }
 
 class! {
-    /// The joint law of the intensities at two points of fully developed speckle, or at one point of two
-    /// correlated patterns.
+    /// The joint law of the intensities at two points of fully developed speckle, or at one point
+    /// of two correlated patterns.
     ///
     /// Intensities are in units of their mean, and broadcast together.
     ///

@@ -3,8 +3,8 @@ use super::physics;
 functions! {
     /// Return the speckle length of rows.
     ///
-    /// The integral, over all distances across the rows, of the autocovariance of speckle that is averaged
-    /// over a row's height along the line, in units of the speckle size.
+    /// The integral, over all distances across the rows, of the autocovariance of speckle that is
+    /// averaged over a row's height along the line, in units of the speckle size.
     ///
     /// Parameters
     /// ----------
@@ -17,22 +17,24 @@ functions! {
     /// Parameters
     /// ----------
     /// radius, row_height : float or array_like
-    ///     1/e² half-width of the line and extent of a pixel along it, in units of the speckle size as the
-    ///     result, 0 or more. They are broadcast together.
+    ///     1/e² half-width of the line and extent of a pixel along it, in units of the speckle size
+    ///     as the result, 0 or more. They are broadcast together.
     map line_centroid_deviation(radius: not_negative, row_height: not_negative);
 
-    /// Return the standard deviation of the centroid of a laser line on a rough surface that a lens images.
+    /// Return the standard deviation of the centroid of a laser line on a rough surface that a lens
+    /// images.
     ///
     /// First order in the fluctuations, for lines of any width.
     ///
     /// Parameters
     /// ----------
     /// radius, row_height : float or array_like
-    ///     1/e² half-width of the line and extent of a pixel along it, in units of the speckle size as the
-    ///     result, 0 or more. They are broadcast together.
+    ///     1/e² half-width of the line and extent of a pixel along it, in units of the speckle size
+    ///     as the result, 0 or more. They are broadcast together.
     map imaged_line_centroid_deviation(radius: not_negative, row_height: not_negative);
 
-    /// Return the standard deviation of the centroid of a round Gaussian spot under speckle, along one axis.
+    /// Return the standard deviation of the centroid of a round Gaussian spot under speckle, along
+    /// one axis.
     ///
     /// Parameters
     /// ----------
@@ -40,7 +42,8 @@ functions! {
     ///     1/e² radius in units of the speckle size, as the result, 0 or more.
     map gaussian_spot_centroid_deviation(radius: not_negative);
 
-    /// Return the standard deviation of the centroid of a uniform round spot under speckle, along one axis.
+    /// Return the standard deviation of the centroid of a uniform round spot under speckle, along
+    /// one axis.
     ///
     /// Parameters
     /// ----------

@@ -7,7 +7,8 @@ use crate::{
 };
 
 kept_class! {
-    /// Speckle without a lens: the pattern that a lit area of a rough surface makes in a distant plane.
+    /// Speckle without a lens: the pattern that a lit area of a rough surface makes in a distant
+    /// plane.
     ///
     /// Lengths are in metres; the distance is that of the plane from the surface.
     "tem00.statistics" ObjectiveSpeckle(physics::ObjectiveSpeckle)

@@ -8,7 +8,8 @@ use tem00_triangulation::TriangulationError;
 /// next edges are more than five of them away.
 const SMOOTHING: f64 = 0.18;
 
-/// That of the last one. What uneven light and curved edges do to a position grows with its square.
+/// Standard deviation of the last smoothing, in squares. The error due to uneven light and curved
+/// edges grows with its square.
 const LAST_SMOOTHING: f64 = 0.06;
 
 /// The minimum standard deviation of the last one, in pixels: steps between pixels hardly show in

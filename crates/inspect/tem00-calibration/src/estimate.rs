@@ -147,7 +147,7 @@ fn best_pinhole(bundle: &Bundle<'_>) -> Result<State, TriangulationError> {
 
 /// The image points of the laser line on the boards that make the plane.
 struct Lines {
-    /// By board.
+    /// Corner positions of each board.
     positions: Vec<Vec<DVec2>>,
     plane: FittedPlane,
     covariance: [[f64; 4]; 4],

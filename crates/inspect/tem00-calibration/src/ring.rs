@@ -92,7 +92,7 @@ fn peaks(responses: &Grid<f64>) -> Vec<(f64, DVec2)> {
     peaks
 }
 
-/// Of equal neighbours the first counts.
+/// Returns whether a response is a local maximum; of equal neighbours the first counts.
 fn is_greatest(responses: &Grid<f64>, (x, y): (usize, usize), value: f64) -> bool {
     (y - REACH..=y + REACH).all(|v| {
         (x - REACH..=x + REACH).all(|u| {

@@ -24,7 +24,7 @@ pub struct CalibrationSettings {
 /// Origin of the calibration of camera and laser plane.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CalibrationMethod {
-    /// As the file says, without error.
+    /// Camera and laser plane as in the file, without error.
     Exact,
     /// From images of a checkerboard and of the line on it.
     Estimated(BoardSettings),

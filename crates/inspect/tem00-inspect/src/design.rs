@@ -14,7 +14,7 @@ use tem00_triangulation::{neighbours, read_design, read_uncertainty};
 use self::search::Design;
 use crate::args::DesignArgs;
 
-/// By which part each parameter of the best set-up is changed.
+/// Relative change of each parameter of the best set-up.
 const PART: f64 = 0.1;
 
 /// Searches, prints the best and writes the files.

@@ -12,11 +12,11 @@ const TOO_MANY: f64 = 0.5;
 /// Numbers of points of lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct PointCounts {
-    /// All that were found.
+    /// Number of points found.
     pub(crate) points: usize,
     /// The valid ones.
     pub(crate) valid: usize,
-    /// Those on saturated pixels.
+    /// Number of points on saturated pixels.
     pub(crate) saturated: usize,
 }
 

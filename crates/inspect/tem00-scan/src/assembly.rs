@@ -17,9 +17,9 @@ pub struct Scan<'a> {
     /// The frames of the profile that is not complete.
     pending: Vec<MeasuredFrame>,
     profiles: Vec<Vec<MeasuredPoint>>,
-    /// That of the first profile with valid points.
+    /// Correlation of the frames of the first profile with valid points.
     correlation: Option<FrameCorrelation>,
-    /// That from the first frame to the next.
+    /// Change of the speckle from the first frame to the next.
     speckle_change: Option<SpeckleChange>,
 }
 

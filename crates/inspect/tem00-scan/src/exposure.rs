@@ -12,7 +12,7 @@ pub const WHITE_LIGHT_WAVELENGTH: f64 = 550e-9;
 pub struct Exposure {
     /// The mean number of electrons in each pixel.
     pub electrons: Grid<f32>,
-    /// The same without speckle: the mean over all surfaces that look alike.
+    /// Image without speckle: the mean over all surfaces that look alike.
     pub without_speckle: Grid<f32>,
     /// The part of `without_speckle` that carries speckle.
     pub coherent: Grid<f32>,

@@ -58,11 +58,12 @@ pub struct MeasuredPoint {
 pub struct IndirectLight {
     /// Its part of the light in the window about the line, from 0 to 1.
     pub fraction: f64,
-    /// What it moves the line by, in pixels down: an error that no repetition shows, whose size
-    /// counts as a standard uncertainty. It is the distance, without noise, from the nearest line
-    /// in the column that other light makes; half of the window of the detector if there is none.
+    /// Displacement of the line by this light, in pixels down: an error that repetition does not
+    /// reveal, whose size counts as a standard uncertainty. For a line that consists of such light
+    /// only, it is the distance, without noise, from the nearest line of other light in the column;
+    /// half of the window of the detector if there is none.
     pub shift: f64,
-    /// Whether the line is of such light alone: no other is within half of the window.
+    /// Whether the line consists of such light only: no other line is within half of the window.
     pub alone: bool,
 }
 
@@ -104,7 +105,7 @@ impl MeasuredPoint {
     }
 }
 
-/// All that it takes to measure a frame.
+/// Inputs for the measurement of a frame.
 #[derive(Clone, Debug)]
 pub(super) struct FrameContext<'a> {
     pub(super) sensor: &'a Sensor,

@@ -3,7 +3,7 @@ use crate::average::SpeckleCorrelation;
 /// The correlation of a line's position over columns, for each number of frames between.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameCorrelation {
-    /// By number of frames, then by columns, from −reach to reach.
+    /// Correlations by number of frames, then by columns, from −reach to reach.
     tables: Vec<Vec<f64>>,
 }
 

@@ -14,8 +14,8 @@ pub(super) struct ImageSpeckle {
     middle: SensorSpeckle,
     /// The covariances in the middle of the image.
     table: SpeckleTable,
-    /// Those of one column at the corners of `CELLS`² cells of the image, unless they are the same
-    /// all over it.
+    /// Tables of one column at the corners of `CELLS`² cells of the image, unless they are equal
+    /// everywhere.
     columns: Option<Grid<SpeckleTable>>,
 }
 

@@ -30,7 +30,7 @@ impl Default for Options {
 /// Characteristics of a sensor; `None` where too little of an artefact was seen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Characteristics {
-    /// What the sensor reaches.
+    /// Field of measurement of the sensor.
     pub field: Field,
     /// The response to heights.
     pub response: Option<Response>,

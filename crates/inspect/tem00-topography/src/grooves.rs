@@ -11,7 +11,7 @@ use crate::{
 const WIDTHS: i32 = 12;
 /// The widest groove, and the land between grooves, in columns across the profile.
 const COLUMNS: [f64; 2] = [16.0, 16.0];
-/// The same, in thicknesses of the line across the scan.
+/// Widest groove and land between grooves across the scan, in line thicknesses.
 const THICKNESSES: [f64; 2] = [4.0, 8.0];
 /// The part of the field that a comb may cover.
 const PART: f64 = 0.9;
@@ -73,7 +73,7 @@ impl GrooveResult {
         }
     }
 
-    /// All grooves are in each profile.
+    /// Measures grooves that all cross each profile.
     fn across_profile<S: ProfileSensor>(
         sensor: &mut S,
         repetitions: usize,
@@ -183,7 +183,7 @@ impl Comb {
         }
     }
 
-    /// As many copies as a profile has room for; `None` if there is none.
+    /// Places as many copies as fit into a profile; `None` if none fits.
     fn across_profile(field: &Field) -> Option<Self> {
         let one = Self::one_across_profile(field);
         let room = to_usize(PART * field.width / one.length);

@@ -84,7 +84,7 @@ pub struct LineImage {
     period: [usize; 2],
     /// The speckle size in samples.
     speckle: f64,
-    /// What the linewidth of the laser asks.
+    /// Treatment of the laser's linewidth.
     bandwidth: Option<Bandwidth>,
 }
 

@@ -19,7 +19,7 @@ use crate::{
     },
 };
 
-/// What is uncertain of a set-up, and the height that is measured with it.
+/// Uncertain values of a set-up, and the height that is measured with it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SetupUncertainty {
     /// The height, in metres; the greatest of the measuring range without one.

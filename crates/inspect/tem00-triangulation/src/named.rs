@@ -8,7 +8,7 @@ macro_rules! named {
         }
 
         impl $name {
-            /// All of them, in order.
+            /// List of all values, in order.
             pub const ALL: [Self; [$($text),+].len()] = [$(Self::$variant),+];
 
             /// Returns the name, as tables and set-up files have it.

@@ -48,7 +48,7 @@ pub struct PositionNoise {
 pub struct ColumnLight<'a> {
     /// The electrons that light frees in each pixel, without noise.
     pub electrons: &'a [f64],
-    /// Those of them whose light carries speckle.
+    /// Part of these electrons whose light carries speckle.
     pub coherent: &'a [f64],
     /// The shift of the position per grey value of each pixel, in pixels per DN.
     pub sensitivities: &'a [f64],

@@ -23,7 +23,7 @@ pub enum Distribution {
 }
 
 impl Distribution {
-    /// All of them.
+    /// List of all distributions.
     pub const ALL: [Self; 5] = [
         Self::Normal,
         Self::Rectangular,

@@ -55,7 +55,7 @@ pub enum UncertaintyError {
     NotDifferentiable {
         /// The position of the input.
         input: usize,
-        /// What they leave open, in parts of the largest contribution.
+        /// Uncertainty of the differences, relative to the largest contribution.
         open: f64,
     },
     /// The variance is decomposed for independent inputs only.

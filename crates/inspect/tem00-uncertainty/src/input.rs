@@ -6,7 +6,7 @@ use tem00_numerics::check;
 
 use crate::{Distribution, UncertaintyError};
 
-/// What is known of one input quantity.
+/// Estimate, uncertainty and distribution of an input quantity.
 ///
 /// `u` is the standard uncertainty, the square root of the variance; of a scaled and shifted t it
 /// is the scale, s/√n of n observations, and the standard deviation is

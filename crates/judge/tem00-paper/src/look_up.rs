@@ -132,7 +132,7 @@ fn circle_centre(field: &PupilField, index: usize, half_period: usize) -> [i64; 
     [x * angle.cos(), y * angle.sin()].map(|centre| centre.round() as i64)
 }
 
-/// The same, in pupil diameters.
+/// Offset of a slice on the circle, in pupil diameters.
 fn circle_offset(field: &PupilField, index: usize, half_period: usize) -> [f64; 2] {
     let centre = circle_centre(field, index, half_period);
     [0, 1].map(|axis| centre[axis] as f64 / field.diameter()[axis])

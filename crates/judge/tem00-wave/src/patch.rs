@@ -43,7 +43,7 @@ pub enum Arrangement {
     /// In the centre of each cell of a lattice.
     #[default]
     Lattice,
-    /// One at random in each cell of a lattice.
+    /// One scatterer at random in each cell of a lattice.
     Stratified,
     /// Anywhere, independent of each other.
     Random,

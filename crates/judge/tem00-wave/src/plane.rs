@@ -96,7 +96,7 @@ impl SamplePlane {
         })
     }
 
-    /// The same samples about another centre, which was checked before.
+    /// Returns the same samples around another centre, which was checked before.
     pub(crate) const fn about(self, centre: DVec3) -> Self {
         Self { centre, ..self }
     }

@@ -1,4 +1,4 @@
-//! What two parts of the light share of a pupil out of focus.
+//! Overlap of a pupil out of focus for two parts of the light.
 
 use core::f64::consts::{FRAC_1_PI, PI};
 

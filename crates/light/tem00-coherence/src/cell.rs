@@ -6,7 +6,7 @@ use tem00_numerics::check;
 
 use crate::{Refusal, SourceExtent, blur::Blur, excess::HeightExcess, kernel::LagKernel};
 
-/// How a camera sees a rough surface that a source lights, for [`ResolutionCell::new`].
+/// Geometry of illumination and observation of a rough surface, for [`ResolutionCell::new`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellGeometry {
     /// Direction from the surface to the source, of any length.
@@ -354,7 +354,7 @@ impl ResolutionCell {
     }
 }
 
-/// What correlates parts of the light of a cell, from tables where many are asked for.
+/// Correlation of two parts of the light of a cell, tabulated where many values are needed.
 #[derive(Debug)]
 pub(crate) struct Correlation<'a> {
     cell: &'a ResolutionCell,
@@ -383,7 +383,7 @@ impl<'a> Correlation<'a> {
     }
 }
 
-/// How two parts of the light differ.
+/// Difference of two parts of the light.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Difference {
     /// Their wave numbers, in rad/m.

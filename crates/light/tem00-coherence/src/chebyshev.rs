@@ -110,7 +110,7 @@ impl Grid {
         })
     }
 
-    /// The same, of values by the panel and the node there of both arguments.
+    /// Interpolates from values by panel and node of both arguments.
     pub(crate) fn at_nodes(
         &self,
         x: [f64; 2],

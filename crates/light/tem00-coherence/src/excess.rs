@@ -1,4 +1,4 @@
-//! What correlated heights add to the correlation of two parts of the light.
+//! Contribution of correlated heights to the correlation of two parts of the light.
 
 use core::{cell::OnceCell, f64::consts::TAU};
 
@@ -11,8 +11,9 @@ mod table;
 
 use reach::{STEEP, is_beyond};
 
-/// What a correlation length of heights adds to a mean of `exp(−x² (1 − ρ) + 2πi s·η)` over lags η,
-/// in speckles, with x the phase by heights and s the displacement of the pupil in its diameters.
+/// Contribution of a correlation length of heights to a mean of `exp(−x² (1 − ρ) + 2πi s·η)` over
+/// lags η, in speckles, with the phase x of the heights and the displacement s of the pupil in
+/// diameters.
 ///
 /// A single value takes an integral over the lags. Where many are asked for, or the integral is
 /// long, they come from a table, so that the work is bounded for any relief.

@@ -9,7 +9,7 @@ use tem00_numerics::{cast::to_usize, disc_overlap, jinc, quadrature::for_each_no
 /// between both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LagKernel {
-    /// How much of the kernel is that of a contrast.
+    /// Weight of the contrast kernel in this kernel.
     pub(crate) contrast_like: f64,
 }
 

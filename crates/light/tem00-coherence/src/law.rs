@@ -74,7 +74,7 @@ pub enum Rows {
     /// Finer than a speckle.
     #[default]
     Thin,
-    /// Of this height, in speckle sizes.
+    /// Rows of this height, in speckle sizes.
     Height(f64),
     /// Much taller than a speckle; round spots are alike.
     Tall,

@@ -204,7 +204,7 @@ impl SpectralLine {
         TAU / self.wavelength
     }
 
-    /// Whether all of the light has one wavelength.
+    /// Returns whether all of the light has one wavelength.
     pub fn is_monochromatic(&self) -> bool {
         self.width == 0.0 && self.peaks.len() == 1
     }

@@ -7,7 +7,7 @@ pub struct Recombination {
     /// The fractions: the first two are the fields of the single light and of the first mode of the
     /// multiple light, which overlap; then the further modes of the multiple light.
     pub patterns: [f64; Self::PATTERNS],
-    /// What is left of the multiple light: so many patterns that they add up to an even radiance.
+    /// Fraction of multiple light in so many patterns that their sum is even.
     pub even: f64,
 }
 

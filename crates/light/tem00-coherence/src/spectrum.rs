@@ -8,7 +8,7 @@ pub struct LaserLight {
     pub wavelength: f64,
     /// The linewidth, full width at half maximum; 0 for light of one wavelength.
     pub linewidth: f64,
-    /// What lies within.
+    /// Distribution within the linewidth.
     pub spectrum: Spectrum,
     /// The half-angle in radians of the disc from which the light reaches the surface, seen from
     /// there; 0 for a point. Light of its parts does not interfere: a fibre of many modes, a
@@ -19,9 +19,9 @@ pub struct LaserLight {
 /// The form of a spectrum.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Spectrum {
-    /// One peak, as wide as the linewidth.
+    /// Single peak, as wide as the linewidth.
     Peak(LineShape),
-    /// So many equal lines without a width, the first and the last a linewidth apart: the
+    /// Comb of equal lines without width, the first and the last a linewidth apart: the
     /// longitudinal modes of a cavity.
     Comb(u32),
     /// Pairs of a wavelength, in metres, and a power, in any unit. Each of them is a Gaussian peak

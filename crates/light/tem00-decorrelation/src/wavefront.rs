@@ -266,7 +266,7 @@ impl Wavefront {
         (self.direction_to_source - slope).try_normalize()
     }
 
-    /// The same wave turned by a rotation.
+    /// Returns the wave after a rotation.
     pub(crate) fn turned(&self, rotation: DMat3) -> Self {
         Self {
             direction_to_source: (rotation * self.direction_to_source).normalize(),

@@ -189,8 +189,8 @@ impl NormalEquations {
         })
     }
 
-    /// Whether these equations are nearer to a minimum than those of the sum of squares `sum` and
-    /// the gain `gain`.
+    /// Returns whether these equations are closer to a minimum than those with the sum of squares
+    /// `sum` and the gain `gain`.
     fn is_better(&self, own_gain: f64, sum: f64, gain: f64) -> bool {
         let is_lower = self.sum_of_squares < (1.0 - ROUNDING) * sum;
         is_lower || self.sum_of_squares <= (1.0 + ROUNDING) * sum && own_gain < gain

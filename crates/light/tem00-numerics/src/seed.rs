@@ -1,6 +1,6 @@
 //! Seeds derived from another seed, by purpose and index.
 
-/// What a derived seed is for.
+/// Purpose of a derived seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// The speckle of a laser of a scene, by its number.
@@ -10,7 +10,7 @@ pub enum Purpose {
     Body,
     /// The noise of a sensor in a frame, or another draw that each frame has anew.
     Frame,
-    /// One of several patterns that add up; pattern 0 has the seed of the sum.
+    /// Member of a sum of patterns; pattern 0 has the seed of the sum.
     Pattern,
 }
 

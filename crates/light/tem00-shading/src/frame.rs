@@ -36,7 +36,7 @@ struct Positions {
 struct Light<'a> {
     /// The quantile of its wave number in the laser's line.
     wave: f64,
-    /// Where it comes from, if not straight from the laser.
+    /// Wave that illuminates the point, if not straight from the laser.
     lit_by: Option<&'a Illumination>,
 }
 

@@ -101,7 +101,7 @@ pub struct KernelFrame<'a> {
     pub camera: &'a Camera,
     /// The laser in the reference state.
     pub laser: &'a Laser,
-    /// What has moved since.
+    /// Motion since the reference state.
     pub motion: &'a Motion,
     /// The sizes of the stack.
     pub plan: &'a StackPlan,

@@ -13,7 +13,7 @@ pub(crate) struct Patterns {
     pub(crate) geometry: ImagingGeometry,
     /// The fields that share a stack.
     pub(crate) in_a_stack: usize,
-    /// One for each field, or one for all.
+    /// Stacks, one for each field or one for all.
     pub(crate) stacks: Vec<SpeckleStack>,
     pub(crate) parts: Vec<Part>,
     pub(crate) bandwidth: Option<Bandwidth>,
@@ -31,7 +31,7 @@ pub(crate) struct Patterns {
 #[derive(Clone, Debug)]
 pub(crate) struct Part {
     pub fraction: f64,
-    /// One, or one for each height of the relief, whose fields add.
+    /// Fields that add: one, or one for each height of the relief.
     pub fields: Vec<Field>,
 }
 

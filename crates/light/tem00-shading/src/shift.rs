@@ -1,4 +1,5 @@
-//! What has become of the speckle of many points of a body, in loops that fill the vector units.
+//! Displacement and correlation of the speckle of many points of a body, in loops that fill vector
+//! units.
 
 use glam::{DVec2, DVec3};
 use tem00_decorrelation::{
@@ -33,7 +34,7 @@ pub struct SeenPoint {
 }
 
 impl SeenPoint {
-    /// What stands in a block for a point that is not seen.
+    /// Placeholder in a block for a point that is not seen.
     pub(crate) const ANYWHERE: Self = Self {
         pixel: DVec2::ZERO,
         position: DVec3::ZERO,
@@ -163,7 +164,7 @@ impl SpeckleLaw<'_> {
     }
 }
 
-/// What is the same for all points of a surface.
+/// Quantities common to all points of a surface.
 struct Shared<'a> {
     law: &'a RigidChange,
     /// The laser in the reference frame and now.
@@ -183,7 +184,7 @@ struct Block {
     focus_vergence: [f64; BLOCK],
 }
 
-/// What has become of their speckle.
+/// Displacements and correlations of the points of a block.
 struct Changes {
     displacement: [[f64; BLOCK]; 2],
     across: [[f64; BLOCK]; 2],

@@ -13,7 +13,7 @@ use crate::{
     state::{ReferencePoint, State},
 };
 
-/// What speckle is wanted: of a laser, in the image of a camera, for the motions of some frames.
+/// Description of speckle: of a laser, in the image of a camera, for the motions of some frames.
 ///
 /// [`prepare`](Self::prepare) chooses the sizes and generates the patterns; its `Display` says what
 /// it chose and why.
@@ -295,7 +295,7 @@ impl Layout {
     }
 }
 
-/// What the frames ask of the patterns.
+/// Requirements of the frames on the patterns.
 struct Demand {
     /// Width and height of the image, in pixels.
     image: DVec2,

@@ -1,4 +1,4 @@
-//! What light that is not of one wavelength, or not from a point, asks of the speckle of a surface.
+//! Speckle of a surface under light of finite linewidth or from an extended source.
 
 use core::f64::consts::TAU;
 
@@ -41,13 +41,14 @@ pub struct SpectralShift {
 /// its bandwidth asks.
 #[derive(Clone, Debug)]
 pub struct SurfaceLight {
-    /// One, or the modes of heights that dominate, or of directions of the source.
+    /// Fractions of independent patterns: one, or the dominant modes of heights or of directions of
+    /// the source.
     pub modes: Vec<f64>,
-    /// What each look-up must draw from the linewidth, unless light of any wave number looks alike.
+    /// Draw from the linewidth for each look-up, unless all wave numbers look alike.
     pub bandwidth: Option<Bandwidth>,
 }
 
-/// How a surface looks up the speckle of a laser that has a linewidth.
+/// Look-up of a surface's speckle under a laser with a linewidth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bandwidth {
     /// Heights that stand for the relief, in metres, with the roots of their fractions of the

@@ -104,7 +104,7 @@ pub struct SpeckleStack {
     /// The periods along x, y and u.
     pub(crate) periods: [Period; 3],
     pub(crate) slices: Vec<Slice>,
-    /// One for all slices, or one for each.
+    /// Variances, one for all slices or one for each.
     pub(crate) variances: Vec<Variance>,
 }
 

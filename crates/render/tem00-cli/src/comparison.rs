@@ -10,19 +10,19 @@ use tem00_report::{
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub(crate) enum Expectation {
-    /// It differs from `value` by at most `tolerance`.
+    /// Value within `tolerance` of `value`.
     Near {
         /// The value of the theory.
         value: f64,
         /// The largest difference that chance and rounding explain.
         tolerance: f64,
     },
-    /// It is at least this.
+    /// Lower bound.
     AtLeast {
         /// The bound.
         at_least: f64,
     },
-    /// It is at most this.
+    /// Upper bound.
     AtMost {
         /// The bound.
         at_most: f64,
@@ -64,7 +64,7 @@ impl Expectation {
     }
 }
 
-/// One line of the table.
+/// Row of the table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Row {
     /// The name of the quantity, with the unit.

@@ -47,7 +47,7 @@ impl Exposure {
     }
 }
 
-/// One frame.
+/// Summary of a frame.
 #[derive(Debug, Deserialize, Serialize)]
 pub(crate) struct FrameSummary {
     pub(crate) number: u32,
@@ -64,12 +64,13 @@ pub(crate) struct FrameSummary {
     pub(crate) seconds: f64,
 }
 
-/// One laser in one frame.
+/// Summary of a laser in a frame.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(crate) struct FrameLaser {
     /// The power that reaches the surfaces seen in the image, in watts.
     pub(crate) power_on_target: f64,
-    /// The same in units of the laser's power: 1 if the whole footprint is in the image.
+    /// Power on the target relative to the power of the laser: 1 if the whole footprint is in the
+    /// image.
     pub(crate) power_ratio: f64,
     /// The standard error of that ratio; `None` with one sample in a pixel.
     pub(crate) power_ratio_error: Option<f64>,

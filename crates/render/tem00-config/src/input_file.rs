@@ -24,7 +24,7 @@ pub enum FileAccess {
     /// the glTF file, symbolic links followed. Meshes and maps of radiance may lie anywhere.
     #[default]
     WithinFolder,
-    /// All files may lie anywhere.
+    /// Files may be anywhere.
     Anywhere,
 }
 

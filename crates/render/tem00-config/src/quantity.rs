@@ -181,7 +181,7 @@ pub const MEMORY: Dimension = Dimension {
     ],
 };
 
-/// All kinds that have units.
+/// Dimensions that have units.
 pub const DIMENSIONS: [&Dimension; 6] = [&LENGTH, &ANGLE, &POWER, &RADIANCE, &DURATION, &MEMORY];
 
 impl Dimension {

@@ -15,7 +15,7 @@ pub type Choice = (&'static str, &'static [&'static str]);
 /// Keys that have another name since: the old and the new one.
 const RENAMED: [(&str, &str); 2] = [("lamp", "light"), ("line_width", "line_thickness")];
 
-/// One table of the file.
+/// Table of the file.
 ///
 /// It is opened with the keys that it may have. A key that is not among them is an error at once,
 /// before a missing key is missed: a typo in a required key is both.

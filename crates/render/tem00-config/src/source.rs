@@ -8,7 +8,7 @@ use crate::error::{Location, Problem, line_column};
 /// The key by which a file names others that belong to it.
 pub(crate) const INCLUDE: &str = "include";
 
-/// One text of a document: the file itself, or one that it includes.
+/// Text of a document: the file itself, or an included one.
 #[derive(Debug)]
 pub(crate) struct Source {
     /// The index among all texts of the document, in which the file itself is the first.
@@ -18,7 +18,7 @@ pub(crate) struct Source {
     pub(crate) canonical: Option<PathBuf>,
     pub(crate) directory: PathBuf,
     pub(crate) text: String,
-    /// It lies outside of the folder of the file, and is therefore not quoted.
+    /// Whether the text lies outside the folder of the file, and is therefore not quoted.
     pub(crate) is_outside: bool,
 }
 

@@ -64,16 +64,16 @@ pub struct LightPart {
 pub enum LightFate {
     /// The camera sees what it lights.
     Seen,
-    /// It meets no rough surface: it leaves the scene, ends on a light or stays among mirrors and
-    /// glass.
+    /// The beam meets no rough surface: it leaves the scene, ends on a light or stays among mirrors
+    /// and glass.
     Misses,
-    /// It meets a one-sided surface from behind, which scatters nothing.
+    /// The beam meets a one-sided surface from behind, which scatters nothing.
     MeetsBack,
-    /// It lights the side of a surface that faces away from the camera.
+    /// The beam lights the side of a surface that faces away from the camera.
     LightsFarSide,
-    /// It lights what lies behind the camera.
+    /// The lit surface lies behind the camera.
     BehindCamera,
-    /// It lights what lies beside the image, or beside the part of it that is rendered.
+    /// The lit surface lies outside the image, or outside its rendered part.
     OutsideImage,
     /// Something stands between what it lights and the camera: the surface of this index, or a
     /// light for an index beyond those of the surfaces.

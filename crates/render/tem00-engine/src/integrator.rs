@@ -44,7 +44,7 @@ pub(crate) struct Integrator<'a> {
     speckle: Option<&'a SpeckleFrame<'a>>,
     rules: PathRules,
     roulette: Roulette,
-    /// Those of each number of samples that a pixel can get.
+    /// One point sequence per possible sample count.
     sequences: Vec<Sequence>,
     spectrum: Spectrum,
     /// The lights that rays can meet, in the order of their shapes behind the surfaces.

@@ -37,7 +37,8 @@ struct Groups {
 }
 
 impl Groups {
-    /// As large as spreads the points well, but not so few that their scatter is unknown.
+    /// Chooses a group size that spreads the points well and leaves enough groups to estimate the
+    /// variance.
     fn new(paths: u64) -> Self {
         const FEW: u64 = 64;
         const LARGE: u64 = 1 << 12;

@@ -49,7 +49,7 @@ pub(crate) struct Sequence {
 pub(crate) struct Stream {
     /// The key of the pixel.
     pub key: u64,
-    /// Which of the numbers of samples that a pixel can get this one has.
+    /// Index into the possible sample counts.
     pub level: u8,
     /// The number of the sample.
     pub index: u32,

@@ -24,7 +24,7 @@ use crate::{
     vertex::Vertex,
 };
 
-/// Which frame is surveyed, and how finely.
+/// Survey of a frame at some resolution.
 pub(crate) struct Survey<'a> {
     scene: &'a Scene,
     frame: u32,
@@ -92,10 +92,10 @@ impl SpecklePlan {
 const GROUPS: usize = 16;
 const PATHS: usize = 32;
 
-/// Of so many cells along each side, one is looked at in both ways.
+/// Side of a block of cells, one of which is surveyed in both ways.
 const PROBE: usize = 4;
 
-/// Where paths start.
+/// Starting point of paths.
 ///
 /// A beam narrow against what is seen hides from paths that start at the camera, and what is small
 /// in a wide beam from paths that start at the laser.
@@ -105,7 +105,7 @@ enum Way {
     FromCamera,
 }
 
-/// Of each laser, of each group, of each path: the rough surfaces that it has met.
+/// Rough surfaces along paths, by laser, group and path.
 type WayPoints<'a> = Vec<Vec<Vec<Vec<WayPoint<'a>>>>>;
 
 /// Returns a note for each laser and surface where multiple light comes from so small a part of
@@ -159,7 +159,7 @@ impl<'a> Survey<'a> {
         }
     }
 
-    /// The same by the options of a render.
+    /// Returns the survey with options of a render.
     pub(crate) const fn with(self, seed: u64, max_depth: Option<u32>) -> Self {
         Self {
             seed,
@@ -354,8 +354,9 @@ struct SeenPoint<'a> {
 }
 
 impl SeenPoint<'_> {
-    /// Where in the pupil a change of the unit direction from which light arrives moves the field,
-    /// in pupil diameters: its part across the line of sight, the other being along the normal.
+    /// Returns the displacement of the field in the pupil, in diameters, per change of the unit
+    /// direction of incidence: its component across the line of sight, the other being along the
+    /// normal.
     fn pupil_of(&self, direction: DVec3) -> DVec3 {
         let normal = self.point.normal;
         let along = direction.dot(self.to_pupil) / normal.dot(self.to_pupil);

@@ -8,7 +8,7 @@ use tem00_tracer::{LocalFrame, Scene};
 
 use crate::vertex::Vertex;
 
-/// How paths of one wavelength go through a scene.
+/// Transport of paths of one wavelength through a scene.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Walk<'a> {
     pub scene: &'a Scene,
@@ -22,7 +22,7 @@ pub(crate) struct Walk<'a> {
     pub roulette: Roulette,
 }
 
-/// What a path carries.
+/// Quantity that a path carries.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Carried {
     /// Power on from a laser, in watts, of as much at its `start`.
@@ -44,7 +44,7 @@ pub(crate) struct Walker {
     /// Its number among those that are followed together.
     pub number: usize,
     pub ray: Ray,
-    /// What it carries, as if the path were the only one.
+    /// Carried quantity, as if the path were the only one.
     pub carries: f64,
     /// The product of the changes of radiance by refraction: the square of the index of the medium.
     pub compression: f64,
@@ -59,7 +59,7 @@ pub(crate) struct Met<'a> {
     pub vertex: Vertex<'a>,
 }
 
-/// What looks at paths, and has the numbers by which they go on.
+/// Observer of paths, which also supplies their random numbers.
 pub(crate) trait Visitor<'a> {
     /// Looks at the surfaces that paths meet, the `depth`-th of each; a path that is removed ends.
     fn meet(&mut self, depth: u32, met: &mut Vec<Met<'a>>);

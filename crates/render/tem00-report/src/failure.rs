@@ -15,8 +15,8 @@ use crate::excerpt::Excerpt;
 pub enum Failure {
     /// The user gave something that cannot be used. Exit code 2.
     Input(Box<Problem>),
-    /// What the work needs is not there now, whatever the input says: memory, a file that can be
-    /// read, a folder that may be written into and that no other process has. Exit code 2.
+    /// A resource is unavailable, whatever the input says: memory, a readable file, a folder that
+    /// can be written into and that no other process has. Exit code 2.
     Unavailable(Box<Problem>),
     /// The work itself failed. Exit code 1.
     Running(Box<Problem>),
@@ -150,7 +150,7 @@ impl Failure {
     }
 }
 
-/// One message with the position it is about.
+/// Message with its position in a file.
 #[derive(Debug)]
 pub struct Problem {
     message: String,

@@ -1,4 +1,4 @@
-//! One process at a time writes into a folder.
+//! Lock of a folder, into which a single process writes at a time.
 
 use std::{
     fs::{self, File, OpenOptions, TryLockError},

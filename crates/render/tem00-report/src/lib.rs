@@ -1,5 +1,5 @@
-//! What the programs of tem00 share: reports as one value for a terminal, JSON and a page,
-//! diagrams, image files, and the manners of a process.
+//! Shared parts of the programs of tem00: reports as one value for a terminal, JSON and a page,
+//! diagrams, image files, and the conduct of a process.
 
 #![expect(
     missing_docs,

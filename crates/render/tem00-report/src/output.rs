@@ -48,7 +48,7 @@ pub fn prepare(folder: &Path) -> Result<FolderLock, Failure> {
     take(folder, FolderLock::alone)
 }
 
-/// As [`prepare`], but lets others into the folder that do parts of the same `work`.
+/// Prepares a folder that other parts of the same `work` may share, otherwise as [`prepare`].
 ///
 /// # Errors
 ///

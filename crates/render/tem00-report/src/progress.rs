@@ -89,7 +89,7 @@ impl Progress {
     }
 }
 
-/// One progress bar over all frames.
+/// Progress bar over all frames.
 #[derive(Debug)]
 pub struct FrameProgress {
     bar: Progress,

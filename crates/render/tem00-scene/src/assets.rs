@@ -11,9 +11,9 @@ use crate::radiance_map::{RadianceMapError, read_radiance_map};
 /// The normals by which light is scattered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Shading {
-    /// Those of the vertices, where the file has them.
+    /// Normals of the vertices, where the file has them.
     Smooth,
-    /// Those of the triangles.
+    /// Normals of the triangles.
     Flat,
 }
 

@@ -52,8 +52,8 @@ pub struct SceneFile {
     /// Everything that was read: the scene file unless it was standard input, the files that it
     /// includes, then meshes and environments, each once.
     pub files: Vec<PathBuf>,
-    /// What was left out of meshes, or is doubtful about them: sentences that begin with the name
-    /// of a file.
+    /// Notes about omitted or doubtful parts of meshes: sentences that begin with the name of a
+    /// file.
     pub notes: Vec<String>,
 }
 

@@ -44,7 +44,7 @@ const fn process(name: &'static str, least: f64, greatest: f64) -> FinishingProc
 }
 
 impl FinishingProcess {
-    /// All processes, the roughest first.
+    /// List of all processes, the roughest first.
     pub const ALL: [Self; 15] = [
         process("hot-rolled", 12.5e-6, 25e-6),
         process("sand-cast", 12.5e-6, 25e-6),

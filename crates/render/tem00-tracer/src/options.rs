@@ -39,17 +39,19 @@ pub enum LaserEvents {
 /// The way in which area lights and the environment are sampled from a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LightEvents {
-    /// By a point of the light and by a direction of the material, each weighted by how likely it
-    /// is to find what the other finds.
+    /// Sampling by a point of the light and by a direction of the material, combined by the power
+    /// heuristic.
     #[default]
     Both,
-    /// By a point of the light only: fewer rays, but noise where shiny surfaces mirror a light.
+    /// Sampling by a point of the light only: fewer rays, but noise where shiny surfaces reflect a
+    /// light.
     NextEvent,
-    /// By a direction of the material only: right for lights all around, hopeless for small ones.
+    /// Sampling by a direction of the material only: suitable for lights all around, not for small
+    /// ones.
     Scattering,
 }
 
-/// How camera samples are shared among the pixels.
+/// Distribution of camera samples among the pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Sampling {
     /// Every pixel gets [`samples_per_pixel`](RenderOptions::samples_per_pixel) samples.
@@ -96,7 +98,7 @@ pub struct Crop {
 pub struct RenderOptions {
     /// The number of camera samples per pixel, at least 1.
     pub samples_per_pixel: u32,
-    /// How the samples are shared among the pixels.
+    /// Distribution of samples among the pixels.
     pub sampling: Sampling,
     /// The seed of everything random: camera samples, and speckle where its plan takes the same.
     pub seed: u64,

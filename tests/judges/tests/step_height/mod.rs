@@ -21,7 +21,8 @@ fn moving(by: DVec3, frames: u32) -> MeasurementScene {
     scene
 }
 
-/// Returns how far a point lies above its plate, in metres; nothing beside the plates and at their edge.
+/// Returns how far a point lies above its plate, in metres; nothing beside the plates and at their
+/// edge.
 fn height_error(point: &MeasuredPoint) -> Option<f64> {
     let plates = &mut PLATES.iter();
     let plate = plates.position(|plate| plate.contains(&point.seen.column));

@@ -16,7 +16,7 @@ use super::{
 /// The version of the schema of the Physikalisch-Technische Bundesanstalt that certificates follow.
 const SCHEMA: &str = "3.3.0";
 
-/// What every certificate says of itself.
+/// Statement in every certificate.
 const STATEMENT: &str = "This certificate states the calculated uncertainty budget of a laser-triangulation set-up \
     as its data sheets, certificates and tolerances describe it. It is not the result of a measurement: no item was \
     calibrated.";

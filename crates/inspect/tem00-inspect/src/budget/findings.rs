@@ -16,7 +16,7 @@ pub(super) struct SetupFile<'a> {
     pub(super) path: &'a Path,
     /// With the changes of the command line.
     pub(super) text: String,
-    /// What it calls the set-up.
+    /// Title of the set-up.
     pub(super) title: Option<String>,
 }
 
@@ -36,7 +36,7 @@ pub(super) struct Answer {
     /// The heights that can be measured, and the combined standard uncertainty there, in metres;
     /// none where no line is found.
     pub(super) over_range: Vec<(f64, Option<f64>)>,
-    /// What is measured with a set-up that is not known exactly.
+    /// Results for a set-up with uncertain values.
     pub(super) measured: Option<Measured>,
 }
 

@@ -1,4 +1,4 @@
-//! What photographs of lines did not give.
+//! Parts of line photographs that a calibration cannot use.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -14,7 +14,7 @@ use crate::{
 /// The points of the line that were found in photographs: one in each column.
 #[derive(Debug, Default)]
 pub(super) struct Found {
-    /// Those of all photographs, by what can be said of them.
+    /// Validities of the points of all photographs.
     validities: Vec<Validity>,
     pictures: usize,
     /// The photographs without a valid point, and why they have none.

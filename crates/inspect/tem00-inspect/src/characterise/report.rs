@@ -60,7 +60,7 @@ pub(super) fn report(
     report
 }
 
-/// What was found of noise and resolution, in words.
+/// Returns noise and resolution in words.
 fn verdict(rows: &[Row]) -> String {
     let said = |key: &str| {
         let row = rows.iter().find(|row| row.key == key)?;

@@ -24,7 +24,7 @@ const NAMES: &str = include_str!("characteristics.txt");
 
 const NOT_SEEN: &str = "not measured: too little of the artefact was seen";
 
-/// What was found of a characteristic.
+/// Value of a characteristic.
 struct Found {
     unit: Unit,
     estimate: Result<Estimate, String>,

@@ -15,7 +15,7 @@ use crate::saturated_points::PointCounts;
 /// The columns to either side of one that a parabola is fitted to.
 const REACH: usize = 8;
 
-/// One line of an image.
+/// Summary of a line in an image.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct LineSummary {
     /// The number of the line, from 0.
@@ -101,7 +101,7 @@ fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     (count > 0).then(|| sum / f64::from(count))
 }
 
-/// One image.
+/// Summary of an image.
 #[derive(Debug, Serialize)]
 pub(super) struct ImageSummary {
     image: String,

@@ -70,7 +70,7 @@ pub(super) struct Grid {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Axis {
     pub(super) key: String,
-    /// As a file has them, strings without quotation marks.
+    /// Values as in a file, strings without quotation marks.
     pub(super) values: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! One task of a sweep.
+//! Tasks of a sweep.
 
 use std::path::{Path, PathBuf};
 
@@ -28,10 +28,10 @@ pub(super) struct Sweep<'a> {
     threads: Option<u16>,
 }
 
-/// What became of a task.
+/// Outcome of a task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Worked {
-    /// It has a row.
+    /// The task has a row.
     Done,
     /// Another process is doing it.
     ByAnother,
@@ -125,7 +125,8 @@ impl<'a> Sweep<'a> {
         self.command.run(&changes, folder, self.threads)
     }
 
-    /// What a failure says, without the path of the file, which may differ from machine to machine.
+    /// Returns the message of a failure without the path of the file, which may differ between
+    /// machines.
     fn reason(&self, failure: &Failure) -> String {
         let path = format!("{}: ", self.grid.file.display());
         let message = failure.message();

@@ -190,7 +190,7 @@ impl Files {
     }
 }
 
-/// One row of a profile.
+/// Returns a row of a profile.
 fn row(point: &MeasuredPoint, height: DVec3) -> String {
     let (seen, noise) = (&point.seen, &point.noise);
     let uncertainty = point.uncertainty();

@@ -27,7 +27,7 @@ pub(super) struct Job<'a> {
     pub(super) frames: IndexRange,
     pub(super) name: String,
     pub(super) files: Files,
-    /// What was left out of the meshes.
+    /// Notes about omitted parts of meshes.
     pub(super) notes: Vec<String>,
 }
 

@@ -8,12 +8,12 @@ use tem00_report::report::{
 use tem00_scan::MeasuredPoint;
 use tem00_triangulation::{DVec3, UncertaintySource};
 
-/// One term of the uncertainty.
+/// Term of the uncertainty.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Term {
     /// The source of the error.
     pub(super) name: &'static str,
-    /// What lowers it.
+    /// Advice that lowers the term.
     remedy: &'static str,
     /// The standard uncertainty of a line's position, in pixels; none of the calibration.
     pub(super) position: Option<f64>,

@@ -49,9 +49,9 @@ impl UncertaintySource {
 /// Evaluation of a standard uncertainty, by the types of the GUM.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Evaluation {
-    /// By statistics of observations.
+    /// Evaluation by statistics of observations.
     A,
-    /// By other knowledge: models and data sheets.
+    /// Evaluation by other knowledge: models and data sheets.
     B,
 }
 
@@ -63,12 +63,12 @@ named! {
         Normal = "normal",
         /// Rectangular in each pixel.
         Rectangular = "rectangular",
-        /// That of a periodic error at a position that is even over the period.
+        /// Distribution of a periodic error at a uniformly distributed position.
         Periodic = "periodic",
     }
 }
 
-/// One line of a budget.
+/// Term of a budget.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BudgetTerm {
     /// The source of the uncertainty.

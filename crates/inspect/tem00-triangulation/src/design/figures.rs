@@ -37,7 +37,7 @@ pub struct DesignFigures {
     pub speckles: f64,
     /// The speckle size along rows and columns, in pixels.
     pub speckle_size: [f64; 2],
-    /// What the linewidth of the laser makes of speckle.
+    /// Effect of the laser's linewidth on speckle.
     pub bandwidth: BandwidthEffect,
 }
 

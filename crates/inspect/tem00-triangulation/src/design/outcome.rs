@@ -42,7 +42,7 @@ pub struct Exclusion {
     pub alone: usize,
 }
 
-/// All set-ups that a search tried.
+/// Result of a search: all set-ups that it tried.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignOutcome {
     candidates: Vec<Candidate>,

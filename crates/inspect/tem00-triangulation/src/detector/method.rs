@@ -115,8 +115,8 @@ impl FilterOrder {
 }
 
 impl LineMethod {
-    /// All methods, with the parameters that they have unless told otherwise: a threshold of 0.2,
-    /// the order 4, a σ of 2 pixels.
+    /// List of all methods with their default parameters: a threshold of 0.2, the order 4, a σ of 2
+    /// pixels.
     pub const ALL: [Self; 9] = [
         Self::CentreOfGravity,
         Self::ThresholdedCentreOfGravity { threshold: 0.2 },

@@ -74,8 +74,8 @@ struct Pair<'a> {
     distance: f64,
 }
 
-/// All points of a column that may continue a track: first those of tracks that were seen in the
-/// column before, then the nearest.
+/// Returns all points of a column that may continue a track: first for tracks that were seen in the
+/// previous column, then the nearest.
 ///
 /// Where a line has ended, the straight line through its last points leads anywhere, and often over
 /// another line.

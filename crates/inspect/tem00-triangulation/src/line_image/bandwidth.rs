@@ -11,7 +11,8 @@ use crate::Setup;
 
 /// The light of a laser with a linewidth or an extent on the surface of a set-up.
 pub(super) struct PolychromaticLight {
-    /// One, or the modes of heights that dominate, or of directions of the source.
+    /// Fractions of independent patterns: one, or the dominant modes of heights or of directions of
+    /// the source.
     pub(super) modes: Vec<f64>,
     /// The fraction of the light that has no speckle at all.
     pub(super) even: f64,

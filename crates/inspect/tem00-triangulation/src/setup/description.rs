@@ -89,7 +89,7 @@ pub struct LaserLineData {
     pub tilt: f64,
 }
 
-/// What a change of temperature since the calibration does to the geometry, to first order.
+/// Effect of a temperature change since the calibration on the geometry, to first order.
 ///
 /// The *base* holds camera and laser: as it expands, the laser plane moves away from the camera by
 /// the part `α ΔT` of their distance L sin θ, and the directions of both stay. The *mount* holds
@@ -213,7 +213,7 @@ pub struct Averages {
 }
 
 impl Default for Averages {
-    /// One column of one frame.
+    /// Averages over one column of one frame.
     fn default() -> Self {
         Self {
             columns: 1,

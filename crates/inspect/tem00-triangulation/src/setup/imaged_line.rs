@@ -55,12 +55,12 @@ pub struct ImagedLine {
     pub column_electrons: f64,
     /// The height of the sensitive part of a pixel, in pixels.
     pub sensitive_height: f64,
-    /// What the linewidth and the extent of the source make of speckle.
+    /// Effect of the linewidth and of the extent of the source on speckle.
     pub bandwidth: BandwidthEffect,
 }
 
-/// What the linewidth and the extent of the source make of the speckle of a line, over light of one
-/// wavelength and a point.
+/// Effect of the linewidth and of the extent of the source on the speckle of a line, relative to a
+/// point source of one wavelength.
 ///
 /// # Validity
 ///
@@ -78,7 +78,7 @@ pub struct BandwidthEffect {
 }
 
 impl BandwidthEffect {
-    /// That of light of one wavelength from a point.
+    /// No effect: a point source of one wavelength.
     pub const NONE: Self = Self {
         contrast: 1.0,
         line_noise_ratio: 1.0,

@@ -12,7 +12,7 @@ named! {
         /// The line hardly stands out of the dark noise, or is below the least peak of the
         /// detector.
         Dark = "too dark",
-        /// All is well.
+        /// Neither too dark nor saturated.
         Good = "good",
         /// The mean of the brightest pixels fits, single bright grains of speckle do not.
         SaturatedGrains = "bright grains saturate",

@@ -127,7 +127,7 @@ mod tests {
         PI / 4.0 * (sum + 4.0 / (PI.powi(4) * ALONG * ALONG))
     }
 
-    /// The same out of focus: the light through each chord of the pupil. `blur` is in speckle
+    /// Line profile out of focus: the light through each chord of the pupil. `blur` is in speckle
     /// sizes.
     fn defocused_line(x: f64, blur: f64) -> f64 {
         let of_chord = |angle: f64| {

@@ -36,7 +36,7 @@ macro_rules! quantities {
         }
 
         impl SetupQuantity {
-            /// All of them, in the order of a set-up file.
+            /// List of all quantities, in the order of a set-up file.
             pub const ALL: &[Self] = &[$($(Self::$name),+),+];
             /// The keys of all of them.
             pub(crate) const KEYS: &[&str] = &[$($(stringify!($key)),+),+];

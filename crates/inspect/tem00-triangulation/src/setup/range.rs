@@ -75,8 +75,8 @@ impl Setup {
         HeightRange { low: -high, high }
     }
 
-    /// That of the lens, without end for a pupil so small that the disc of defocus never grows as
-    /// wide as the line.
+    /// Range of the lens, infinite for a pupil so small that the defocus disc never becomes as wide
+    /// as the line.
     pub(super) fn lens_range(&self) -> HeightRange {
         let description = self.description();
         let (sin, cos) = description.camera.angle.sin_cos();

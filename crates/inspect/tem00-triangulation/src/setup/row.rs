@@ -21,7 +21,7 @@ pub(super) struct Row {
     pub(super) example: Option<&'static str>,
     /// True if the key is read together with keys of no quantity.
     pub(super) is_read_with_others: bool,
-    /// Whether a written set-up has the key.
+    /// Returns whether a written set-up has the key.
     pub(super) is_written: fn(&SetupDescription) -> bool,
     /// The comment beside the key in a written set-up.
     pub(super) note: &'static str,

@@ -6,7 +6,7 @@ use super::axis::Axis;
 use super::frame::Frame;
 use crate::normal::{normal_between, normal_density};
 
-/// What rounding may take from a probability.
+/// Largest error of a probability by rounding.
 pub(super) const ROUNDING: f64 = 1e-15;
 
 /// A box in the frame of a light, in front of its aperture.

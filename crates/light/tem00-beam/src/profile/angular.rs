@@ -45,7 +45,7 @@ pub struct AngularProfile {
     knots: Arc<[AngularKnot]>,
 }
 
-/// One angle of an [`AngularProfile`].
+/// Node of an [`AngularProfile`].
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AngularKnot {

@@ -1,4 +1,4 @@
-//! Where integrals over the lags of heights end.
+//! Limits of integrals over the lags of heights.
 
 use core::f64::consts::TAU;
 

@@ -33,7 +33,7 @@ struct Row {
     /// The width in speckles.
     width: f64,
     of_lags: Vec<f64>,
-    /// What is left of the light whose heights differ, and what the sum over lags has of it.
+    /// Correlation for uncorrelated heights, and the part of it in the sum over lags.
     dense: f64,
 }
 

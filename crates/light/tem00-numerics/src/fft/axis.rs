@@ -1,4 +1,4 @@
-//! One axis of the transform: the few leading samples of a long line.
+//! Fourier transform along one axis, from the few leading samples of a long line.
 
 use core::f64::consts::PI;
 use std::sync::Arc;

@@ -11,9 +11,9 @@ use super::positions::{Axis, Estimate, check_count};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RadiusErrors<'a> {
-    /// They are proportional to the radius; the factor follows from the scatter of the data.
+    /// Errors proportional to the radius; the factor follows from the residuals.
     Relative,
-    /// They are the same for all radii; their size follows from the scatter of the data.
+    /// Equal errors of all radii; their size follows from the residuals.
     Equal,
     /// The standard deviation of each radius, in metres. The scatter of the data does not change
     /// the standard errors that follow from these.

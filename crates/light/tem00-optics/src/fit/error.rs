@@ -22,7 +22,7 @@ pub enum FitError {
     },
     /// An argument, or an entry of one, is outside its range.
     Argument(Refusal),
-    /// All positions are the same.
+    /// The positions are all equal.
     EqualPositions,
     /// The power does not change along the trace, or only a beam of negative power would fit it.
     NoEdge,

@@ -29,7 +29,7 @@ pub(crate) struct LineWave {
     rayleigh_range_squared: f64,
 }
 
-/// Where a laser stands.
+/// Pose of a laser.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WaveFrame {
     pub(crate) origin: DVec3,

@@ -66,7 +66,7 @@ pub struct Aperture<'a> {
     /// The lattice point nearest to the pupil's centre.
     centre: [i64; 2],
     factors: Option<Factors>,
-    /// Of external samples: the factor that makes the sum of their squares 1.
+    /// Factor that normalises the sum of squares of external samples to 1.
     gain: Option<f64>,
 }
 
@@ -214,7 +214,7 @@ impl<'a> Aperture<'a> {
         }
     }
 
-    /// The same without gain and factors.
+    /// Fills points without gain and factors.
     fn fill_points(&self, columns: Range<usize>, y: usize, values: &mut [Complex<f32>]) {
         let Self { centre, mask, .. } = self;
         let row = mask.row(y);

@@ -429,7 +429,7 @@ impl PupilField {
             .sum()
     }
 
-    /// That of two pupils which lie `shift` apart, not also the other way round.
+    /// Returns the overlap of two pupils `shift` apart, on this side of the periodic lattice only.
     pub(crate) fn overlap_on_one_side(&self, shift: [i64; 2]) -> Complex<f64> {
         self.mask.overlap(shift) / self.mask.power()
     }

@@ -63,7 +63,7 @@ impl Lattice {
         }
     }
 
-    /// The same lattice about a point so far from its origin.
+    /// Returns the lattice displaced by a number of points.
     pub(crate) const fn displaced(mut self, [x, y]: [i64; 2]) -> Self {
         let [x0, y0] = self.origin;
         // 2³² points lead back.

@@ -1,4 +1,4 @@
-//! What a look-up on or between slices is made of, and how far two of them are correlated.
+//! Blends of slices in a look-up, and the correlation of two of them.
 
 use std::collections::BTreeMap;
 

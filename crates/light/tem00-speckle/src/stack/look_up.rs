@@ -221,7 +221,7 @@ impl SpeckleStack {
     }
 }
 
-/// Whether all coordinates are finite: without a branch, so that a loop fills the vector units.
+/// Returns whether all coordinates are finite, without a branch, so that a loop fills vector units.
 #[inline(always)]
 fn is_place([x, y, u]: [f64; 3]) -> bool {
     (0.0 * x + 0.0 * y + 0.0 * u).is_finite()

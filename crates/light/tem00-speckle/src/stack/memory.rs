@@ -42,7 +42,7 @@ pub(crate) fn reserve(
     reserve_of(path, size, available_memory())
 }
 
-/// The same on a machine with so many bytes `available`, if it says so.
+/// Reserves memory on a machine with `available` bytes, if known.
 fn reserve_of(
     path: SlicePath,
     size: [usize; 2],

@@ -13,7 +13,7 @@ use crate::{Pupil, PupilField, SpeckleError, pupil::lattice::Lattice};
 /// 2M slices. More slices cost memory and buy a smaller error of the blend between them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SlicePath {
-    /// One slice: the pattern moves, but does not change.
+    /// Single slice: the pattern moves, but does not change.
     Still,
     /// A circle of diameter C about the lattice's origin, as in the paper. Slices i and i + M stand
     /// on opposite sides and just cease to overlap.

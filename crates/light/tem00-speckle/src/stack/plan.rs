@@ -323,7 +323,7 @@ impl StackNeeds {
         }
     }
 
-    /// One slice for the region, and one for the image.
+    /// Returns plans of one slice, for the region and for the image.
     fn sizes(&self) -> [StackPlan; 2] {
         [self.region, self.image].map(|sides| {
             let diameter = sides.map(|side| diameter_for(side / self.speckle_size));

@@ -6,8 +6,8 @@ use crate::{
     stack::{check_limit, join_all},
 };
 
-/// What the slices of a stack are transformed from, and their closed forms: for stacks that are
-/// generated elsewhere, as on a graphics card.
+/// Source of the slices of a stack with their closed forms, for stacks that are generated
+/// elsewhere, as on a graphics card.
 ///
 /// # Examples
 ///

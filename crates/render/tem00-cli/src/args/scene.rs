@@ -13,7 +13,7 @@ pub struct SceneArgs {
     #[arg(value_name = "SCENE.toml")]
     pub scene: PathBuf,
 
-    /// How the scene file is read.
+    /// Restrictions on reading the scene file.
     #[command(flatten)]
     pub files: FileArgs,
 

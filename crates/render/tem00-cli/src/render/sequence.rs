@@ -23,7 +23,7 @@ use crate::{
 pub(super) struct Sequence {
     /// The exposure that all frames share.
     pub(super) exposure: Exposure,
-    /// All frames of the render that are finished, rendered now or before, in order.
+    /// Finished frames of the render, from this run or an earlier one, in order.
     pub(super) finished: Vec<FrameSummary>,
 }
 

@@ -24,7 +24,7 @@ pub(super) struct Curves {
     pub(super) power_spectrum: Vec<Frequency>,
 }
 
-/// One bin of the histogram of the intensity, in units of its mean.
+/// Bin of the histogram of intensity, in units of its mean.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(super) struct Bin {
     pub(super) from: f64,

@@ -44,7 +44,7 @@ pub(super) struct Findings<'a> {
     pub(super) levels: Option<&'a GreyLevels>,
     pub(super) mean: f64,
     pub(super) contrast: Contrast,
-    /// Whether the light is even, as theory takes it to be.
+    /// Whether the light is even, as theory assumes.
     pub(super) is_even: bool,
     pub(super) rows: Vec<Row>,
     pub(super) warnings: Vec<String>,

@@ -1,4 +1,4 @@
-//! One page of diagrams: histogram, autocovariance and power spectrum beside the theory.
+//! Page of diagrams: histogram, autocovariance and power spectrum, compared with theory.
 
 use tem00_report::plot::{
     Chart, Drawing,

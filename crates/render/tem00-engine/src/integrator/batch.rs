@@ -196,7 +196,7 @@ impl Batch<'_> {
 pub(super) struct SpeckleLookUps {
     samples: Vec<usize>,
     points: Vec<SpecklePoint>,
-    /// Those of one laser at a time.
+    /// Look-ups of one laser at a time.
     of_laser: LaserLookUps,
 }
 

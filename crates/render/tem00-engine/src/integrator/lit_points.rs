@@ -28,7 +28,7 @@ pub(super) struct LitPoints<'a> {
     share: f64,
 }
 
-/// Where the light of a laser first meets a rough surface.
+/// Point where the light of a laser first meets a rough surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LitPoint<'a> {
     pub(super) hit: Hit,

@@ -24,7 +24,7 @@ pub(super) struct Connector<'a> {
 /// Light that reaches the camera unless something stands in the way.
 struct Connection<'a> {
     met: &'a Met<'a>,
-    /// Where it is seen.
+    /// Image point and surface point of the connection.
     point: SpecklePoint,
     /// The number of the pixel in the part of the image that is rendered.
     index: usize,

@@ -25,9 +25,9 @@ pub(crate) struct LightTracer<'a> {
 /// The part of the light that is followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LightSelection {
-    /// All that reaches the camera from a rough surface.
+    /// All light that reaches the camera from a rough surface.
     All,
-    /// That of it which a mirror or glass was the first to meet: all that the path tracer misses.
+    /// Light whose first hit is specular: exactly the light that the path tracer cannot find.
     SpecularFirst,
 }
 

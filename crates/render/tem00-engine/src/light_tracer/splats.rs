@@ -14,7 +14,7 @@ pub(super) struct Splat {
 /// Contribution of a group of light paths to the image.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Splats {
-    /// By pixel in the end, one for each.
+    /// Splats, in the end sorted by pixel, one for each.
     list: Vec<Splat>,
     /// The power on the first rough surface where that is seen, in watts.
     pub power: f64,

@@ -26,7 +26,7 @@ const BATCH: usize = 1024;
 /// The maximum number of samples of a pixel that are drawn together.
 const RUN: u32 = 64;
 
-/// One pass over the image, or over a part of it.
+/// Pass over the image, or over a part of it.
 pub(super) struct PathPass<'a, P> {
     pub integrator: &'a Integrator<'a>,
     pub options: &'a RenderOptions,

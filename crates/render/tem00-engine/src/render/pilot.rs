@@ -1,4 +1,4 @@
-//! What a few first samples of each pixel say of how many it needs.
+//! Pilot samples, which determine the sample count of each pixel.
 
 use tem00_numerics::{Grid, cast::to_f32};
 use tem00_tracer::{RenderOptions, Sampling, film::PixelSums};
@@ -18,7 +18,7 @@ const DARKEST: usize = 64 * STEPS;
 /// the mean radiance of the image.
 const DARK: f64 = 0.1;
 
-/// What the samples of a pilot have found.
+/// Results of a pilot.
 pub(super) struct Pilot {
     radiance: Grid<f32>,
     /// The standard deviation of the samples.

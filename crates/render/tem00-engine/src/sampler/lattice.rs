@@ -1,8 +1,7 @@
 /// About the maximum number of generators that are tried.
 const MAX_TRIED: u32 = 1024;
 
-/// How close the points of a lattice may be: the square of their distance by that of the best
-/// lattice.
+/// Smallest squared distance between points of an acceptable lattice, relative to the best lattice.
 const GOOD: f64 = 0.9;
 
 /// A lattice of N points on a torus, with one point in each of N columns and of N rows: (i, g i) /

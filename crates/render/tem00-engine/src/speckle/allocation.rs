@@ -11,7 +11,7 @@ pub(super) struct Request {
     pub needs: StackNeeds,
     /// The largest motion of the pupil to either side of the reference frame, in its diameters.
     pub shifts: [f64; 2],
-    /// What each frame asks for, where one can have slices of its own.
+    /// Requirements of each frame, where a frame can have its own slices.
     pub frames: Option<FrameRequest>,
     /// The number of independent patterns that add up.
     pub parts: usize,
@@ -24,9 +24,9 @@ pub(super) struct Request {
 pub(super) struct FrameRequest {
     /// Width and height of what frames look up from slices that they share, in pixels.
     pub region: [f64; 2],
-    /// Where each frame looks up along the path, in pupil diameters: from and to.
+    /// Range of each frame along the path, in pupil diameters.
     pub spans: Vec<[f64; 2]>,
-    /// How far across it, where frames do not have one line.
+    /// Offset of each frame across the path, where frames do not share one line.
     pub across: Option<Vec<f64>>,
 }
 
@@ -35,7 +35,7 @@ pub(super) struct FrameRequest {
 struct Choice {
     stack: StackPlan,
     needs: StackNeeds,
-    /// Whether each frame has slices of its own.
+    /// Whether each frame has its own slices.
     by_frame: bool,
 }
 

@@ -28,7 +28,7 @@ pub struct CorrelationNote {
     /// The correlation of intensity with which a point of the surface is rendered, its displacement
     /// in the image apart.
     pub rendered: f64,
-    /// That of the law.
+    /// Correlation by the law.
     pub law: f64,
 }
 
@@ -47,11 +47,11 @@ impl fmt::Display for CorrelationNote {
 /// The way by which slices along a line follow a motion of the pupil.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Following {
-    /// By its length, to either side of the reference frame.
+    /// Coordinate by the length of the displacement, to either side of the reference frame.
     #[default]
     Length,
-    /// By its component along an axis, on a line of each frame's own, in the middle of the ways of
-    /// what it sees.
+    /// Coordinate by the component of the displacement along an axis, on a separate line for each
+    /// frame, in the middle of the displacements of its points.
     Axis(DVec2),
 }
 
@@ -64,7 +64,7 @@ impl Following {
     }
 }
 
-/// How slices follow the motion of a group of surfaces.
+/// Assignment of slices to the motion of a group of surfaces.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Followed {
     pub following: Following,
@@ -280,7 +280,8 @@ fn most_confused(prescan: &MotionPrescan, count: u32) -> [u32; 2] {
 }
 
 impl Way {
-    /// That in the middle of what a frame sees, if all of it moves about alike.
+    /// Returns the displacement in the middle of the range of a frame, if all its points move about
+    /// alike.
     fn in_the_middle(needs: &FrameNeeds, frame: usize) -> Option<Self> {
         let is_alike = needs.ways.size().length() < ALIKE;
         is_alike.then(|| Self {

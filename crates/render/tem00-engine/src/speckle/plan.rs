@@ -58,9 +58,9 @@ pub(super) struct SurfacePatterns {
     pub modes: usize,
     /// The point that tells one side of the reference frame from the other.
     pub reference_point: Option<ReferencePoint>,
-    /// How the slices follow a motion.
+    /// Assignment of slices to a motion.
     pub following: Following,
-    /// What the linewidth of the laser asks. Each part is then several, one after the other, whose
+    /// Treatment of the laser's linewidth. Each part then consists of several, in sequence, whose
     /// fields add.
     pub bandwidth: Option<Bandwidth>,
 }
@@ -180,7 +180,7 @@ impl PatternPlan {
         &self.allocations[0]
     }
 
-    /// What the linewidth asks of the surface of an allocation that asks for most.
+    /// Returns the largest requirement of the linewidth among the surfaces of an allocation.
     fn bandwidth(&self, allocation: &PatternAllocation) -> Option<&Bandwidth> {
         let surfaces = allocation.surfaces.iter();
         let bandwidths =

@@ -56,7 +56,7 @@ pub(super) struct MotionPrescan {
     pub reference_point: Option<ReferencePoint>,
     /// Points that were seen in some frames.
     pub points: Vec<ReferencePoint>,
-    /// What the frames ask for, one by one; empty where nothing moves.
+    /// Requirements of the frames, one by one; empty where nothing moves.
     pub frames: Vec<FrameNeeds>,
 }
 
@@ -289,8 +289,8 @@ pub(super) fn rays_per_side(frames: u32) -> u32 {
         .clamp(FEWEST_RAYS_PER_SIDE, RAYS_PER_SIDE)
 }
 
-/// Where the first ray of a frame goes, in distances between rays. Few go elsewhere in each frame,
-/// so that a part which they miss in some is met in others.
+/// Returns the position of the first ray of a frame, in distances between rays. It differs from
+/// frame to frame, so that a part missed in some frames is met in others.
 pub(super) fn first_ray(change: &Change, side: u32) -> DVec2 {
     let farther = match side {
         RAYS_PER_SIDE => 0.0,

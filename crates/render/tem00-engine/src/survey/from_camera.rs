@@ -20,7 +20,7 @@ struct Sight<'s, 'a> {
     /// The key of the first path.
     first: u64,
     ways: Vec<Way>,
-    /// Where in the pupil a change of the first direction of each moves the field.
+    /// Displacement of the field in the pupil per change of the first direction of each path.
     pupils: Vec<DVec3>,
     found: Vec<Vec<MultiplePath>>,
 }

@@ -44,9 +44,9 @@ pub(crate) const TOLERANCE: f32 = 128.0 / (1 << 24) as f32;
 /// Lanes in which a ray meets a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Met {
-    /// Those in which it may.
+    /// Lanes in which the ray may hit.
     pub possibly: u64,
-    /// Those in which it does.
+    /// Lanes in which the ray hits for certain.
     pub certainly: u64,
 }
 

@@ -24,7 +24,7 @@ pub(super) struct Packet {
     end: [f32; LANES],
     /// The distance at which the traversal of each ray starts, in the unit of the hierarchy.
     start: [f64; LANES],
-    /// That unit, in metres.
+    /// Unit of the scaled coordinates, in metres.
     unit: f64,
     beam: Beam,
 }

@@ -46,7 +46,7 @@ impl Format {
 pub enum Transfer {
     /// In proportion, as sensors deliver them.
     Linear,
-    /// By the sRGB curve, as pictures for the screen are stored.
+    /// sRGB curve, as in pictures for the screen.
     Srgb,
 }
 
@@ -66,8 +66,7 @@ pub struct Crop {
 /// Options for reading an image.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Reading<'a> {
-    /// One channel of several; without it Y, the mean of R, G and B, or the only one that shows
-    /// light.
+    /// Channel by name; by default Y, the mean of R, G and B, or the only one that contains light.
     pub channel: Option<&'a str>,
     /// The relation of grey values to light, instead of that of the file.
     pub transfer: Option<Transfer>,
@@ -80,7 +79,7 @@ pub struct Reading<'a> {
 /// An image in proportion to the light, and how it was understood.
 #[derive(Debug)]
 pub struct LoadedImage {
-    /// One value per pixel.
+    /// Values, one per pixel.
     pub values: Grid<f32>,
     /// A description of what was read from the file and how.
     pub interpretation: String,

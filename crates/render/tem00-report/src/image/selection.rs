@@ -11,7 +11,7 @@ pub(super) enum Components {
     GreyAlpha,
     Rgb,
     Rgba,
-    /// So many of which nothing is known, at most 16.
+    /// Number of unnamed channels, at most 16.
     Bands(u16),
 }
 

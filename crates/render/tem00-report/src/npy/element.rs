@@ -23,7 +23,7 @@ pub(super) struct ElementType {
     number: Number,
     /// The numbers of a value, the real part first.
     pub(super) numbers: usize,
-    /// Whether the bytes of a number begin with the highest.
+    /// Whether numbers are big-endian.
     highest_first: bool,
 }
 

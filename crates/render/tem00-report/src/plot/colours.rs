@@ -11,13 +11,13 @@ macro_rules! colours {
     ($($(#[$doc:meta])* $name:ident = $light:literal, $dark:literal;)*) => {
         $($(#[$doc])* pub const $name: Colour = Colour { light: $light, dark: $dark };)*
 
-        /// All of them.
+        /// List of all colours.
         pub const ALL: &[Colour] = &[$($name),*];
     };
 }
 
 colours! {
-    /// All sources of uncertainty together.
+    /// Colour of the combined uncertainty.
     COMBINED = "#202020", "#e8e8e8";
     SPECKLE = "#1f5fa8", "#6fabe8";
     SHOT_NOISE = "#d2701a", "#f0a050";

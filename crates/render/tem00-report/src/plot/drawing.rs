@@ -28,7 +28,7 @@ impl Format {
     }
 }
 
-/// One diagram in the making: what is drawn, and the axes about it.
+/// Diagram under construction: its content and the axes around it.
 pub(super) type Panel = (Vec<Plot>, Layout);
 
 /// A finished drawing.
@@ -134,8 +134,8 @@ fn svg(scene: &mut Scene) -> String {
     }
 }
 
-/// How the drawing library begins the names of elements, before a number that counts through the
-/// process.
+/// Prefix that the drawing library gives to names of elements, before a number that counts through
+/// the process.
 const COUNTED: &str = "kuva-clip-";
 
 /// Returns SVG whose elements have names that depend on it alone, and are its own among all

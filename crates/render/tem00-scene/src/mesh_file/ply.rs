@@ -140,10 +140,10 @@ fn corners(indices: &[i64], element: &ElementDef, index: usize) -> Result<Vec<u3
     indices.iter().map(corner).collect()
 }
 
-/// What is left of a file.
+/// Remaining content of a file.
 struct Body<'a> {
     rest: &'a [u8],
-    /// What ends a line: a line feed, or the carriage return of old Macintoshes.
+    /// Line separator: a line feed, or the carriage return of old Macintoshes.
     separator: u8,
     /// The number of lines that were read.
     line: usize,
@@ -279,7 +279,7 @@ fn parse_single(word: &str) -> Option<f64> {
     number.ok().or_else(|| parse_number(word))
 }
 
-/// What is read of an entry; a coordinate that the file does not give stays NaN.
+/// Record of an entry; a coordinate missing in the file stays NaN.
 struct Record {
     position: DVec3,
     normal: DVec3,

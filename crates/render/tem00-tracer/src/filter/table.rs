@@ -6,7 +6,7 @@ const PIECES: u32 = 256;
 /// Three points per piece.
 const RULE: [(f64, f64); 3] = gauss_legendre();
 
-/// One side of a symmetric density on [0, radius], made of straight pieces.
+/// Half of a symmetric density, on [0, radius], made of straight pieces.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct HalfTable {
     /// The length of a piece.

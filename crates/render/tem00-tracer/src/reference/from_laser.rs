@@ -15,7 +15,7 @@ use crate::{Crop, Frame, LocalFrame, Material, RenderError};
 /// Independent parts of the paths, whose scatter tells the variance.
 const GROUPS: u64 = 64;
 
-/// What light paths bring to one pixel, or to the camera as a whole.
+/// Contribution of light paths to one pixel, or to the camera as a whole.
 struct Splat {
     pixel: usize,
     /// In W/(m² sr), of light that has met one rough surface or more, and with its speckle.

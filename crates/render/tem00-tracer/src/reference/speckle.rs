@@ -13,7 +13,7 @@ const SIDE: usize = 16;
 /// each surface.
 #[derive(Clone, Debug)]
 pub struct ReferenceSpeckle {
-    /// By laser and surface; `None` for a surface that the camera never sees.
+    /// Speckle by laser and surface; `None` for a surface that the camera never sees.
     prepared: Vec<Vec<Option<PreparedSpeckle>>>,
 }
 

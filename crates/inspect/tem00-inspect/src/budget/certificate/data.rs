@@ -32,7 +32,7 @@ const ISSUERS: [&str; 5] = [
     "other",
 ];
 
-/// What a calibration certificate says beside its numbers.
+/// Administrative data of a calibration certificate.
 pub(in crate::budget) struct CertificateData {
     pub(super) own: Texts,
     pub(super) laboratory: Texts,
@@ -44,7 +44,7 @@ pub(in crate::budget) struct CertificateData {
 /// The texts of a section, by their keys.
 pub(super) struct Texts(Vec<(&'static str, String)>);
 
-/// What a text must be.
+/// Kinds of text in a certificate.
 #[derive(Clone, Copy)]
 enum Kind {
     Words,

@@ -16,7 +16,7 @@ use super::{
 /// 0.04.
 const FAINT_PATTERN: f64 = 0.02;
 
-/// Where a point is looked up.
+/// Look-up coordinates of a point.
 #[derive(Clone, Copy, Debug)]
 struct Place {
     /// The image point in perspective, in pixels with y down.
@@ -73,7 +73,7 @@ impl SpeckleFrame<'_> {
         }
     }
 
-    /// Where a point is looked up.
+    /// Returns the look-up coordinates of a point.
     fn place(
         &self,
         laser: usize,

@@ -26,7 +26,7 @@ pub(super) struct Pattern {
     /// The largest shifts to either side of the reference frame that the slices hold, in pupil
     /// diameters.
     reaches: [f64; 2],
-    /// One for each stack.
+    /// Pupil field of each stack.
     fields: Vec<PupilField>,
     path: SlicePath,
     /// The lattice points about which the slices of each frame lie; empty where one stack holds

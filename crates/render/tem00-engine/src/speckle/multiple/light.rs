@@ -9,13 +9,13 @@ use super::super::SpecklePoint;
 pub(crate) struct MultipleLight {
     /// The mean radiance, in W/(m² sr).
     pub radiance: f64,
-    /// That of the light which has met one rough surface.
+    /// Radiance of single light.
     pub single: f64,
     /// The mutual coherence in the line of the laser: with itself, and with the single light.
     pub within: f64,
     pub with_single: f64,
-    /// What the motion since the reference frame leaves of its fields, squared, but for the
-    /// displacement of the pupil: of its own, and of the product with that of the single light.
+    /// Squared correlation of its fields with the reference frame, without the displacement of the
+    /// pupil: of multiple light, and of its product with single light.
     pub kept: f64,
     pub kept_with_single: f64,
     /// The degree of polarisation.

@@ -33,8 +33,8 @@ pub(crate) struct MultiplePath {
     pub delay: f64,
     pub added: f64,
     pub polarisation: f64,
-    /// Where in the pupil a change of the direction from which it arrives moves the field, in pupil
-    /// diameters.
+    /// Displacement of the field in the pupil, in diameters, per change of the direction of
+    /// incidence.
     pub pupil: DVec3,
 }
 

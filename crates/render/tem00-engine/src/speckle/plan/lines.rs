@@ -113,7 +113,7 @@ impl PatternPlan {
     }
 }
 
-/// One number for a square, two for other patterns.
+/// Sides of a pattern: one number for a square, two otherwise.
 struct Sides([usize; 2]);
 
 impl fmt::Display for Sides {

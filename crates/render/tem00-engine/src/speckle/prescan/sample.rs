@@ -10,7 +10,7 @@ use crate::speckle::{
     multiple::MultipleMap,
 };
 
-/// What was seen of a group of surfaces in one frame.
+/// Sample of a group of surfaces in one frame.
 #[derive(Clone, Debug)]
 pub(super) struct FrameSample {
     pub region: Region,
@@ -19,7 +19,7 @@ pub(super) struct FrameSample {
     pub ways: Region,
     /// The point where it is largest.
     pub farthest: Option<SpecklePoint>,
-    /// The same in the reference frame, if the theory has a value.
+    /// Sample in the reference frame, if the theory has a value.
     pub reference_point: Option<ReferencePoint>,
     /// Points that are spread over the image.
     pub kept: Vec<ReferencePoint>,

@@ -16,7 +16,7 @@ pub(in crate::image) struct Samples {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) components: Components,
-    /// All components of all pixels, in DN.
+    /// Components of all pixels, in DN.
     pub(super) values: Vec<f32>,
     /// The bits of a grey value, as the file says or as it stores them; none of numbers without a
     /// largest value.

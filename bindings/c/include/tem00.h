@@ -84,7 +84,7 @@ typedef enum {
  */
 typedef enum {
     /**
-     * One slice: the pattern moves, but does not change.
+     * Single slice: the pattern moves, but does not change.
      */
     TEM00_SLICE_PATH_STILL = 0,
     /**
@@ -405,7 +405,7 @@ typedef struct {
 } tem00_next_event;
 
 /**
- * As `tem00_next_event`, in single precision.
+ * Next event in single precision, otherwise as `tem00_next_event`.
  */
 typedef struct {
     /**
@@ -525,7 +525,7 @@ typedef struct {
 } tem00_bounds;
 
 /**
- * What a light was made with.
+ * Parameters of a light.
  */
 typedef struct {
     /**
@@ -597,7 +597,7 @@ typedef struct {
 } tem00_next_event_columns;
 
 /**
- * As `tem00_next_event_columns`, in single precision.
+ * Columns of next events in single precision, otherwise as `tem00_next_event_columns`.
  */
 typedef struct {
     /**
@@ -786,7 +786,7 @@ typedef struct {
  */
 typedef struct {
     /**
-     * What was chosen and why, in UTF-8. The text belongs to the speckle.
+     * Choices with their reasons, in UTF-8. The text belongs to the speckle.
      */
     const char *summary;
     /**
@@ -800,7 +800,7 @@ typedef struct {
 } tem00_speckle_info;
 
 /**
- * What has become of the speckle at a point since the reference state.
+ * Displacement and correlation of the speckle at a point since the reference state.
  */
 typedef struct {
     /**
@@ -1000,7 +1000,7 @@ typedef struct {
 } tem00_bandwidth_description;
 
 /**
- * What a linewidth makes of speckle, and what stands for it in a renderer.
+ * Effect of a linewidth on speckle, and its representation in a renderer.
  */
 typedef struct {
     /**
@@ -1285,7 +1285,7 @@ tem00_status tem00_light_next_event(const tem00_light *light,
                                     tem00_next_event *event);
 
 /**
- * As `tem00_light_next_event`, in single precision.
+ * Single-precision form of `tem00_light_next_event`.
  *
  * The pointers are null or valid.
  */
@@ -1415,7 +1415,7 @@ tem00_status tem00_light_irradiance_batch(const tem00_light *light,
                                           double *irradiance);
 
 /**
- * As `tem00_light_irradiance_batch`, in single precision.
+ * Single-precision form of `tem00_light_irradiance_batch`.
  *
  * The pointers are null or valid for `count` numbers.
  */
@@ -1442,7 +1442,7 @@ tem00_status tem00_light_next_event_batch(const tem00_light *light,
                                           const tem00_next_event_columns *events);
 
 /**
- * As `tem00_light_next_event_batch`, in single precision.
+ * Single-precision form of `tem00_light_next_event_batch`.
  *
  * The pointers are null or valid for `count` numbers.
  */
@@ -1724,8 +1724,7 @@ tem00_status tem00_stack_intensity_batch(const tem00_stack *stack,
                                          double *intensity);
 
 /**
- * As `tem00_stack_intensity_batch`, in single precision: the intensities at these coordinates,
- * rounded.
+ * Single-precision form of `tem00_stack_intensity_batch`: the same intensities, rounded.
  *
  * A place that is rounded to single precision moves by up to 3e-8 of its distance from 0: take off
  * whole periods before.

@@ -34,8 +34,7 @@ pub(crate) fn bandwidth(setup: &Setup) -> Cell {
         ),
     };
     let words = format!(
-        "{source}: this leaves {} of the noise of the line, which counts for the uncertainty, and {} of the contrast, which \
-         counts for what is seen and for bright grains",
+        "{source}: line noise × {} (enters the uncertainty), speckle contrast × {} (enters saturation)",
         ratio(effect.line_noise_ratio),
         ratio(effect.contrast),
     );

@@ -56,7 +56,7 @@ pub(crate) fn write_calibration(path: &Path, calibration: &Calibration) -> Resul
 pub(crate) fn read_calibration(path: &Path) -> Result<Calibration, Failure> {
     let refused = |problem: String| {
         Failure::input(
-            format!("{} is no calibration: {problem}", path.display()),
+            format!("{} is not a calibration: {problem}", path.display()),
             "`tem00-inspect calibrate FOLDER … -o FILE.json` writes one",
         )
     };

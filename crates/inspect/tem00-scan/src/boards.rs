@@ -70,7 +70,7 @@ impl BoardPlan {
             Some(square) => {
                 let board = Checkerboard::new(settings.corners, square)?;
                 let poses = stage.poses(&board, settings.boards)?;
-                let allowed = "so small that the whole board is in the image";
+                let allowed = "small enough for the whole board to be in the image";
                 let refused = || Refusal::new("square_size", square, allowed).in_unit("m");
                 (board, poses.ok_or_else(refused)?)
             }

@@ -65,15 +65,15 @@ impl MeasurementInput {
         match self {
             Self::Term(source) => source.remedy(),
             Self::Quantity(PrincipalRow | LaserOffset) => {
-                "it shifts all heights alike; the line on a flat plate at height zero tells it"
+                "it shifts all heights alike; measure it on a flat plate at height zero"
             }
             Self::Quantity(Distance | Angle | FocalLength | PixelPitch | LaserTilt) => {
-                "it changes the scale of heights; a step of known height or a calibration with a board tells it"
+                "it scales heights; measure it with a step of known height or a calibration board"
             }
             Self::Quantity(TemperatureChange | BaseExpansion | MountExpansion) => {
                 "a steadier temperature, or a base and a mount that expand less, lower it"
             }
-            Self::Quantity(_) => "a better known value lowers it",
+            Self::Quantity(_) => "a more accurate value reduces it",
         }
     }
 }

@@ -169,7 +169,7 @@ impl ImageWindow {
         let values = field.amplitude();
         assert!(
             values.width() == width && values.height() == height,
-            "the field has not the samples of the pupil"
+            "field and pupil differ in their samples"
         );
         let largest = largest_magnitude(values.values());
         if largest == 0.0 {

@@ -359,7 +359,7 @@ impl Camera {
     fn check_sensor(&self) -> Result<(), Refusal> {
         let tilt = self.description.tilt.angle;
         let steepest = self.sensor.slope().length() * 0.5 * self.pupil_diameter();
-        let allowed = "so small that the whole pupil sees the front of the sensor";
+        let allowed = "small enough for the whole pupil to see the front of the sensor";
         check::that(steepest < 1.0, "tilt", tilt, "rad", allowed)?;
         let size = self.description.size() + IMAGE_MARGIN;
         let corners = [
@@ -369,12 +369,12 @@ impl Camera {
             size,
         ];
         for position in corners.map(|corner| self.sensor.point(corner)) {
-            let allowed = "so small that the whole image stands behind the lens";
+            let allowed = "small enough for the whole image to lie behind the lens";
             check::that(position.z > 0.0, "tilt", tilt, "rad", allowed)?;
             let radius = position.truncate().length() / position.z;
             let reach = self.distortion.reach();
             let holds = self.distortion.is_none() || radius < reach;
-            let allowed = "reaching the corners of the image before it turns back";
+            let allowed = "monotonic up to the corners of the image";
             check::that(holds, "distortion", reach, "", allowed)?;
         }
         Ok(())

@@ -174,7 +174,7 @@ impl Fft2 {
     ) {
         assert!(
             aperture.width() == self.row.aperture() && aperture.height() == self.column.aperture(),
-            "the aperture has not the planned size"
+            "aperture and plan differ in size"
         );
         let copy = |columns: Range<usize>, y, values: &mut [_]| {
             values.copy_from_slice(&aperture.row(y)[columns]);
@@ -223,7 +223,7 @@ impl Fft2 {
     ) {
         assert!(
             output.width() == self.row.length() && output.height() == self.column.length(),
-            "the output has not the size of the array"
+            "output and array differ in size"
         );
         let block = COLUMNS * self.column.length();
         let blocks = self.row.aperture().div_ceil(COLUMNS);

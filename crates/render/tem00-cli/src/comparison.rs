@@ -120,7 +120,7 @@ pub(crate) fn table(rows: &[Row]) -> Table {
         Column::shown("tolerance"),
         Column::new("verdict", "verdict"),
     ];
-    let mut table = Table::new("Measured beside the theory", columns).under("rows");
+    let mut table = Table::new("Measured values and theory", columns).under("rows");
     rows.iter().for_each(|row| table.row(row.cells()));
     table
 }
@@ -134,10 +134,10 @@ pub(crate) fn conclusion(rows: &[Row]) -> String {
     let all = agree.len() + others.len();
     let said = |(row, verdict): &(&Row, &str)| format!("{}, {verdict}", row.quantity);
     match (all, &*others) {
-        (0, _) => "Nothing here is compared with theory.".to_owned(),
-        (_, []) => format!("It is as theory says: all {all} numbers that are compared agree."),
+        (0, _) => "No value is compared with theory.".to_owned(),
+        (_, []) => format!("All {all} compared values agree with theory."),
         (_, others) => format!(
-            "It is not as theory says in {} of {all} numbers that are compared: {}.",
+            "{} of {all} compared values disagree with theory: {}.",
             others.len(),
             others.iter().map(said).collect::<Vec<_>>().join("; ")
         ),
@@ -153,10 +153,10 @@ mod tests {
         let near = |name: &str, measured| Row::new(name, measured, Expectation::near(1.0, 0.05));
         let open = Row::new("mean", 3.0, Expectation::Open);
         for (rows, expected) in [
-            (vec![open.clone()], "Nothing here is compared with theory."),
+            (vec![open.clone()], "No value is compared with theory."),
             (
                 vec![near("contrast", 1.01), open.clone(), near("size", 0.99)],
-                "It is as theory says: all 2 numbers that are compared agree.",
+                "All 2 compared values agree with theory.",
             ),
             (
                 vec![
@@ -165,7 +165,7 @@ mod tests {
                     near("size", 1.2),
                     near("p", 1.0),
                 ],
-                "It is not as theory says in 2 of 3 numbers that are compared: contrast, low by 0.21; size, high by 0.2.",
+                "2 of 3 compared values disagree with theory: contrast, low by 0.21; size, high by 0.2.",
             ),
         ] {
             assert_eq!(conclusion(&rows), expected);

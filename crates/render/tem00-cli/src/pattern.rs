@@ -69,7 +69,7 @@ fn write_and_compare(args: &PatternArgs) -> Result<Report, Failure> {
         write(file, format, &values, &description(args, &field))
     })
     .map_err(|error| Failure::writing(&args.output, error))?;
-    let mut report = Report::new("A speckle pattern beside the theory");
+    let mut report = Report::new("Speckle pattern, measured and theory");
     let table = comparison::table(&compared.rows);
     report.section("Statistics").table(table);
     let notes = compared.notes.into_iter();

@@ -93,7 +93,7 @@ fn check(args: &RenderArgs, scene: &Scene, out: &mut impl Write) -> Result<(), F
     } else {
         Err(Failure::no_result(
             "the camera will see no light of a laser",
-            "the lines above say which, and why",
+            "the lines above give the laser and the reason",
         ))
     }
 }

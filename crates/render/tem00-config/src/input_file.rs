@@ -103,10 +103,7 @@ fn check_length(bytes: u64, max_bytes: u64) -> io::Result<()> {
     }
     Err(io::Error::new(
         io::ErrorKind::FileTooLarge,
-        format!(
-            "it has more than {} MiB, the most that is read",
-            max_bytes >> 20
-        ),
+        format!("it exceeds the maximum of {} MiB", max_bytes >> 20),
     ))
 }
 
@@ -129,9 +126,9 @@ mod tests {
             3 << 20
         );
         let told = message(read_input(&path, (3 << 20) - 1));
-        assert_eq!(told, "it has more than 2 MiB, the most that is read");
+        assert_eq!(told, "it exceeds the maximum of 2 MiB");
         let endless = message(read_bounded(io::repeat(b'a'), 1 << 20));
-        assert_eq!(endless, "it has more than 1 MiB, the most that is read");
+        assert_eq!(endless, "it exceeds the maximum of 1 MiB");
     }
 
     #[test]

@@ -69,7 +69,7 @@ fn take(
     })?;
     if !lock.is_held() {
         note(&format!(
-            "the file system of {} has no locks: let no other tem00 write there meanwhile",
+            "{}: file locking is unavailable; make sure that no other tem00 writes there",
             folder.display()
         ));
     }

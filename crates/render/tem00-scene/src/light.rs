@@ -59,7 +59,7 @@ fn environment(section: &Section<'_>, assets: &mut Assets) -> Result<Environment
             .map_err(|error| rejected(&error, error.parameter(), &[section]));
     };
     if section.has("radiance") {
-        let message = "`radiance` is that of a sky without a map: `scale` brightens the `file`";
+        let message = "`radiance` is for a sky without a map: use `scale` to brighten the `file`";
         return Err(section.problem_with("radiance", message));
     }
     let scale = section.or("scale", 1.0, |value| value.positive(&NUMBER))?;

@@ -17,7 +17,7 @@ pub(super) fn contributions(answer: &Answer) -> Drawing {
         None => &[("formulas", FORMULAS)],
     };
     let label = "standard uncertainty of a height (µm)";
-    let mut bars = Bars::new("What makes a height uncertain", label, series);
+    let mut bars = Bars::new("Sources of height uncertainty", label, series);
     let trials = answer.trials.as_ref();
     for term in answer.budget.terms() {
         let mut values = vec![term.contribution() * METRES_TO_MICROMETRES];

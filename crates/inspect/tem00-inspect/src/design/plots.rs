@@ -61,7 +61,7 @@ fn trade_off(design: &Design<'_>) -> Named {
         units::label(depth.unit(), depth.name()),
         units::label(objective.unit(), objective.name()),
     ];
-    let chart = Chart::new("What depth of field costs", [&labels[0], &labels[1]])
+    let chart = Chart::new("Cost of depth of field", [&labels[0], &labels[1]])
         .dots("break a constraint", dots(false))
         .coloured(BROKEN)
         .dots("keep every constraint", dots(true))
@@ -212,7 +212,7 @@ fn sensitivity(design: &Design<'_>, near: &[Neighbours]) -> Named {
         name: "sensitivity".into(),
         caption: format!(
             "By how much the {name} of the set-up shown changes with 10 % less and 10 % more of each \
-             parameter alone; without a bar, that is not possible or nothing changes."
+             parameter alone; no bar: infeasible, or no effect."
         ),
         drawing: bars.draw(),
     }

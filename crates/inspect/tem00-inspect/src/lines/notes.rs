@@ -39,12 +39,12 @@ fn too_few(found: &[Vec<LinePoint>], args: &LinesArgs) -> Option<String> {
         return None;
     }
     let (unit, turned) = if args.rows {
-        ("rows", "leave --rows out if it runs from left to right")
+        ("rows", "omit --rows if it is horizontal")
     } else {
-        ("columns", "give --rows if it runs from top to bottom")
+        ("columns", "pass --rows if it is vertical")
     };
     Some(format!(
-        "a line in {lit} of {} {unit} only: {turned}, and lower --min-peak if it is faint",
+        "line found in only {lit} of {} {unit}: {turned}, lower --min-peak if it is faint",
         found.len()
     ))
 }

@@ -66,7 +66,7 @@ pub(super) fn table(frames: &[FrameRecord]) -> Table {
         Column::new("saturated_pixels", "saturated pixels"),
         Column::new("mean_width_pixels", "mean width of the line, 1/e² (px)"),
     ];
-    let mut table = Table::new("What was found in each frame", columns).under("frames");
+    let mut table = Table::new("Results of each frame", columns).under("frames");
     for frame in frames {
         table.row([
             frame.number.into(),

@@ -223,7 +223,7 @@ fn average(job: &Job<'_>, measured: &Measured) -> Cell {
 /// from a frame to the next.
 fn speckle(job: &Job<'_>, measured: &Measured) -> Cell {
     if job.args.common.no_speckle {
-        return Cell::missing("left out, as asked");
+        return Cell::missing("disabled");
     }
     let speckle = job.measurement.speckle();
     let ([across, down], contrast) = (speckle.size(), speckle.variance.sqrt());

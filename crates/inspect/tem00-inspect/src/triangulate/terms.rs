@@ -26,7 +26,7 @@ pub(super) struct Term {
 impl Term {
     fn new(source: Option<UncertaintySource>, position: Option<f64>, variance: f64) -> Self {
         let indirect =
-            "another pose, a duller surface or a smaller window lower it; averages do not";
+            "another pose, a duller surface or a smaller window reduces it; averaging does not";
         Self {
             name: source.map_or("indirect light", UncertaintySource::name),
             remedy: source.map_or(indirect, UncertaintySource::remedy),
@@ -143,7 +143,7 @@ impl Terms {
     pub(super) fn verdict(&self) -> String {
         let dominant = self.dominant().map_or_else(String::new, |term| {
             format!(
-                " What dominates is {}, with {:.0} % of the variance: {}.",
+                " The largest term is {}, with {:.0} % of the variance: {}.",
                 term.name,
                 100.0 * term.variance_fraction,
                 term.remedy

@@ -43,7 +43,7 @@ fn a_search_over_linewidths_says_what_each_leaves_of_noise_and_contrast() {
     assert_eq!(best["linewidth"], 20e-9, "{best}");
     assert_eq!(best["line_noise_ratio"], effect.line_noise_ratio, "{best}");
     assert_eq!(best["contrast_ratio"], effect.contrast, "{best}");
-    let words = "of the noise of the line, which counts for the uncertainty";
+    let words = "(enters the uncertainty)";
     assert_has(&read(&out.join("design.html")), &[words]);
     let table = said(folder.path(), "design a.toml --best 2", 0).out;
     assert!(!table.contains("contrast over"), "one wavelength: {table}");

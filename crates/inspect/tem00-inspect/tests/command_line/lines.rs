@@ -130,8 +130,8 @@ fn what_is_doubtful_is_told_with_what_helps() {
         grey(y as f64 + 0.5 - place(x)).saturating_mul(30)
     });
     for [options, code, part] in tem00_testkit::rows(
-        "dark.png => 3 => a line in 0 of 40 columns only: give --rows
-        down.png --rows --min-peak 5000 => 3 => leave --rows out
+        "dark.png => 3 => line found in only 0 of 40 columns: pass --rows
+        down.png --rows --min-peak 5000 => 3 => omit --rows
         a.png --window 61 => 3 => a smaller --window helps
         white.png => 3 => pixels are saturated
         a.png --bits 10 => 2 => at most 1023, but there is one of 3",

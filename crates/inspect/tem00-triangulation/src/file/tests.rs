@@ -82,7 +82,7 @@ fn a_written_set_up_is_what_a_person_would_write() {
         "line_thickness = \"0.2 mm\" # between the points of 1/e², on the part",
         "f_number = 8",
         "pixel_pitch = \"3.45 um\"",
-        "angle = \"40 deg\" # between the optical axis and the upright",
+        "angle = \"40 deg\" # between the optical axis and the vertical",
         "exposure = \"0.16 ms\"",
         "uncertainty = \"1 um\" # standard uncertainty of a height",
         "columns = 16",

@@ -182,7 +182,7 @@ fn check(
         }
         UncertaintyError::Contradiction { .. } if !is_all => return Ok(()),
         UncertaintyError::Contradiction { .. } => {
-            "`coefficient` contradicts those of other correlations: no quantities have all of them"
+            "`coefficient` contradicts other correlations: their matrix is not positive semi-definite"
                 .into()
         }
         UncertaintyError::Between { .. } => "`between` must name two different quantities".into(),

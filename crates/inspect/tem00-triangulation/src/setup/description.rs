@@ -171,7 +171,7 @@ pub struct SetupCamera {
     pub resolution: [usize; 2],
     /// The distance from the entrance pupil to the line on the reference plane, in metres.
     pub distance: f64,
-    /// The angle θ between the optical axis and the upright, in radians: the angle to the laser
+    /// The angle θ between the optical axis and the vertical, in radians: the angle to the laser
     /// plane is θ + [`tilt`](LaserLineData::tilt).
     pub angle: f64,
     /// The row of the image that the optical axis meets, in pixels; the middle without one.

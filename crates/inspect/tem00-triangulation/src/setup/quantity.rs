@@ -130,7 +130,7 @@ quantities! {
                 |_| (0.999_999_f64.to_radians(), 89.000_001_f64.to_radians()),
                 "from 1° to 89° (in radians)",
             )
-            .required("\"30 deg\"").note("between the optical axis and the upright").varied(1);
+            .required("\"30 deg\"").note("between the optical axis and the vertical").varied(1);
         /// number from 0 to the number of rows: the row that the optical axis meets, in pixels
         PrincipalRow: principal_row = Row::new(
                 (

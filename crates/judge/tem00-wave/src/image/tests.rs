@@ -169,7 +169,7 @@ fn a_point_out_of_focus_fades_as_the_pupil_integral_says() {
 }
 
 #[test]
-#[should_panic(expected = "the field has not the samples of the pupil")]
+#[should_panic(expected = "field and pupil differ in their samples")]
 fn a_field_from_elsewhere_does_not_fit() {
     let window = ImageWindow::new(&camera(), &sampling(64)).expect("a window");
     let field = Field::new(Grid::filled(3, 3, Complex::new(1.0, 0.0)));

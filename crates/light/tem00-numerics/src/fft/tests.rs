@@ -221,7 +221,7 @@ fn sizes_without_a_transform_are_refused() {
 }
 
 #[test]
-#[should_panic(expected = "the aperture has not the planned size")]
+#[should_panic(expected = "aperture and plan differ in size")]
 fn an_aperture_of_another_size_panics() {
     let transform = Fft2::with_aperture(8, 8, 4, 4).unwrap();
     let _ = transform.forward(&aperture(4, 5), |_, _, value| value);

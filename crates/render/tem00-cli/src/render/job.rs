@@ -118,7 +118,7 @@ impl<'a> Render<'a> {
 
     pub(super) fn speckle(&self) -> Result<Option<Patterns>, Failure> {
         let Some(plan) = &self.plan else {
-            note("speckle: left out, as asked");
+            note("speckle: disabled");
             return Ok(None);
         };
         for line in plan.to_string().lines() {

@@ -173,7 +173,7 @@ fn doubtful_light_and_speckle_are_told() {
         (mirror, "", "before and behind a rough surface"),
         (smooth, "", "surface `gauge` is too smooth"),
         // Without speckle there is nothing to be too smooth for.
-        (smooth, "--no-speckle", "left out, as asked"),
+        (smooth, "--no-speckle", "disabled"),
     ] {
         write(folder.path(), "a.toml", format!("{SCENE}\n{surface}"));
         let said = message(&done(

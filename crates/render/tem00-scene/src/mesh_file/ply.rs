@@ -61,8 +61,8 @@ pub(super) fn parse(content: &[u8]) -> Result<Polygons, MeshFileError> {
     polygons.take(cut, |vertex| vertex);
     polygons.triangles.extend(strips);
     let others = [
-        "entry that is no vertex, face or triangle strip",
-        "entries that are no vertices, faces or triangle strips",
+        "entry other than vertex, face and triangle strip",
+        "entries other than vertices, faces and triangle strips",
     ];
     polygons.notes.extend(note(left_out, others));
     Ok(polygons)

@@ -320,7 +320,7 @@ fn an_offset_of_nan_panics() {
 }
 
 #[test]
-#[should_panic(expected = "the output has not the size of the array")]
+#[should_panic(expected = "output and array differ in size")]
 fn a_grid_of_another_size_panics() {
     let mut grid = Grid::filled(32, 31, 0.0);
     let field = PupilField::new(32, 16, 1).unwrap();

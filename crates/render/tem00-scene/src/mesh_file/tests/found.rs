@@ -186,7 +186,7 @@ fn what_is_left_out_is_said() {
     let flat = ascii_stl().replacen("2.5e-1 -1.25e-1 1.5e0", "-1e0 -1e0 0e0", 1);
     let lines = embedded(PLAIN).replace("\"indices\": 1, \"mode\": 4 }", &with_others);
     let (entry, face) = (
-        "left out: 1 entry that is no vertex, face or triangle strip",
+        "left out: 1 entry other than vertex, face and triangle strip",
         "left out: 1 face without area",
     );
     for (format, content, expected) in [

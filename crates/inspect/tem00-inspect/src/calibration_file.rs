@@ -233,9 +233,9 @@ mod tests {
             r#"tem00 calibration 1 => tem00 calibration 9 => format
             "focal_length":0.025 => "focal_length":-1.0 => focal_length
             "focal_length" => "focal_lenght" => focal_lenght
-            "normal":[ => "normal":[0.0, => no calibration
+            "normal":[ => "normal":[0.0, => not a calibration
             "image distance" => "distance" => parameters
-            { => => no calibration"#,
+            { => => not a calibration"#,
         ) {
             assert!(text.contains(&from), "{from} is in {text}");
             fs::write(&path, text.replacen(&from, &to, 1)).expect("the file is written");

@@ -210,7 +210,7 @@ fn the_commands_of_the_page_on_certificates_print_its_results() {
 #[test]
 fn formulas_and_trials_agree_as_the_tutorial_says() {
     let page = page("tutorial.md");
-    assert_has(&page, &["agree to 3 %"]);
+    assert_has(&page, &["agree within 3 %"]);
     for command in [
         "budget examples/setups/data_sheet.toml",
         "budget out/design/best.toml",

@@ -89,7 +89,7 @@ fn a_text_has_at_most_16_mebibytes() {
     write(path, "long.toml", scene((16 << 20) + 1));
     write(path, "b.toml", including("long.toml"));
     for line in ["render long.toml", "render b.toml"] {
-        refused(path, line, &["more than 16 MiB"]);
+        refused(path, line, &["exceeds the maximum of 16 MiB"]);
     }
 }
 

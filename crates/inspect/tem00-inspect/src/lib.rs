@@ -31,13 +31,13 @@ use crate::args::{Cli, Command};
 ///
 /// Takes over Ctrl-C and the termination signals of the process: a second one ends it at once.
 pub fn run(arguments: &[OsString]) -> u8 {
-    program::run(arguments, obey)
+    program::run(arguments, execute)
 }
 
 /// Does the command and prints its results to `out`.
-fn obey(cli: &Cli, out: &mut impl Write) -> Result<(), Failure> {
+fn execute(cli: &Cli, out: &mut impl Write) -> Result<(), Failure> {
     if cli.quiet {
-        output::be_quiet();
+        output::set_quiet();
     }
     match &cli.command {
         Command::Budget(args) => budget::run(args, out),

@@ -81,7 +81,7 @@ fn tasks(args: &SweepArgs, grid: &Grid) -> Result<RangeInclusive<usize>, Failure
 fn do_tasks(sweep: &Sweep<'_>, tasks: RangeInclusive<usize>) -> Result<(), Failure> {
     let progress = Progress::of(tasks.clone().count() as u64, "tasks");
     // What the commands say is in their files.
-    output::be_quiet();
+    output::set_quiet();
     let (mut left, mut without_row): (Vec<usize>, _) = (tasks.collect(), None);
     while !left.is_empty() {
         let mut busy = Vec::new();

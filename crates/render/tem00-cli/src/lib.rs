@@ -47,7 +47,7 @@ pub fn run(arguments: &[OsString]) -> u8 {
         );
         return 2;
     }
-    program::run(arguments, obey)
+    program::run(arguments, execute)
 }
 
 /// Makes sure, before the work, that a file can be written.
@@ -61,9 +61,9 @@ fn check_writable(path: &Path) -> Result<(), Failure> {
 }
 
 /// Does the command and prints its results to `out`.
-fn obey(cli: &Cli, out: &mut impl Write) -> Result<(), Failure> {
+fn execute(cli: &Cli, out: &mut impl Write) -> Result<(), Failure> {
     if cli.quiet {
-        output::be_quiet();
+        output::set_quiet();
     }
     match &cli.command {
         Command::Render(args) => render::run(args, out),

@@ -169,7 +169,7 @@ pub fn remove(folder: &Path, names: &[&str], endings: &[&str]) -> Result<(), Fai
 static QUIET: AtomicBool = AtomicBool::new(false);
 
 /// Leaves out all notes and all progress from now on.
-pub fn be_quiet() {
+pub fn set_quiet() {
     QUIET.store(true, Ordering::Relaxed);
 }
 

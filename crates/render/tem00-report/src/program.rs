@@ -11,19 +11,19 @@ use tem00_config::is_hazard;
 use crate::{failure::Failure, interrupt, output::Printable};
 
 /// Runs a program with the arguments of a process, the first of which is its own name, and returns
-/// the exit code. `obey` does the command and prints its results.
+/// the exit code. `run` does the command and prints its results.
 ///
 /// Takes over Ctrl-C and the termination signals of the process: a second one ends it at once.
 pub fn run<P: Parser>(
     arguments: &[OsString],
-    obey: impl FnOnce(&P, &mut Printable<StdoutLock<'static>>) -> Result<(), Failure>,
+    run: impl FnOnce(&P, &mut Printable<StdoutLock<'static>>) -> Result<(), Failure>,
 ) -> u8 {
     let program = match P::try_parse_from(arguments) {
         Ok(program) => program,
         Err(error) => return refuse(&error, arguments),
     };
     let mut out = Printable(io::stdout().lock());
-    let done = interrupt::install().and_then(|()| obey(&program, &mut out));
+    let done = interrupt::install().and_then(|()| run(&program, &mut out));
     // Within Python nothing else empties the buffer.
     match done.and(out.flush().map_err(|error| Failure::stdout(&error))) {
         Ok(()) => 0,

@@ -94,7 +94,7 @@ impl<'a> Sweep<'a> {
     }
 
     fn work(&self, task: usize) -> Result<(), Failure> {
-        let (outcome, reason) = match self.obey(task) {
+        let (outcome, reason) = match self.execute(task) {
             Ok(()) => (Outcome::Done, None),
             Err(failure @ Failure::NoResult(_)) => (Outcome::NothingMeasured, Some(failure)),
             Err(failure @ Failure::Input(_)) => (Outcome::Refused, Some(failure)),
@@ -111,7 +111,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// Does the command of a task.
-    fn obey(&self, task: usize) -> Result<(), Failure> {
+    fn execute(&self, task: usize) -> Result<(), Failure> {
         let folder = output::subfolder(&self.tasks, &format!("{task:06}"))?;
         let change = |text: &String| {
             let refused = |why| Failure::input(format!("{text}: {why}"), HELP);

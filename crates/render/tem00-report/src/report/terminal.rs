@@ -24,7 +24,7 @@ impl Report {
         let printed = if as_json {
             writeln!(out, "{}", self.json())
         } else {
-            self.tell_doubts();
+            self.print_warnings();
             self.write_text(files, out)
         };
         printed.map_err(|error| Failure::stdout(&error))
@@ -37,7 +37,7 @@ impl Report {
     }
 
     /// Tells warnings and notes, the first few of many.
-    fn tell_doubts(&self) {
+    fn print_warnings(&self) {
         const TOLD: usize = 8;
         for (kind, lines) in [("warning", &self.warnings), ("note", &self.notes)] {
             for line in lines.iter().take(TOLD) {

@@ -13,5 +13,6 @@ mod kernel;
 mod lights;
 mod look_up;
 mod motion;
+mod passes;
 mod patterns;
 mod phasors;

@@ -25,7 +25,7 @@ named! {
 }
 
 impl UncertaintySource {
-    /// Returns a measure that lowers it.
+    /// Returns a remedy that reduces the term.
     pub const fn remedy(self) -> &'static str {
         match self {
             Self::Speckle => {

@@ -304,3 +304,10 @@ fn a_linewidth_scales_speckle_by_the_noise_of_the_line_and_nothing_else() {
     assert_absolute(ratio, effect.line_noise_ratio, 1e-12);
     assert_absolute(wide.contrast() / single.contrast(), effect.contrast, 1e-12);
 }
+
+#[test]
+fn the_uncertainty_grows_out_of_focus() {
+    let setup = setup_of(|_| ());
+    let far = Budget::at_height(&setup, setup.depth_of_field().low).unwrap();
+    assert!(far.combined() > 1.1 * Budget::new(&setup).unwrap().combined());
+}

@@ -8,6 +8,7 @@ mod lines_of_an_image;
 mod noise;
 mod properties;
 mod sensitivities;
+mod speckle;
 
 use core::f64::consts::{FRAC_1_SQRT_2, TAU};
 

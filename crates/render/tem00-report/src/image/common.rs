@@ -108,8 +108,8 @@ pub enum ImageError {
     Npy(#[from] crate::npy::NpyError),
     #[error("not a readable JPEG file: {0}")]
     Jpeg(#[from] zune_jpeg::errors::DecodeErrors),
-    #[error("not a readable image: {0}")]
-    Decoding(#[from] image::ImageError),
+    #[error("not a readable BMP file: its headers are wrong, or it is cut off")]
+    Bmp,
     #[error("not a readable PGM or PPM file: {0}")]
     Pnm(&'static str),
     #[error("{0} is not supported: use .png, .tif, .jpg, .bmp, .pgm, .exr or .npy")]

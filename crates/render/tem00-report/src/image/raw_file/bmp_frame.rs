@@ -1,46 +1,96 @@
 //! Windows bitmaps as cameras write them: not compressed.
 
-use std::io::{BufRead, Seek, SeekFrom};
-
-use image::{ColorType, ImageDecoder, codecs::bmp::BmpDecoder};
+use std::io::Read;
 
 use super::{
     BYTES_PER_PIXEL, Components, ImageError, Samples, check_length, check_room, checked_area,
 };
 
-/// The bytes of the headers up to the method of compression.
-const HEADERS: usize = 34;
+/// The length of the smallest header of Windows, `BITMAPINFOHEADER`, and of the one before it.
+const HEADER: u32 = 40;
+const FILE_HEADER: usize = 14;
 
-pub(super) fn read(mut reader: impl BufRead + Seek) -> Result<Samples, ImageError> {
-    let length = reader.seek(SeekFrom::End(0))?;
-    reader.rewind()?;
-    let mut headers = [0; HEADERS];
-    reader.read_exact(&mut headers)?;
-    reader.rewind()?;
-    let [bits, method] = [headers[28], headers[30]];
-    // The decoder shows what a compressed file lacks as black.
-    if matches!(method, 1 | 2) {
-        let what = format!("pixels of {bits} bits, compressed by the method {method},");
-        return Err(ImageError::Pixels(what));
-    }
-    let decoder = BmpDecoder::new(reader)?;
-    let (width, height) = decoder.dimensions();
-    let area = checked_area(width.into(), height.into())?;
-    check_length([width, height].map(u64::from), length, 8)?;
-    let mut components = match decoder.color_type() {
-        ColorType::Rgba8 => Components::Rgba,
-        _ => Components::Rgb,
+/// The masks of red, green and blue where the file has none of its own.
+const MASKS_OF_16_BITS: [u32; 3] = [0x7c00, 0x03e0, 0x001f];
+const MASKS_OF_BYTES: [u32; 3] = [0x00ff_0000, 0xff00, 0xff];
+
+pub(super) fn read(mut reader: impl Read) -> Result<Samples, ImageError> {
+    let mut file = Vec::new();
+    reader.read_to_end(&mut file)?;
+    let word = |at: usize| {
+        let bytes = file.get(at..at + 4).and_then(|bytes| bytes.try_into().ok());
+        bytes.map(u32::from_le_bytes).ok_or(ImageError::Bmp)
     };
-    let count = components.names().len();
-    check_room(area, 5 * count + BYTES_PER_PIXEL)?;
-    let mut bytes = vec![0; count * area];
-    decoder.read_image(&mut bytes)?;
-    let is_grey = |pixel: &[u8]| pixel[0] == pixel[1] && pixel[1] == pixel[2];
-    if bits <= 8 && bytes.chunks_exact(count).all(is_grey) {
-        components = Components::Grey;
-        bytes = bytes.into_iter().step_by(count).collect();
+    let header = word(FILE_HEADER)?;
+    if !file.starts_with(b"BM") || header < HEADER {
+        return Err(ImageError::Bmp);
     }
-    let values = bytes.into_iter().map(f32::from).collect();
-    let size = [width as usize, height as usize];
-    Ok(Samples::new(size, components, values, Some(8)))
+    let (width, height) = (word(18)?, word(22)?.cast_signed());
+    let is_top_down = height < 0;
+    let (bits, method) = (word(28)? & 0xffff, word(30)?);
+    let masks = match (bits, method) {
+        (1 | 4 | 8 | 24 | 32, 0) => MASKS_OF_BYTES,
+        (16, 0) => MASKS_OF_16_BITS,
+        // Bit fields, without and with one for alpha.
+        (16 | 32, 3 | 6) => [word(54)?, word(58)?, word(62)?],
+        _ => {
+            let what = format!("pixels of {bits} bits, compressed by the method {method},");
+            return Err(ImageError::Pixels(what));
+        }
+    };
+    let area = checked_area(width.into(), height.unsigned_abs().into())?;
+    let size = [width, height.unsigned_abs()];
+    check_length(size.map(u64::from), file.len() as u64, 8)?;
+    check_room(area, 3 * size_of::<f32>() + BYTES_PER_PIXEL)?;
+
+    let [width, height] = size.map(|side| side as usize);
+    let stride = (width * bits as usize).div_ceil(32) * 4;
+    let start = word(10)? as usize;
+    let rows = file
+        .get(start..)
+        .and_then(|rows| rows.get(..stride * height));
+    let rows = rows.ok_or(ImageError::Bmp)?.chunks_exact(stride);
+    let palette = file.get(FILE_HEADER + header as usize..start);
+    let (palette, _) = palette.unwrap_or_default().as_chunks::<4>();
+    let pixel = |row: &[u8], x: usize| {
+        let bit = x * bits as usize;
+        if bits <= 8 {
+            let index = row[bit / 8] >> (8 - bits as usize - bit % 8) & (0xff >> (8 - bits));
+            let [blue, green, red, _] = *palette.get(usize::from(index))?;
+            return Some([red, green, blue].map(f32::from));
+        }
+        let bytes = row[bit / 8..].iter().take(bits as usize / 8).rev();
+        let value = bytes.fold(0, |value, &byte| value << 8 | u32::from(byte));
+        Some(masks.map(|mask| in_eight_bits(value, mask)))
+    };
+    // A negative height says that the rows run from the top down.
+    let rows: Vec<_> = if is_top_down {
+        rows.collect()
+    } else {
+        rows.rev().collect()
+    };
+    let pixels = rows.into_iter().flat_map(|row| {
+        (0..width).map({
+            let pixel = &pixel;
+            move |x| pixel(row, x)
+        })
+    });
+    let pixels: Vec<[f32; 3]> = pixels.collect::<Option<_>>().ok_or(ImageError::Bmp)?;
+    let is_grey = |[red, green, blue]: &[f32; 3]| red == green && green == blue;
+    let (components, values) = if bits <= 8 && pixels.iter().all(is_grey) {
+        (
+            Components::Grey,
+            pixels.iter().map(|pixel| pixel[0]).collect(),
+        )
+    } else {
+        (Components::Rgb, pixels.into_flattened())
+    };
+    Ok(Samples::new([width, height], components, values, Some(8)))
+}
+
+/// Returns the component under a mask as a number of 0 to 255, rounded.
+fn in_eight_bits(value: u32, mask: u32) -> f32 {
+    let shift = mask.trailing_zeros().min(31);
+    let [part, full] = [value & mask, mask].map(|bits| u64::from(bits >> shift));
+    ((part * 255 + full / 2) / full.max(1)) as f32
 }

@@ -74,6 +74,41 @@ fn grey_palettes_make_grey_bitmaps() {
 }
 
 #[test]
+fn bitmaps_have_one_to_thirty_two_bits() {
+    let black_and_white = [[0; 4], [255; 4]];
+    let fields = |masks: [u32; 3]| masks.map(u32::to_le_bytes);
+    let green_is_finer = fields([0xf800, 0x07e0, 0x001f]);
+    let wide = fields([0xff, 0xff00, 0x00ff_0000]);
+    for (bits, method, head, row, expected) in [
+        (
+            1,
+            0,
+            &black_and_white[..],
+            [0b0110_0000, 0, 0, 0],
+            [0.0, 255.0],
+        ),
+        (4, 0, &black_and_white, [0x10, 0, 0, 0], [255.0, 0.0]),
+        // The mean of the colours: 31 of 31 thrice, and 16 of 31 in blue.
+        (16, 0, &[], [0xff, 0x7f, 0x10, 0], [255.0, 44.0]),
+        // 31 of 31 in red, and 1 of 63 in green.
+        (
+            16,
+            3,
+            &green_is_finer,
+            [0, 0xf8, 0x20, 0],
+            [85.0, 4.0 / 3.0],
+        ),
+        (32, 3, &wide, [3, 4, 8, 0], [5.0, 5.0]),
+    ] {
+        let rows = [row, row].concat();
+        let mut file = bitmap([2, 1], bits, head, &rows);
+        file[30] = method;
+        let read = raw(&file, RawFormat::Bmp, None).expect("a bitmap");
+        assert_eq!(read.values.values(), expected, "{bits} bits, {method}");
+    }
+}
+
+#[test]
 fn maps_are_read_in_bytes_and_as_text_in_grey_and_in_colour() {
     // The header, bytes behind it, the values and their bits.
     let table = "

@@ -29,13 +29,13 @@ impl Exposure {
     /// The white level that the lasers' light in the first frame suggests.
     pub(crate) const fn for_laser_light(white_level: f32) -> Self {
         let rule =
-            "so that 99.5 % of the pixels that laser light reaches in the first frame are darker";
+            "so that 95 % of the pixels that laser light reaches in the first frame are darker";
         Self::chosen(white_level, rule)
     }
 
     /// The white level that all light in the first frame suggests.
     pub(crate) const fn for_all_light(white_level: f32) -> Self {
-        let rule = "so that 99.5 % of the lit pixels of the first frame are darker";
+        let rule = "so that 95 % of the lit pixels of the first frame are darker";
         Self::chosen(white_level, rule)
     }
 

@@ -182,15 +182,15 @@ mod tests {
     #[test]
     fn verdicts_say_on_which_side_a_value_lies() {
         let near = Expectation::near(2.0, 0.1);
-        let least = Expectation::at_least(1e-3);
-        let most = Expectation::at_most(1e-3);
+        let min = Expectation::at_least(1e-3);
+        let max = Expectation::at_most(1e-3);
         for (theory, measured, expected) in [
             (near, 2.09, Some("agrees")),
             (near, 2.25, Some("high by 0.25")),
             (near, 1.666, Some("low by 0.33")),
-            (least, 1e-3, Some("agrees")),
-            (least, 1e-9, Some("too low")),
-            (most, 0.2, Some("too high")),
+            (min, 1e-3, Some("agrees")),
+            (min, 1e-9, Some("too low")),
+            (max, 0.2, Some("too high")),
             (Expectation::Open, 0.2, None),
         ] {
             let row = Row::new("quantity", measured, theory);

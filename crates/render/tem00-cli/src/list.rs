@@ -83,11 +83,11 @@ and metal do not tell.";
 fn surfaces() -> Table {
     let mut table = headed(["process", "Ra, typical (µm)", "rms height (µm)"]);
     for process in FinishingProcess::ALL {
-        let [least, greatest] = process.mean_deviation.map(|ra| rounded(1e6 * ra, 3));
+        let [min, greatest] = process.mean_deviation.map(|ra| rounded(1e6 * ra, 3));
         let height = rounded(1e6 * process.rms_height(), 3);
         table.row(texts([
             process.name,
-            &format!("{least} … {greatest}"),
+            &format!("{min} … {greatest}"),
             &height,
         ]));
     }

@@ -104,6 +104,7 @@ fn overruled(mut scene: Scene, args: &RenderArgs) -> Scene {
     args.common.overrule(options);
     options.method = args.method.unwrap_or(options.method);
     options.max_depth = args.max_depth.or(options.max_depth);
+    options.white_level = args.white_level.or(options.white_level);
     if let Some(error) = args.target_error {
         options.sampling = Sampling::TargetError(error);
     }

@@ -1,5 +1,5 @@
 use tem00_camera::Camera;
-use tem00_config::{Document, MEMORY, NUMBER, Problem, Section, Value};
+use tem00_config::{Document, MEMORY, NUMBER, Problem, RADIANCE, Section, Value};
 use tem00_numerics::cast::to_i64;
 use tem00_tracer::{Crop, LaserEvents, Method, RenderOptions, Sampling, Scene, SpeckleSettings};
 
@@ -17,6 +17,7 @@ const RENDER_KEYS: &[&str] = &[
     "adaptive",
     "target_error",
     "filter",
+    "white_level",
 ];
 const SPECKLE_KEYS: &[&str] = &["size", "diameter", "half_period", "memory"];
 
@@ -26,7 +27,7 @@ const LASER_EVENTS: &[(&str, LaserEvents)] = &[
 ];
 
 /// The largest pattern size and number of slices: what a memory of a tebibyte could hold.
-const MOST: u64 = 1 << 15;
+const MAX: u64 = 1 << 15;
 
 /// Reads into a scene how the image of its camera is rendered, and its frames.
 pub(crate) fn render(root: &Document<'_>, scene: &mut Scene) -> Result<(), Problem> {
@@ -56,6 +57,9 @@ pub(crate) fn render(root: &Document<'_>, scene: &mut Scene) -> Result<(), Probl
         })?,
         sampling: sampling(&section)?,
         filter: filter::read(&section)?,
+        white_level: section.or("white_level", None, |value| {
+            value.positive(&RADIANCE).map(Some)
+        })?,
         ..default
     };
     Ok(())
@@ -83,8 +87,8 @@ fn sampling(section: &Section<'_>) -> Result<Sampling, Problem> {
 fn crop(value: &Value<'_>, camera: &Camera) -> Result<Crop, Problem> {
     let allowed = "four numbers of pixels [x, y, width, height]";
     let [x, y, width, height] = value.elements(allowed)?;
-    let pixels = |value: &Value<'_>, least| {
-        let pixels = value.integer(least..=u64::from(u32::MAX))?;
+    let pixels = |value: &Value<'_>, min| {
+        let pixels = value.integer(min..=u64::from(u32::MAX))?;
         Ok(usize::try_from(pixels).unwrap_or(usize::MAX))
     };
     let crop = Crop {
@@ -108,9 +112,9 @@ fn crop(value: &Value<'_>, camera: &Camera) -> Result<Crop, Problem> {
 
 /// A number from 1 to a million.
 fn count(value: &Value<'_>) -> Result<u32, Problem> {
-    const MOST: u32 = 1_000_000;
-    let count = value.integer(1..=u64::from(MOST))?;
-    Ok(u32::try_from(count).unwrap_or(MOST))
+    const MAX: u32 = 1_000_000;
+    let count = value.integer(1..=u64::from(MAX))?;
+    Ok(u32::try_from(count).unwrap_or(MAX))
 }
 
 pub(crate) fn speckle(root: &Document<'_>) -> Result<SpeckleSettings, Problem> {
@@ -118,9 +122,9 @@ pub(crate) fn speckle(root: &Document<'_>) -> Result<SpeckleSettings, Problem> {
     let Some(section) = root.table("speckle", SPECKLE_KEYS)? else {
         return Ok(default);
     };
-    let samples = |key, least| {
+    let samples = |key, min| {
         section.or(key, None, |value| {
-            let samples = value.integer(least..=MOST)?;
+            let samples = value.integer(min..=MAX)?;
             Ok(usize::try_from(samples).ok())
         })
     };

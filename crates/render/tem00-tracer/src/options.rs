@@ -121,6 +121,9 @@ pub struct RenderOptions {
     /// otherwise camera samples that find no light of the laser count with a factor of 1 there.
     /// Radiances are the same, and take less time without.
     pub speckle_in_the_dark: bool,
+    /// The radiance that previews show as white, in W/(m² sr); `None` to choose it from the first
+    /// frame. No layer depends on it.
+    pub white_level: Option<f64>,
 }
 
 impl Default for RenderOptions {
@@ -136,6 +139,7 @@ impl Default for RenderOptions {
             filter: Filter::default(),
             crop: None,
             speckle_in_the_dark: true,
+            white_level: None,
         }
     }
 }

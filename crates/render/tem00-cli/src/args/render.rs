@@ -53,7 +53,8 @@ pub struct RenderArgs {
     #[arg(long)]
     pub(crate) check: bool,
 
-    /// Radiance in W/(m² sr) that the preview shows as white [default: from the first frame].
+    /// Radiance in W/(m² sr) that the preview shows as white [default: from the scene,
+    /// or 95 % of the pixels that laser light reaches in the first frame are darker].
     #[arg(long, value_name = "RADIANCE", value_parser = radiance)]
     pub(crate) white_level: Option<f64>,
 }

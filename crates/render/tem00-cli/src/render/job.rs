@@ -54,8 +54,7 @@ impl<'a> Render<'a> {
             .map_err(|error| tracer_failure(&args.common.scene, &error))?;
         // The text as well: standard input is none of the files.
         let changes = args.common.files.reading().changes;
-        let by = (args.reference, args.white_level);
-        let choices = (options, plan.is_some(), by, text, changes);
+        let choices = (options, plan.is_some(), args.reference, text, changes);
 
         let frames = frames(args.common.frames, scene.frames)?;
         check_room(&args.common.scene, &scene)?;

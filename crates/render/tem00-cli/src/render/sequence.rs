@@ -123,7 +123,7 @@ impl Render<'_> {
     ///
     /// A frame 0 that is to be rendered sets it anew, to the same.
     fn known_exposure(&self) -> Option<Exposure> {
-        match (self.args.white_level, self.find(0)) {
+        match (self.scene.render.white_level, self.find(0)) {
             (Some(level), _) => Some(Exposure::asked(level)),
             (None, Found::Ours { exposure, .. }) => Some(exposure),
             _ => None,

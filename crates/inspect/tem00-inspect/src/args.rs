@@ -49,7 +49,7 @@ pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
 
-    /// Print no notes and no progress: results and errors alone.
+    /// Suppress notes and progress; print only results and errors.
     #[arg(short, long, global = true)]
     pub(crate) quiet: bool,
 }

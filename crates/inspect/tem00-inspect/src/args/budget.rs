@@ -19,11 +19,11 @@ pub(crate) struct BudgetArgs {
     #[command(flatten)]
     pub(crate) common: SetupArgs,
 
-    /// The number of trials, 10 to a million; 0 leaves them out.
+    /// Number of trials, 10 to a million; 0 skips them.
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = trials)]
     pub(crate) trials: u32,
 
-    /// The seed of the trials.
+    /// Random seed of the trials.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) seed: u64,
 }

@@ -20,47 +20,47 @@ use super::lines::DetectorArgs;
 #[derive(Args, Debug)]
 #[command(after_help = CALIBRATE_EXAMPLES)]
 pub(crate) struct CalibrateArgs {
-    /// The folder with the photographs.
+    /// Folder with the photographs.
     #[arg(value_name = "FOLDER")]
     pub(crate) folder: PathBuf,
 
-    /// The inner corners of the board, where four squares meet: per row and per column.
+    /// Number of inner corners of the board, where four squares meet, per row and per column.
     #[arg(long, value_name = "COLUMNSxROWS", value_parser = corners)]
     pub(crate) corners: [usize; 2],
 
-    /// The side of a square, as in "5 mm".
+    /// Side of a square, for example "5 mm".
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub(crate) square: f64,
 
-    /// The pixel pitch of the sensor, as in "3.45 um".
+    /// Pixel pitch of the sensor, for example "3.45 um".
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub(crate) pixel_pitch: f64,
 
-    /// The focal length of the lens, as in "25 mm": the start of the fit, and the distance at which
-    /// the image is sharp.
+    /// Focal length of the lens, for example "25 mm": the starting value of the fit, from which the
+    /// distance of sharp focus follows.
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub(crate) focal_length: Option<f64>,
 
-    /// The f-number of the lens, for its blur and speckle.
+    /// f-number of the lens, for blur and speckle.
     #[arg(long, value_name = "F", default_value_t = 8.0, value_parser = positive)]
     pub(crate) f_number: f64,
 
-    /// The sensor is tilted (Scheimpflug): find its tilt instead of the principal point.
+    /// The sensor is tilted (Scheimpflug): fit its tilt instead of the principal point.
     #[arg(long)]
     pub(crate) tilted: bool,
 
-    /// The number of coefficients of radial distortion to find, 0 to 3.
+    /// Number of coefficients of radial distortion to fit, 0 to 3.
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(0..=3))]
     pub(crate) radial: u8,
 
     #[command(flatten)]
     pub(crate) detector: DetectorArgs,
 
-    /// The channel to take: R, G or B [default: the mean of R, G and B].
+    /// Colour channel: R, G or B [default: the mean of R, G and B].
     #[arg(long, value_name = "NAME")]
     pub(crate) channel: Option<String>,
 
-    /// The file to write [default: calibration.json in the folder].
+    /// Output file [default: calibration.json in the folder].
     #[arg(short, long, value_name = "FILE.json")]
     pub(crate) output: Option<PathBuf>,
 }

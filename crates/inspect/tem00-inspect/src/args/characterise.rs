@@ -17,7 +17,7 @@ pub(crate) struct CharacteriseArgs {
     #[command(flatten)]
     pub(crate) common: SetupArgs,
 
-    /// The number of places at which flats and grooves are measured, 4 to 1000.
+    /// Number of places at which flats and grooves are measured, 4 to 1000.
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u16).range(4..=1000))]
     pub(crate) repetitions: u16,
 
@@ -25,7 +25,7 @@ pub(crate) struct CharacteriseArgs {
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub(crate) spp: u32,
 
-    /// The seed of speckle and noise.
+    /// Random seed of speckle and noise.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) seed: u64,
 }

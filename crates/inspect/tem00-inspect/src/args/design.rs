@@ -16,7 +16,7 @@ pub(crate) struct DesignArgs {
     #[command(flatten)]
     pub(crate) common: SetupArgs,
 
-    /// The number of best set-ups to list, 1 to 1000.
+    /// Number of best set-ups to list, 1 to 1000.
     #[arg(long, value_name = "N", default_value_t = 10,
           value_parser = clap::value_parser!(u16).range(1..=1_000))]
     pub(crate) best: u16,

@@ -16,33 +16,33 @@ use tem00_triangulation::{DetectorSettings, LineMethod};
 #[derive(Args, Debug)]
 #[command(after_help = LINES_EXAMPLES)]
 pub(crate) struct LinesArgs {
-    /// The images: .png, .tif, .jpg, .bmp, .pgm or .ppm.
+    /// Images: .png, .tif, .jpg, .bmp, .pgm or .ppm.
     #[arg(required = true, value_name = "IMAGE")]
     pub(crate) images: Vec<PathBuf>,
 
-    /// The folder to write to [default: out/lines].
+    /// Output folder [default: out/lines].
     #[arg(short, long, value_name = "FOLDER")]
     pub(crate) output: Option<PathBuf>,
 
     #[command(flatten)]
     pub(crate) detector: DetectorArgs,
 
-    /// Lines run from top to bottom, and have a position in each row.
+    /// Lines run from top to bottom, with one position per row.
     #[arg(long, conflicts_with = "calibration")]
     pub(crate) rows: bool,
 
-    /// The channel to take: R, G or B [default: the mean of R, G and B].
+    /// Colour channel: R, G or B [default: the mean of R, G and B].
     #[arg(long, value_name = "NAME")]
     pub(crate) channel: Option<String>,
 
-    /// The bits of a grey value, where the camera has fewer than the file: 8, 10, 12, 14 or 16. A
-    /// pixel is saturated at their largest value [default: at that of the file, or where the values
-    /// end in a pile].
+    /// Bit depth of the camera, if lower than that of the file: 8, 10, 12, 14 or 16. A pixel at the
+    /// largest value of that depth counts as saturated [default: the depth of the file, or the
+    /// value at which grey values pile up].
     #[arg(long, value_name = "BITS", value_parser = bits)]
     pub(crate) bits: Option<u32>,
 
-    /// A calibration of `tem00-inspect calibrate`: the tables get points in space and their
-    /// uncertainties.
+    /// Calibration made by `tem00-inspect calibrate`: the tables then contain points in space with
+    /// their uncertainties.
     #[arg(long, value_name = "FILE.json")]
     pub(crate) calibration: Option<PathBuf>,
 
@@ -54,30 +54,30 @@ pub(crate) struct LinesArgs {
 /// The options of the line detector.
 #[derive(Args, Debug)]
 pub(crate) struct DetectorArgs {
-    /// The estimator of the position of a line in a column.
+    /// Estimator of the position of the line in a column.
     #[arg(long = "detector", value_name = "METHOD", default_value = "centre_of_gravity",
           value_parser = method())]
     method: LineMethod,
 
-    /// The pixels of a column that an estimate looks at, an odd number [default: 31, or what the
-    /// method needs if that is more].
+    /// Number of pixels per column that the estimator uses, odd [default: 31, or more if the method
+    /// needs it].
     #[arg(long, value_name = "N")]
     window: Option<usize>,
 
-    /// The threshold of `thresholded_centre_of_gravity`, a fraction of the peak from 0 to below 1
+    /// Threshold of `thresholded_centre_of_gravity`, as a fraction of the peak, from 0 to below 1
     /// [default: 0.2].
     #[arg(long, value_name = "F", allow_negative_numbers = true)]
     threshold: Option<f64>,
 
-    /// The number of taps of `blais_rioux`: 2, 4 or 8 [default: 4].
+    /// Number of taps of `blais_rioux`: 2, 4 or 8 [default: 4].
     #[arg(long, value_name = "N")]
     order: Option<usize>,
 
-    /// The standard deviation of the Gaussian of `steger`, in pixels [default: 2].
+    /// Standard deviation of the Gaussian of `steger`, in pixels [default: 2].
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     sigma: Option<f64>,
 
-    /// The minimum height of a line above the background, in grey values.
+    /// Minimum height of a line above the background, in grey values.
     #[arg(
         long,
         value_name = "DN",
@@ -86,7 +86,7 @@ pub(crate) struct DetectorArgs {
     )]
     min_peak: f64,
 
-    /// The maximum number of lines per column.
+    /// Maximum number of lines per column.
     #[arg(long, value_name = "K", default_value_t = 1)]
     max_lines: usize,
 }

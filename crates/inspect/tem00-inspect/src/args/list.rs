@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 
-/// List what set-ups can name: detectors, sensors.
+/// List the names that set-ups can use: detectors, sensors.
 ///
 /// Each entry has its source, and typical values are marked.
 #[derive(Args, Debug)]

@@ -27,12 +27,12 @@ pub(crate) struct SetupArgs {
     #[command(flatten)]
     pub(crate) files: FileArgs,
 
-    /// The folder for the files, made if it is missing [default: out/<name of the set-up>].
+    /// Output folder, created if missing [default: out/<name of the set-up>].
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
 
-    /// Threads to work with, 1 to 1024, four for each core at most; the result does not depend on
-    /// it [default: all].
+    /// Number of threads, 1 to 1024 and at most four per core; it does not change the result
+    /// [default: all].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use tem00_report::args::IndexRange;
 
-/// Run a command over all combinations of some values, here or on many machines.
+/// Run a command for all combinations of given values, on one machine or on many.
 ///
 /// The grid file names a command, its file, the keys that vary and the results to keep. Every
 /// combination is a task with a number. A task that is done leaves a row in the folder and is not
@@ -36,8 +36,8 @@ pub(crate) struct SweepArgs {
     #[arg(long)]
     pub(crate) gather: bool,
 
-    /// Threads to work with, 1 to 1024, four for each core at most; the result does not depend on
-    /// it [default: all].
+    /// Number of threads, 1 to 1024 and at most four per core; it does not change the result
+    /// [default: all].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
 }

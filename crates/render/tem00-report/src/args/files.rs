@@ -6,12 +6,12 @@ use tem00_config::{Change, FileAccess, Reading};
 /// Options for reading a scene file or a set-up file.
 #[derive(Args, Clone, Debug)]
 pub struct FileArgs {
-    /// Let the file include files that lie outside of its folder, and glTF meshes take data from
-    /// outside of theirs.
+    /// Allow included files outside the folder of the file, and data of glTF meshes outside the
+    /// folder of the mesh.
     #[arg(long)]
     allow_outside: bool,
 
-    /// A value instead of that in the file, such as `camera.f_number=8` or, counted from 0,
+    /// Override a value of the file, such as `camera.f_number=8` or, counted from 0,
     /// `laser[0].power=2mW`; may be given several times.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     changes: Vec<Change>,

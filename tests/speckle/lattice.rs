@@ -202,7 +202,7 @@ impl Lattice {
     /// The least stride whose multiples, and those plus or minus `lag`, correlate by less than 5 %
     /// in intensity: pairs `lag` apart taken at this stride are independent.
     pub(crate) fn stride(&self, lag: [i64; 2]) -> usize {
-        let least = lag[0].abs().max(lag[1].abs()) + 1;
+        let min = lag[0].abs().max(lag[1].abs()) + 1;
         let apart = |stride: i64| {
             (-2..=2).flat_map(move |y| (-2..=2).map(move |x| [x * stride, y * stride]))
         };
@@ -212,7 +212,7 @@ impl Lattice {
                 .flat_map(|[x, y]| [-1, 0, 1].map(|s| [x + s * lag[0], y + s * lag[1]]))
                 .all(|at| self.correlation(at).norm_sqr() < 0.05)
         };
-        let stride = (least..100).find(independent);
+        let stride = (min..100).find(independent);
         usize::try_from(stride.expect("speckles far smaller than the pattern"))
             .unwrap_or(usize::MAX)
     }
@@ -245,8 +245,8 @@ fn transmission(pupil: &Pupil, [x, y]: [f64; 2]) -> Complex<f64> {
 
 #[expect(clippy::cast_possible_truncation, reason = "a few lattice points")]
 fn reach(diameter: f64) -> core::ops::RangeInclusive<i64> {
-    let most = (0.5 * diameter) as i64 + 2;
-    -most..=most
+    let max = (0.5 * diameter) as i64 + 2;
+    -max..=max
 }
 
 pub(crate) fn signed(index: usize) -> i64 {

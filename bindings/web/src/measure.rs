@@ -31,7 +31,7 @@ pub struct Measured {
 /// Pixels count that have at least a tenth of the brightest one's light. Returns `None` where fewer
 /// than 200 do: of so few nothing can be said.
 pub fn measure(film: &[[f32; 4]], width: usize, size_in_theory: f64) -> Option<Measured> {
-    let brightest = film.iter().fold(0.0_f32, |most, pixel| most.max(pixel[1]));
+    let brightest = film.iter().fold(0.0_f32, |max, pixel| max.max(pixel[1]));
     let is_lit = |pixel: &[f32; 4]| pixel[1] >= 0.1 * brightest && pixel[1] > 0.0;
     let factor = |pixel: &[f32; 4]| is_lit(pixel).then(|| f64::from(pixel[0] / pixel[1]));
     let factors: Vec<Option<f64>> = film.iter().map(factor).collect();

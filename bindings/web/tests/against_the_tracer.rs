@@ -105,9 +105,7 @@ fn power_and_width(film: &Film) -> [f64; 2] {
 /// The correlation of the speckle of lit pixels with that of the frame before, one pixel to the
 /// left.
 fn correlation(before: &Film, after: &Film) -> f64 {
-    let brightest = before
-        .iter()
-        .fold(0.0_f32, |most, pixel| most.max(pixel[1]));
+    let brightest = before.iter().fold(0.0_f32, |max, pixel| max.max(pixel[1]));
     let factor = |pixel: &[f32; 4]| {
         (pixel[1] > 0.1 * brightest).then(|| f64::from(pixel[0] / pixel[1]) - 1.0)
     };

@@ -4,7 +4,7 @@ use tem00_numerics::check;
 use tem00_triangulation::TriangulationError;
 
 /// The maximum number of corners along a side of a board.
-const MOST: usize = 50;
+const MAX: usize = 50;
 
 /// A checkerboard, by its inner corners: where four squares meet.
 ///
@@ -29,7 +29,7 @@ impl Checkerboard {
         check::positive("square_size", square, "m")?;
         for number in corners {
             let allowed = "from 3 to 50 inner corners per side";
-            check::that((3..=MOST).contains(&number), "corners", number, "", allowed)?;
+            check::that((3..=MAX).contains(&number), "corners", number, "", allowed)?;
         }
         Ok(Self { corners, square })
     }

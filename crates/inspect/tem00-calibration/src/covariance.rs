@@ -93,9 +93,9 @@ impl CalibrationCovariance {
         if asymmetry > ROUNDING || (0..COUNT).any(unknown) {
             return Err(refused(asymmetry));
         }
-        let least = SymmetricEigen::new(scaled).eigenvalues.min();
-        if least < -ROUNDING {
-            return Err(refused(least));
+        let min = SymmetricEigen::new(scaled).eigenvalues.min();
+        if min < -ROUNDING {
+            return Err(refused(min));
         }
         Ok(Self { origin, matrix })
     }

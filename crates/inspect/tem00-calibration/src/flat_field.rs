@@ -3,7 +3,7 @@ use nalgebra::{DMatrix, DVector};
 use tem00_numerics::{Grid, cast::to_f32};
 
 /// The minimum illumination that an image is divided by, as a fraction of its mean on the board.
-const LEAST: f64 = 0.1;
+const MIN: f64 = 0.1;
 
 /// Minimum number of bright squares per coefficient of the illumination.
 const SQUARES_PER_COEFFICIENT: usize = 2;
@@ -56,7 +56,7 @@ pub(super) fn flattened(
             .zip(terms)
             .map(|(c, term)| c * term)
             .sum();
-        let relative = (light / level).max(LEAST);
+        let relative = (light / level).max(MIN);
         to_f32(f64::from(image[(x, y)]) / relative)
     })
 }

@@ -44,8 +44,8 @@ impl FittedPlane {
         let eigen = SymmetricEigen::new(scatter);
         let mut order = [0, 1, 2];
         order.sort_by(|&i, &j| eigen.eigenvalues[i].total_cmp(&eigen.eigenvalues[j]));
-        let [least, across, along] = order.map(|i| eigen.eigenvalues[i]);
-        let spread = across > MIN_SPREAD * MIN_SPREAD * least && across > 1e-9 * along;
+        let [min, across, along] = order.map(|i| eigen.eigenvalues[i]);
+        let spread = across > MIN_SPREAD * MIN_SPREAD * min && across > 1e-9 * along;
         let normal = eigen.eigenvectors.column(order[0]);
         let normal = DVec3::new(normal[0], normal[1], normal[2]);
         spread.then_some(Self { middle, normal }).ok_or(OPEN)

@@ -33,7 +33,7 @@ pub(super) struct SpeckleTable {
 const REACH: f64 = 12.0;
 
 /// The maximum number of pixels to either side that are kept.
-const MOST: usize = 256;
+const MAX: usize = 256;
 
 impl SpeckleTable {
     /// Integrates the covariances for the displacements that differ from `offset`, in pixels to the
@@ -122,7 +122,7 @@ impl PixelCovariance for SpeckleTable {
 }
 
 fn pixels_within_reach(size: f64) -> usize {
-    to_usize((REACH * size).ceil().clamp(2.0, MOST as f64))
+    to_usize((REACH * size).ceil().clamp(2.0, MAX as f64))
 }
 
 #[cfg(test)]

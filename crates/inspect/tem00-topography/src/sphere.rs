@@ -106,10 +106,10 @@ fn top(field: &Field, radius: f64) -> f64 {
 /// The means of the points about each place on the cap; `None` if one has none.
 fn at_places(points: &[DVec3], sphere: &FittedSphere) -> Option<Vec<DVec3>> {
     let mean_about = |direction: DVec3| {
-        let least = libm::cos(REGION * CAP);
+        let min = libm::cos(REGION * CAP);
         let near = points.iter().map(|point| *point - sphere.centre);
         let near: Vec<DVec3> = near
-            .filter(|from| from.normalize_or_zero().dot(direction) >= least)
+            .filter(|from| from.normalize_or_zero().dot(direction) >= min)
             .collect();
         let distances: Vec<f64> = near.iter().map(|from| from.length()).collect();
         (!near.is_empty()).then(|| sphere.centre + mean(&distances) * direction)

@@ -194,8 +194,8 @@ fn noise_and_form_come_back() {
     is(sphere.size, 1e-3 * sphere.diameter, 0.0);
     is(sphere.form, 2.0 * 1.959_96 * together, 0.01);
     // Means of a hundred points and more leave a tenth of the noise; the range of 25 is 4 of them.
-    let least = sphere.form_of_places.value;
-    assert!((0.0..together).contains(&least), "{sphere:?}");
+    let min = sphere.form_of_places.value;
+    assert!((0.0..together).contains(&min), "{sphere:?}");
 }
 
 #[test]

@@ -108,10 +108,10 @@ impl DesignSearch {
             let allowed = "a bound that is positive and finite";
             check::that(holds, figure.name(), bound, "", allowed)?;
         }
-        let most = (*max_setups).min(Self::MAX_SETUPS);
+        let max = (*max_setups).min(Self::MAX_SETUPS);
         let product = |count: usize, sweep: &Sweep| count.checked_mul(sweep.values().len());
         let count = sweeps.iter().try_fold(1, product);
-        match count.filter(|&count| count <= most) {
+        match count.filter(|&count| count <= max) {
             Some(count) => Ok(Self { question, count }),
             None => Err(too_many(sweeps)),
         }

@@ -329,22 +329,22 @@ fn cells(samples: usize, side: f64) -> Vec<f64> {
 /// Returns the numbers of samples per pixel along the rows and the columns for which a speckle has
 /// about as many along both.
 fn samples_per_pixel([along, across]: [f64; 2]) -> [usize; 2] {
-    let least = (SAMPLES_PER_SPECKLE / along.min(across)).ceil().max(1.0);
+    let min = (SAMPLES_PER_SPECKLE / along.min(across)).ceil().max(1.0);
     let ratio = across / along;
     let mismatch = |ny: f64| {
         let nx = (ny * ratio).round().max(1.0);
         ((ny * ratio / nx).ln().abs(), nx, ny)
     };
-    let candidates = (0..8).map(|more| mismatch(least + f64::from(more)));
+    let candidates = (0..8).map(|more| mismatch(min + f64::from(more)));
     let matched = candidates.reduce(|best, next| if next.0 < best.0 - 1e-9 { next } else { best });
-    let (_, nx, ny) = matched.unwrap_or((0.0, least, least));
+    let (_, nx, ny) = matched.unwrap_or((0.0, min, min));
     [nx, ny].map(to_usize)
 }
 
 /// Returns the side of a pattern of `needed` pixels, and `dark` ones beside them, that is fast to
 /// transform: the smallest number without prime factors above 5.
 fn pattern_side(needed: usize, dark: f64) -> usize {
-    let least = needed.saturating_add(to_usize(dark.ceil()));
+    let min = needed.saturating_add(to_usize(dark.ceil()));
     let smooth = |&n: &usize| {
         let mut rest = n;
         for factor in [2, 3, 5] {
@@ -355,18 +355,18 @@ fn pattern_side(needed: usize, dark: f64) -> usize {
         rest == 1
     };
     // There is one between any number and twice it.
-    (least..).find(smooth).unwrap_or(least)
+    (min..).find(smooth).unwrap_or(min)
 }
 
 fn check(d: &LineImageData) -> Result<(), TriangulationError> {
     const SPECKLE: &str = "from 1/16 to 64 pixels";
     let [columns, rows] = d.size;
-    let (pixels, most) = (columns.saturating_mul(rows) as f64, MAXIMUM_SAMPLES as f64);
+    let (pixels, max) = (columns.saturating_mul(rows) as f64, MAXIMUM_SAMPLES as f64);
     let [along, across] = d.speckle_size;
     let electrons = d.column_electrons;
     let patterns = d.patterns.into();
     for (name, value, range, allowed) in [
-        ("size", pixels, (1.0, most), "from 1 to 2^25 pixels"),
+        ("size", pixels, (1.0, max), "from 1 to 2^25 pixels"),
         ("width", d.width, (0.01, 1e5), "from 0.01 to 1e5 pixels"),
         ("blur", d.blur, (0.0, 1e5), "from 0 to 1e5 pixels"),
         ("column_electrons", electrons, (0.0, 1e12), "from 0 to 1e12"),

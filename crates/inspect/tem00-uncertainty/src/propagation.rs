@@ -222,11 +222,11 @@ impl PropagationOptions {
         );
         check::that(holds, "tolerance_divisor", divisor, "", allowed)?;
         let trials = (100.0 / (1.0 - self.probability.value())).ceil().max(1e4);
-        let (most, allowed) = (
+        let (max, allowed) = (
             self.max_trials as f64,
             "at least two blocks of 10⁴, or of 100/(1 − p) if that is more",
         );
-        check::that(most >= 2.0 * trials, "max_trials", most, "", allowed)?;
+        check::that(max >= 2.0 * trials, "max_trials", max, "", allowed)?;
         Ok(to_usize(trials))
     }
 

@@ -42,9 +42,9 @@ impl SamplePlane {
     /// Returns an error if a component of the centre is not finite or above 10 km, a step not
     /// between 1 pm and 10 km long, or the number of samples zero or above 2²⁸.
     pub fn new(centre: DVec3, steps: [DVec3; 2], samples: [usize; 2]) -> Result<Self, WaveError> {
-        const MOST: usize = 1 << 28;
+        const MAX: usize = 1 << 28;
         let count = samples[0].checked_mul(samples[1]);
-        if !count.is_some_and(|count| (1..=MOST).contains(&count)) {
+        if !count.is_some_and(|count| (1..=MAX).contains(&count)) {
             return Err(WaveError::refused(
                 "samples",
                 samples[0] as f64 * samples[1] as f64,

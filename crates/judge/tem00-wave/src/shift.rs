@@ -93,8 +93,8 @@ const REFINEMENTS: usize = 3;
 const COMMON: usize = 4;
 
 fn limited(displacement: i64, size: usize) -> i64 {
-    let most = to_signed(size - size / COMMON);
-    displacement.clamp(-most, most)
+    let max = to_signed(size - size / COMMON);
+    displacement.clamp(-max, max)
 }
 
 /// The whole displacement at which the correlation stands out most: its noise grows with the square

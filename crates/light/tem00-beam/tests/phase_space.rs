@@ -137,14 +137,14 @@ const BINS: usize = 16;
 const FINE: usize = 12;
 const RAYS: usize = 60_000;
 
-/// Holds samples (s, t) in bins up to ±`half` against their probability density, over `least` bins
+/// Holds samples (s, t) in bins up to ±`half` against their probability density, over `min` bins
 /// or more that expect ten samples.
 #[track_caller]
 fn check_samples(
     samples: impl ExactSizeIterator<Item = [f64; 2]>,
     density: impl Fn(f64, f64) -> f64,
     half: [f64; 2],
-    least: usize,
+    min: usize,
 ) {
     let count = samples.len() as f64;
     let mut counts = vec![0.0; BINS * BINS];
@@ -170,14 +170,14 @@ fn check_samples(
     let bins = (0..BINS * BINS).map(|bin| (counts[bin], expected(bin)));
     let (counts, expected): (Vec<_>, Vec<_>) =
         bins.filter(|&(_, expected)| expected > 10.0).unzip();
-    assert!(counts.len() > least, "{} bins", counts.len());
+    assert!(counts.len() > min, "{} bins", counts.len());
     let p = chi_squared(&counts, &expected, 0);
     assert!(p > 1e-4, "p = {p}");
 }
 
 /// Holds rays that hit a rectangle, tilted by `tilt` degrees, against next-event irradiance.
 #[track_caller]
-fn check_surface(light: &dyn Emitter, z: f64, tilt: f64, half: [f64; 2], least: usize) {
+fn check_surface(light: &dyn Emitter, z: f64, tilt: f64, half: [f64; 2], min: usize) {
     let (sin, cos) = tilt.to_radians().sin_cos();
     let (along, centre) = (DVec3::new(cos, 0.0, sin), DVec3::new(0.0, 0.0, z));
     let normal = along.cross(DVec3::Y);
@@ -193,7 +193,7 @@ fn check_surface(light: &dyn Emitter, z: f64, tilt: f64, half: [f64; 2], least: 
             event.e_perp * DVec3::from(event.wi).dot(rotated(normal)).abs()
         })
     };
-    check_samples(hits, |s, t| irradiance(s, t) / POWER, half, least);
+    check_samples(hits, |s, t| irradiance(s, t) / POWER, half, min);
 }
 
 #[test]

@@ -146,7 +146,7 @@ impl SpectralLine {
             check::positive("wavelength", wavelength, "m")?;
             check::positive("power", power, "")?;
         }
-        let largest = peaks.iter().fold(0.0, |most: f64, peak| most.max(peak[1]));
+        let largest = peaks.iter().fold(0.0, |max: f64, peak| max.max(peak[1]));
         let total: f64 = peaks.iter().map(|peak| peak[1] / largest).sum();
         let peaks = peaks.iter().map(|&[wavelength, power]| Peak {
             offset: TAU / wavelength,
@@ -332,13 +332,13 @@ impl SpectralLine {
 
     /// Returns wave numbers, less the mean one, with the fractions of the power for which they
     /// stand in an integral: 16 or more for each peak with a width, as a function asks whose finest
-    /// feature is `scale` wide; nothing if that takes more than `most`. Of more than 24 peaks the
+    /// feature is `scale` wide; nothing if that takes more than `max`. Of more than 24 peaks the
     /// widths are left out.
-    pub(crate) fn nodes(&self, scale: f64, most: usize) -> Option<Vec<[f64; 2]>> {
+    pub(crate) fn nodes(&self, scale: f64, max: usize) -> Option<Vec<[f64; 2]>> {
         let is_wide = self.width > 0.0 && self.peaks.len() <= MAX_WIDE_PEAKS;
         let fewest = if self.peaks.len() <= 4 { 4.0 } else { 1.0 };
         let panels = (self.width / scale).ceil().max(fewest);
-        if is_wide && panels > most as f64 {
+        if is_wide && panels > max as f64 {
             return None;
         }
         let mut nodes = Vec::new();
@@ -351,7 +351,7 @@ impl SpectralLine {
                 nodes.push([peak.offset, peak.weight]);
             }
         }
-        Some(nodes).filter(|nodes| nodes.len() <= most)
+        Some(nodes).filter(|nodes| nodes.len() <= max)
     }
 
     /// The density of the difference of two draws from one peak.

@@ -60,15 +60,15 @@ pub fn not_negative(parameter: &'static str, x: f64, unit: &'static str) -> Resu
 pub fn range(
     parameter: &'static str,
     x: f64,
-    [least, most]: [f64; 2],
+    [min, max]: [f64; 2],
     unit: &'static str,
 ) -> Result<f64, Refusal> {
-    if (least..=most).contains(&x) {
+    if (min..=max).contains(&x) {
         return Ok(x);
     }
     let space = if unit.is_empty() { "" } else { " " };
-    let [least, most] = [least, most].map(|end| format!("{}{space}{unit}", Shown(end)));
-    that(false, parameter, x, unit, format!("from {least} to {most}")).map(|()| x)
+    let [min, max] = [min, max].map(|end| format!("{}{space}{unit}", Shown(end)));
+    that(false, parameter, x, unit, format!("from {min} to {max}")).map(|()| x)
 }
 
 /// Returns a length from 1e−30 m to 1e30 m: squares, products and quotients of such lengths stay

@@ -88,8 +88,8 @@ fn named_spectrum(
     match (named, section.optional("lines")) {
         (Spectrum::Comb(_), _) => {
             let lines = section.required("lines", "5")?;
-            let most = SpectralLine::MAX_PEAKS as u64;
-            let count = u32::try_from(lines.integer(1..=most)?);
+            let max = SpectralLine::MAX_PEAKS as u64;
+            let count = u32::try_from(lines.integer(1..=max)?);
             Ok(Spectrum::Comb(count.unwrap_or(u32::MAX)))
         }
         (named, None) => Ok(named),

@@ -93,9 +93,9 @@ impl<'a> Value<'a> {
     ///
     /// Returns a problem, placed at the value, if it is anything else.
     pub fn positive(&self, dimension: &Dimension) -> Result<f64, Problem> {
-        let (least, _) = dimension.magnitudes;
-        let allowed = self.in_its_unit(least, dimension);
-        self.within(dimension, least.., &format!("positive, at least {allowed}"))
+        let (min, _) = dimension.magnitudes;
+        let allowed = self.in_its_unit(min, dimension);
+        self.within(dimension, min.., &format!("positive, at least {allowed}"))
     }
 
     /// Writes a quantity in SI units in the unit of this value.
@@ -180,8 +180,8 @@ impl<'a> Value<'a> {
             _ => None,
         };
         value.filter(|value| range.contains(value)).ok_or_else(|| {
-            let (least, most) = range.into_inner();
-            self.must_be(format_args!("a whole number from {least} to {most}"))
+            let (min, max) = range.into_inner();
+            self.must_be(format_args!("a whole number from {min} to {max}"))
         })
     }
 

@@ -86,8 +86,8 @@ impl<'a> Integrator<'a> {
             laser: 0,
             group: u64::MAX,
         };
-        let most = counts[counts.len() - 1];
-        let lit_by = |laser| LitPoints::new(scene, laser, key, intersector, most);
+        let max = counts[counts.len() - 1];
+        let lit_by = |laser| LitPoints::new(scene, laser, key, intersector, max);
         let lit_points = if rules.connects_to_lit_points() {
             lasers.iter().map(lit_by).collect()
         } else {

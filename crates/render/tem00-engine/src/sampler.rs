@@ -83,8 +83,8 @@ const DOUBLINGS: u32 = 6;
 /// the pilot.
 pub(crate) fn sample_counts(options: &RenderOptions) -> Vec<u32> {
     let count = options.samples_per_pixel;
-    let counts = |pilot, least: u32| {
-        let doubled = (0..=DOUBLINGS).map(|times| least.saturating_mul(1 << times));
+    let counts = |pilot, min: u32| {
+        let doubled = (0..=DOUBLINGS).map(|times| min.saturating_mul(1 << times));
         once(pilot).chain(doubled).collect()
     };
     match options.sampling {

@@ -234,11 +234,11 @@ fn primitives(shape: &Shape) -> usize {
 }
 
 fn check(primitives: usize, reach: f64, radius: f64) -> Result<(), Refusal> {
-    const MOST: usize = 1 << 31;
+    const MAX: usize = 1 << 31;
     if primitives == 0 {
         return Err(Refusal::new("number of shapes", 0.0, "at least 1"));
     }
-    if primitives > MOST {
+    if primitives > MAX {
         let count = primitives as f64;
         return Err(Refusal::new("number of triangles", count, "at most 2^31"));
     }

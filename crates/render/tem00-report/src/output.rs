@@ -201,13 +201,13 @@ const THREADS_PER_CORE: usize = 4;
 /// Returns the threads that were asked for, or the most that are of use here, which is noted.
 pub fn bounded(threads: Option<u16>) -> Option<u16> {
     let cores = thread::available_parallelism().map_or(1, NonZero::get);
-    let most = u16::try_from(THREADS_PER_CORE * cores).unwrap_or(u16::MAX);
-    if let Some(asked) = threads.filter(|&asked| asked > most) {
+    let max = u16::try_from(THREADS_PER_CORE * cores).unwrap_or(u16::MAX);
+    if let Some(asked) = threads.filter(|&asked| asked > max) {
         note(&format!(
-            "--threads {asked}: this machine runs {cores} at a time; {most} are started"
+            "--threads {asked}: this machine runs {cores} at a time; {max} are started"
         ));
     }
-    threads.map(|asked| asked.min(most))
+    threads.map(|asked| asked.min(max))
 }
 
 /// Starts the threads that were asked for, or one per core.

@@ -15,11 +15,11 @@ pub use self::{
     heat_map::{HeatMap, Scale, height_colour},
 };
 
-/// Returns whether an item is among the `most` of `count` that are drawn: all are if they are few,
+/// Returns whether an item is among the `max` of `count` that are drawn: all are if they are few,
 /// and of many a part that is even over all of them, which multiples of the golden ratio are.
-pub fn is_drawn(index: usize, count: usize, most: usize) -> bool {
+pub fn is_drawn(index: usize, count: usize, max: usize) -> bool {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    (GOLDEN * index as f64).fract() * count as f64 <= most as f64
+    (GOLDEN * index as f64).fract() * count as f64 <= max as f64
 }
 
 #[cfg(test)]
@@ -28,15 +28,15 @@ mod tests {
 
     #[test]
     fn few_items_are_all_drawn_and_of_many_an_even_part() {
-        let most = 4_000;
-        assert!((0..most).all(|index| is_drawn(index, most, most)), "few");
+        let max = 4_000;
+        assert!((0..max).all(|index| is_drawn(index, max, max)), "few");
         let count = 200_000;
         // Of each tenth, as a parameter of ten values has them, a tenth: to a few by the
         // discrepancy of the golden ratio, 1 + log₂ of the number.
         for remainder in 0..10 {
             let tenth = (0..count).filter(|index| index % 10 == remainder);
-            let drawn = tenth.filter(|&index| is_drawn(index, count, most)).count();
-            assert!(drawn.abs_diff(most / 10) <= 18, "{remainder}: {drawn}");
+            let drawn = tenth.filter(|&index| is_drawn(index, count, max)).count();
+            assert!(drawn.abs_diff(max / 10) <= 18, "{remainder}: {drawn}");
         }
     }
 }

@@ -114,10 +114,10 @@ impl FrameProgress {
         self.bar.name(name);
         let start = self.begun.get() * self.samples_per_frame;
         self.begun.set(self.begun.get() + 1);
-        let (bar, most, done) = (&self.bar, self.samples_per_frame, AtomicU64::new(0));
+        let (bar, max, done) = (&self.bar, self.samples_per_frame, AtomicU64::new(0));
         move |samples| {
             let done = done.fetch_add(samples, Ordering::Relaxed) + samples;
-            bar.set(start + done.min(most));
+            bar.set(start + done.min(max));
         }
     }
 }

@@ -203,7 +203,7 @@ impl<'a> Reference<'a> {
             }
             let Some(point) = point else { break };
             path.depth += 1;
-            if self.options.max_depth.is_some_and(|most| path.depth > most) {
+            if self.options.max_depth.is_some_and(|max| path.depth > max) {
                 break;
             }
             if !point.material.is_specular() {

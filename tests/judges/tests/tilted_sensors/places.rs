@@ -67,12 +67,12 @@ fn places_of_a_line_correlate_from_frame_to_frame_as_the_scan_says() {
         }
         for (found, [said, left]) in found.iter().zip(law) {
             let [found, error] = found.with_error();
-            let most = said * (1.0 + BLEND / left);
-            let nearest = found.clamp(said.min(most), said.max(most));
+            let max = said * (1.0 + BLEND / left);
+            let nearest = found.clamp(said.min(max), said.max(max));
             assert!(error < 0.03, "{error}: too few columns to tell");
             assert!(
                 (found - nearest).abs() < 4.0 * error,
-                "z = {z} m: {found:.3} ± {error:.3}, said to be {said:.3} to {most:.3}"
+                "z = {z} m: {found:.3} ± {error:.3}, said to be {said:.3} to {max:.3}"
             );
         }
     }

@@ -176,12 +176,12 @@ fn figures_of(figures: &DesignFigures, source: UncertaintySource) -> f64 {
 /// Returns which axis suits the values: ratios that are more alike than differences.
 fn spacing(sweep: &Sweep) -> Spacing {
     let values = sweep.values();
-    let (least, most) = values
+    let (min, max) = values
         .iter()
         .fold((f64::MAX, 0.0_f64), |(low, high), &value| {
             (low.min(value), high.max(value))
         });
-    if most >= 4.0 * least {
+    if max >= 4.0 * min {
         Spacing::Logarithmic
     } else {
         Spacing::Linear

@@ -19,7 +19,7 @@ pub(super) struct Design<'a> {
     /// No quantity of the set-up is uncertain.
     pub(super) is_exact: bool,
     /// The most set-ups that are listed.
-    pub(super) most: usize,
+    pub(super) max: usize,
 }
 
 impl<'a> Design<'a> {
@@ -42,7 +42,7 @@ impl<'a> Design<'a> {
             search,
             outcome,
             is_exact: true,
-            most: args.best.into(),
+            max: args.best.into(),
         })
     }
 

@@ -38,7 +38,7 @@ impl LineSummary {
     /// Sums up all lines of an image.
     pub(super) fn of_all(found: &[Vec<LinePoint>]) -> Vec<Self> {
         let numbers = found.iter().flatten().map(|point| point.line);
-        let count = numbers.max().map_or(0, |most| most + 1);
+        let count = numbers.max().map_or(0, |max| max + 1);
         (0..count).map(|line| Self::of(found, line)).collect()
     }
 

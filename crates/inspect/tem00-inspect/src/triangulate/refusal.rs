@@ -21,13 +21,13 @@ impl Refusal {
                 .map(|frame| frame.not_valid.get(reason.0.name()));
             counts.flatten().sum()
         };
-        let most = REASONS
+        let max = REASONS
             .iter()
             .map(|reason| (count(reason), reason))
             .max_by_key(|(count, _)| *count)
             .filter(|(count, _)| *count > 0);
         let valid: usize = frames.iter().map(|frame| frame.counts.valid).sum();
-        match most {
+        match max {
             Some((count, (_, what, advice))) => Self {
                 why: if valid == 0 {
                     format!("none of {points} points of the line is valid: {count} {what}")

@@ -21,11 +21,11 @@ pub fn pareto_front(points: &[[f64; 2]]) -> Vec<usize> {
         let [x, y] = [points[a], points[b]];
         x[0].total_cmp(&y[0]).then(y[1].total_cmp(&x[1]))
     });
-    let mut most = f64::NEG_INFINITY;
+    let mut max = f64::NEG_INFINITY;
     let mut front: Vec<usize> = Vec::new();
     for index in order {
-        if front.is_empty() || points[index][1] > most {
-            most = points[index][1];
+        if front.is_empty() || points[index][1] > max {
+            max = points[index][1];
             front.push(index);
         }
     }

@@ -103,8 +103,8 @@ impl Column {
 /// Returns the values, with the smallest of them in the place of those that are not finite.
 fn finite(column: &[f32]) -> Vec<f64> {
     let finite = || column.iter().copied().filter(|value| value.is_finite());
-    let least = finite().reduce(f32::min).unwrap_or(0.0);
-    let known = |&value: &f32| f64::from(if value.is_finite() { value } else { least });
+    let min = finite().reduce(f32::min).unwrap_or(0.0);
+    let known = |&value: &f32| f64::from(if value.is_finite() { value } else { min });
     column.iter().map(known).collect()
 }
 
@@ -174,7 +174,7 @@ pub(super) struct Smoothed {
     /// The number of pixels in each half of the triangle.
     width: usize,
     /// A maximum must be greater than this.
-    least: f64,
+    min: f64,
 }
 
 impl Smoothed {
@@ -198,7 +198,7 @@ impl Smoothed {
         let gain = ((2.0 * m * m + 1.0) / (3.0 * m * m * m)).sqrt();
         let level = quartile(&mut values.clone());
         Self {
-            least: level + Self::STAND_OUT * gain * noise,
+            min: level + Self::STAND_OUT * gain * noise,
             values,
             width,
         }
@@ -228,18 +228,18 @@ impl Smoothed {
     }
 
     /// The greatest maxima, at least `apart` pixels from each other, from the top.
-    fn maxima(&self, apart: usize, most: usize) -> Vec<usize> {
+    fn maxima(&self, apart: usize, max: usize) -> Vec<usize> {
         let s = &self.values;
         let at = |i: usize| s.get(i).copied().unwrap_or(f64::NEG_INFINITY);
         let is_maximum = |&i: &usize| s[i] > at(i.wrapping_sub(1)) && s[i] >= at(i + 1);
         let mut order: Vec<usize> = (0..s.len())
-            .filter(|&i| s[i] > self.least)
+            .filter(|&i| s[i] > self.min)
             .filter(is_maximum)
             .collect();
         order.sort_by(|&a, &b| s[b].total_cmp(&s[a]).then(a.cmp(&b)));
         let mut taken: Vec<usize> = Vec::new();
         for i in order {
-            if taken.len() < most && taken.iter().all(|&j| i.abs_diff(j) >= apart) {
+            if taken.len() < max && taken.iter().all(|&j| i.abs_diff(j) >= apart) {
                 taken.push(i);
             }
         }

@@ -56,9 +56,9 @@ impl DetectorSettings {
                 needed: self.method.min_window(),
             });
         }
-        let (least, allowed) = (self.min_peak, "zero or more grey values, and finite");
-        let holds = (0.0..f64::INFINITY).contains(&least);
-        check::that(holds, "min_peak", least, "", allowed)?;
+        let (min, allowed) = (self.min_peak, "zero or more grey values, and finite");
+        let holds = (0.0..f64::INFINITY).contains(&min);
+        check::that(holds, "min_peak", min, "", allowed)?;
         let lines = self.max_lines as f64;
         check::range("max_lines", lines, [1.0, Self::MAX_LINES as f64], "")?;
         let (level, allowed) = (self.saturation, "positive, infinite if none");

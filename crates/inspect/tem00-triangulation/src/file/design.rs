@@ -53,8 +53,8 @@ pub fn read_design(
         ("uncertainty", Objective::Uncertainty),
         ("expanded_uncertainty", Objective::ExpandedUncertainty),
     ];
-    let most = DesignSearch::MAX_SETUPS as u64;
-    let max_setups = section.or("max_setups", MAX_SETUPS, |value| value.integer(1..=most))?;
+    let max = DesignSearch::MAX_SETUPS as u64;
+    let max_setups = section.or("max_setups", MAX_SETUPS, |value| value.integer(1..=max))?;
     let question = DesignQuestion {
         base: base.clone(),
         sweeps: sweeps(&section)?,

@@ -37,11 +37,11 @@ pub fn read_detector(document: &Document<'_>) -> Result<DetectorSettings, Proble
         return Ok(default);
     };
     let method = method(&section)?;
-    let least = method.min_window();
+    let min = method.min_window();
     let settings = DetectorSettings {
         method,
-        window: section.or("window", default.window.max(least), |value| {
-            window(value, least)
+        window: section.or("window", default.window.max(min), |value| {
+            window(value, min)
         })?,
         min_peak: section.or("min_peak", default.min_peak, |value| {
             value.within(&NUMBER, 0.0.., "zero or more grey values")
@@ -99,18 +99,18 @@ fn filter_order(value: &Value<'_>) -> Result<FilterOrder, Problem> {
 }
 
 /// Reads an odd number of pixels.
-fn window(value: &Value<'_>, least: usize) -> Result<usize, Problem> {
-    let most = DetectorSettings::MAX_WINDOW;
-    let pixels = whole(value, least.min(most), most)?;
+fn window(value: &Value<'_>, min: usize) -> Result<usize, Problem> {
+    let max = DetectorSettings::MAX_WINDOW;
+    let pixels = whole(value, min.min(max), max)?;
     if pixels.is_multiple_of(2) {
         return Err(value.must_be("odd, with as many pixels on either side of the peak"));
     }
     Ok(pixels)
 }
 
-fn whole(value: &Value<'_>, least: usize, most: usize) -> Result<usize, Problem> {
-    let number = value.integer(least as u64..=most as u64)?;
-    Ok(usize::try_from(number).unwrap_or(most))
+fn whole(value: &Value<'_>, min: usize, max: usize) -> Result<usize, Problem> {
+    let number = value.integer(min as u64..=max as u64)?;
+    Ok(usize::try_from(number).unwrap_or(max))
 }
 
 #[cfg(test)]

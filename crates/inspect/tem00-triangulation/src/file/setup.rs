@@ -214,8 +214,8 @@ fn read_average(section: &Section<'_>) -> Result<Averages, Problem> {
     })
 }
 
-fn count(value: &Value<'_>, most: u32) -> Result<u32, Problem> {
-    let number = value.integer(1..=u64::from(most))?;
+fn count(value: &Value<'_>, max: u32) -> Result<u32, Problem> {
+    let number = value.integer(1..=u64::from(max))?;
     u32::try_from(number).map_err(|_| value.must_be("a number that can be counted"))
 }
 

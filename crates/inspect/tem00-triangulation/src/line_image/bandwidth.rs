@@ -103,9 +103,9 @@ fn enough(modes: Vec<f64>, variance: f64, patterns: f64) -> (Vec<f64>, f64) {
 impl Bandwidth {
     fn new(speckle: &PolychromaticSpeckle<'_>, heights: &[[f64; 2]]) -> Self {
         let PolychromaticSpeckle { line, cell } = speckle;
-        let [least, most] = WAVES;
+        let [min, max] = WAVES;
         let count = (WAVES_PER_PATTERN / speckle.contrast().powi(2))
-            .clamp(least, most)
+            .clamp(min, max)
             .ceil();
         let full = cell.tilt_wave_number();
         let waves = (0..to_usize(count)).map(|i| {
@@ -122,7 +122,7 @@ impl Bandwidth {
     pub(super) fn widest_tilt(&self) -> f64 {
         self.waves
             .iter()
-            .fold(0.0, |most: f64, wave| most.max(wave[0].abs()))
+            .fold(0.0, |max: f64, wave| max.max(wave[0].abs()))
     }
 
     /// Returns the pupil of each wave number. `strip` makes one from the number of its random

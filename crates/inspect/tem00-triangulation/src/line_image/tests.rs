@@ -256,12 +256,12 @@ fn light_without_speckle_is_the_mean_of_light_with_it() {
         let light = sharp(&data, parts, 23.6);
         let found = lines.speckled_light(1, &light).unwrap();
         let mean = lines.mean(|_| 23.6);
-        let most = f64::from(mean.values().iter().fold(0.0, |a: f32, &b| a.max(b)));
+        let max = f64::from(mean.values().iter().fold(0.0, |a: f32, &b| a.max(b)));
         for y in 0..48 {
             let [found, expected] = [&found, &mean].map(|image| f64::from(image[(48, y)]));
             // Wings come in from the lines after which the image repeats, and go out at the ends of
             // the line.
-            assert_absolute(found, expected, 4e-3 * most);
+            assert_absolute(found, expected, 4e-3 * max);
         }
     }
 }

@@ -295,9 +295,9 @@ impl SetupDescription {
 pub(crate) fn within(
     parameter: &'static str,
     value: f64,
-    (least, greatest): (f64, f64),
+    (min, greatest): (f64, f64),
     allowed: &'static str,
 ) -> Result<(), TriangulationError> {
-    let holds = (least..=greatest).contains(&value);
+    let holds = (min..=greatest).contains(&value);
     Ok(check::that(holds, parameter, value, "", allowed)?)
 }

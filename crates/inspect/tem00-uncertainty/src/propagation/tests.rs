@@ -140,20 +140,20 @@ fn a_model_without_uncertainty_is_stable_at_once() {
 
 #[test]
 fn options_outside_their_range_are_refused() {
-    let least = PropagationOptions {
+    let min = PropagationOptions {
         max_trials: 20_000,
         ..PropagationOptions::default()
     };
-    refuses!(options = least => propagated(options);
+    refuses!(options = min => propagated(options);
         options.digits: [0, 5],
         options.tolerance_divisor: [0.9, f64::NAN, f64::INFINITY],
         options.max_trials: [19_999],
     );
-    assert_eq!(propagated(least).unwrap().values().len(), 20_000);
+    assert_eq!(propagated(min).unwrap().values().len(), 20_000);
     let rare = propagated(PropagationOptions {
         probability: CoverageProbability::new(0.9999).unwrap(),
         max_trials: 1_999_999,
-        ..least
+        ..min
     });
     assert_eq!(rare.unwrap_err().parameter(), "max_trials", "blocks of 10⁶");
 }

@@ -168,10 +168,10 @@ fn chord_centroid(length: f64) -> f64 {
     flat - 1.5 * (1.0 - end) / squared + (1.0 - (1.0 + squared) * end) / (squared * squared)
 }
 
-/// Returns ∫ f(√(1 − x²)) dx for x from `least` to 1, for an f that rises over 1/width.
-fn over_chords(f: impl Fn(f64) -> f64, width: f64, least: f64) -> f64 {
+/// Returns ∫ f(√(1 − x²)) dx for x from `min` to 1, for an f that rises over 1/width.
+fn over_chords(f: impl Fn(f64) -> f64, width: f64, min: f64) -> f64 {
     // x = cos a
-    let end = least.min(1.0).acos();
+    let end = min.min(1.0).acos();
     let substituted = |a: f64| f(a.sin()) * a.sin();
     let (mut start, mut next, mut sum) = (0.0, FRAC_1_PI.min(width.recip()), 0.0);
     while start < end {

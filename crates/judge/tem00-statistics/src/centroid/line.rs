@@ -114,9 +114,9 @@ impl SpeckledLine {
     ///
     /// Returns an error if the half-width is below a tenth of that of the line.
     pub fn with_window(self, half_width: f64) -> Result<Self, StatisticsError> {
-        let least = 0.2 * self.spread;
+        let min = 0.2 * self.spread;
         let allowed = "at least a tenth of the half-width of the line";
-        check("half_width", half_width, [least, f64::INFINITY], allowed)?;
+        check("half_width", half_width, [min, f64::INFINITY], allowed)?;
         Ok(Self {
             window: half_width,
             ..self
@@ -192,10 +192,10 @@ fn autocovariance(lag: f64) -> f64 {
 fn check(
     parameter: &'static str,
     value: f64,
-    [least, most]: [f64; 2],
+    [min, max]: [f64; 2],
     allowed: &'static str,
 ) -> Result<(), StatisticsError> {
-    if (least..=most).contains(&value) {
+    if (min..=max).contains(&value) {
         Ok(())
     } else {
         Err(StatisticsError::refused(parameter, value, allowed))

@@ -80,8 +80,8 @@ fn progress_counts_every_term_once() {
     let total = 100 * plane.open_samples() as u64;
     assert_eq!(lit.terms_on(&plane), total);
     assert!(reports.iter().all(|report| report.total == total), "total");
-    let most = reports.iter().map(|report| report.done).max();
-    assert_eq!(most, Some(total));
+    let max = reports.iter().map(|report| report.done).max();
+    assert_eq!(max, Some(total));
 }
 
 #[test]

@@ -125,9 +125,9 @@ proptest! {
         rotation in -1e3..1e3_f64,
     ) {
         let [wavelength, w0, w1, z0, z1, x, y, z] = exponents.map(|e| 10_f64.powf(e));
-        let least = 2.0 * m_squared * wavelength / PI;
+        let min = 2.0 * m_squared * wavelength / PI;
         let axis = |waist: f64, z: f64| {
-            let waist = waist.max(1.01 * least);
+            let waist = waist.max(1.01 * min);
             GaussianBeam::from_waist(wavelength, waist)
                 .and_then(|beam| beam.with_m_squared(m_squared))
                 .and_then(|beam| LocatedBeam::new(beam, z))

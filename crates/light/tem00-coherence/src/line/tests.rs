@@ -226,7 +226,7 @@ fn many_peaks_are_the_sum_of_their_pairs() {
         });
         assert_relative(found, expected, 1e-8);
         // Of 65,536 pairs with a width each takes some 1,500 values.
-        let most = if linewidth == 0.0 { 1_200 } else { 2_000_000 };
-        assert!(asked.get() < most, "{count} {linewidth:e}: {}", asked.get());
+        let max = if linewidth == 0.0 { 1_200 } else { 2_000_000 };
+        assert!(asked.get() < max, "{count} {linewidth:e}: {}", asked.get());
     }
 }

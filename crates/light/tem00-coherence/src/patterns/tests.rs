@@ -52,8 +52,8 @@ fn fractions_keep_any_variance_down_to_that_of_the_most_patterns() {
         assert!(fractions.len() <= MAX_PATTERNS as usize);
         assert_relative(squares(&fractions), variance, 3e-4);
     }
-    let least = geometric_fractions(0.0);
-    assert_relative(squares(&least), 1.0 / f64::from(MAX_PATTERNS), 1e-6);
+    let min = geometric_fractions(0.0);
+    assert_relative(squares(&min), 1.0 / f64::from(MAX_PATTERNS), 1e-6);
 }
 
 #[test]

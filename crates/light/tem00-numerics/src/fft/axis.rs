@@ -116,8 +116,8 @@ fn turn(
 
 /// The smallest divisor of `length` that is at least 8/9 of `aperture`.
 fn short_length(length: usize, aperture: usize) -> usize {
-    let least = aperture - aperture / 9;
-    (1..=length / least)
+    let min = aperture - aperture / 9;
+    (1..=length / min)
         .rev()
         .find(|parts| length.is_multiple_of(*parts))
         .map_or(length, |parts| length / parts)

@@ -213,7 +213,7 @@ impl Trace {
     /// The best of a grid of centres over the range of the positions and of radii from twice that
     /// range downwards.
     fn start<const N: usize>(&self) -> [f64; N] {
-        let most = self
+        let max = self
             .powers
             .iter()
             .copied()
@@ -226,7 +226,7 @@ impl Trace {
         let grid = centres.flat_map(|centre| {
             (-8..=2).map(move |exponent| {
                 let mut p = [0.0; N];
-                p[POWER] = most;
+                p[POWER] = max;
                 p[CENTRE] = centre;
                 p[LN_RADIUS] = f64::from(exponent) * core::f64::consts::LN_2;
                 p

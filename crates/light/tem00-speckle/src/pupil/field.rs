@@ -482,8 +482,8 @@ pub(crate) fn too_large(side: usize) -> SpeckleError {
     SpeckleError::refused("size", side as f64, "at most 32768 samples")
 }
 
-fn within([least, most]: [f64; 2], unit: &str) -> String {
-    format!("{} to {} {unit}", Shown(least), Shown(most))
+fn within([min, max]: [f64; 2], unit: &str) -> String {
+    format!("{} to {} {unit}", Shown(min), Shown(max))
 }
 
 fn not_a_speckle_size(speckle_size: f64, largest: f64) -> SpeckleError {

@@ -92,24 +92,24 @@ impl Pilot {
         for &deviation in deviations.values() {
             histogram[below(deviation)] += 1;
         }
-        let level = |below: usize, most: usize| {
-            (1 + most.saturating_sub(below) / STEPS).min(counts.len() - 1)
+        let level = |below: usize, max: usize| {
+            (1 + max.saturating_sub(below) / STEPS).min(counts.len() - 1)
         };
-        let samples = |most: usize| -> u64 {
+        let samples = |max: usize| -> u64 {
             let parts = histogram
                 .iter()
                 .enumerate()
                 .filter(|(_, pixels)| **pixels > 0);
             let samples =
-                parts.map(|(below, pixels)| pixels * u64::from(counts[level(below, most)]));
+                parts.map(|(below, pixels)| pixels * u64::from(counts[level(below, max)]));
             samples.sum()
         };
         // The most that the pixel of the largest deviation can get, in steps above the least.
-        let most = (0..DARKEST)
+        let max = (0..DARKEST)
             .rev()
-            .find(|&most| samples(most) <= budget)
+            .find(|&max| samples(max) <= budget)
             .unwrap_or(0);
-        deviations.map(|&deviation| level(below(deviation), most) as u8)
+        deviations.map(|&deviation| level(below(deviation), max) as u8)
     }
 
     /// Returns the levels that bring every pixel below a relative standard error.
@@ -189,9 +189,9 @@ mod tests {
     #[test]
     fn neighbours_of_what_differs_get_as_many() {
         let shared = counts(&pilot(&[0.0, 1.0, 0.0]).shared_levels(9 * 200, &COUNTS));
-        let most = shared[4];
-        assert_eq!(shared, [16, 16, most, most, most, most, most, 16, 16]);
-        assert!(most > 16, "{most}");
+        let max = shared[4];
+        assert_eq!(shared, [16, 16, max, max, max, max, max, 16, 16]);
+        assert!(max > 16, "{max}");
     }
 
     #[test]

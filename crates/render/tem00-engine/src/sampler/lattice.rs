@@ -24,10 +24,10 @@ impl Lattice {
             .filter(|&g| common_divisor(g, count) == 1);
         let lattices: Vec<_> = units.map(|g| Self::new(g, count)).collect();
         let best = lattices.iter().map(|lattice| lattice.square_distance).max();
-        let least = GOOD * best.unwrap_or_default() as f64;
+        let min = GOOD * best.unwrap_or_default() as f64;
         let lattices = lattices.into_iter();
         lattices
-            .filter(|lattice| lattice.square_distance as f64 >= least)
+            .filter(|lattice| lattice.square_distance as f64 >= min)
             .collect()
     }
 

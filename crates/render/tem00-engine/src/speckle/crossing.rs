@@ -265,18 +265,18 @@ fn most_confused(prescan: &MotionPrescan, count: u32) -> [u32; 2] {
     };
     let mut ways: Vec<_> = (0..count).filter_map(middle).collect();
     ways.sort_by(|(_, a), (_, b)| a.length.total_cmp(&b.length));
-    let mut most = ([0; 2], 0.0);
+    let mut max = ([0; 2], 0.0);
     for (i, (first, one)) in ways.iter().enumerate() {
         let near = ways[i + 1..].iter().take(NEIGHBOURS);
         for (second, other) in near.take_while(|(_, other)| other.length - one.length < 1.0) {
             let rendered = pupil_overlap_correlation(other.length - one.length);
             let law = pupil_overlap_correlation((other.vector - one.vector).length());
-            if rendered - law > most.1 {
-                most = ([*first, *second], rendered - law);
+            if rendered - law > max.1 {
+                max = ([*first, *second], rendered - law);
             }
         }
     }
-    most.0
+    max.0
 }
 
 impl Way {

@@ -90,8 +90,8 @@ impl MultipleMap {
         for (key, light) in self.bright() {
             let fraction = light.fraction_beside(light.single);
             let added = 2.0 * fraction * fraction * light.cascade;
-            let most: &mut f64 = strongest.entry(key).or_default();
-            *most = most.max(added);
+            let max: &mut f64 = strongest.entry(key).or_default();
+            *max = max.max(added);
         }
         strongest
     }
@@ -102,8 +102,8 @@ fn brightest(layers: &BTreeMap<LightKey, MultipleLayer>) -> BTreeMap<usize, f64>
     let mut brightest = BTreeMap::new();
     for ((laser, _), layer) in layers {
         let radiances = layer.lights.iter();
-        let most: &mut f64 = brightest.entry(*laser).or_default();
-        *most = radiances.fold(*most, |most, light| most.max(light.radiance + light.single));
+        let max: &mut f64 = brightest.entry(*laser).or_default();
+        *max = radiances.fold(*max, |max, light| max.max(light.radiance + light.single));
     }
     brightest
 }

@@ -231,18 +231,18 @@ impl Beam {
         for axis in 0..3 {
             let [first, last] = self.origin[axis];
             let (first, last) = (all(first), all(last));
-            let [least, most] = self.inverse[axis];
-            let (enter, leave) = if least > 0.0 {
+            let [min, max] = self.inverse[axis];
+            let (enter, leave) = if min > 0.0 {
                 (low[axis] - last, high[axis] - first)
-            } else if most < 0.0 {
+            } else if max < 0.0 {
                 (high[axis] - first, low[axis] - last)
             } else {
                 // Rays to both sides leave nothing out.
                 continue;
             };
-            let (least, most) = (all(least), all(most));
-            near = near.max((enter * least).min(enter * most));
-            far = far.min((leave * least).max(leave * most));
+            let (min, max) = (all(min), all(max));
+            near = near.max((enter * min).min(enter * max));
+            far = far.min((leave * min).max(leave * max));
         }
         let there = low[0].simd_lt(all(1e29));
         (near, (near.simd_le(far) & there).to_bitmask())
@@ -250,9 +250,9 @@ impl Beam {
 }
 
 #[inline(always)]
-const fn extend([least, most]: &mut [f32; 2], value: f32) {
-    *least = least.min(value);
-    *most = most.max(value);
+const fn extend([min, max]: &mut [f32; 2], value: f32) {
+    *min = min.min(value);
+    *max = max.max(value);
 }
 
 const _: () = assert!(WIDTH == 8 && LANES.is_multiple_of(CHUNK), "the vectors fit");

@@ -26,8 +26,8 @@ pub(super) fn saturation_level(values: impl Iterator<Item = f32>, full: Option<f
     let [(top, count), below @ ..] = &largest[..] else {
         return otherwise;
     };
-    let most = below.iter().map(|&(_, count)| count).max();
-    let is_pile = most.is_some_and(|most| *count >= FEWEST && *count > PILE * most);
+    let max = below.iter().map(|&(_, count)| count).max();
+    let is_pile = max.is_some_and(|max| *count >= FEWEST && *count > PILE * max);
     if *top < otherwise && (is_pile || is_largest_of_a_camera(*top)) {
         *top
     } else {

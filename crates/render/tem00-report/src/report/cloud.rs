@@ -108,10 +108,10 @@ impl Cloud<'_> {
         if !self.to_scale {
             return "the axes have scales of their own".to_owned();
         }
-        let least = frame.scale.into_iter().fold(f64::MAX, f64::min);
+        let min = frame.scale.into_iter().fold(f64::MAX, f64::min);
         let names = ["along the line", "along the scan", "heights"];
         let stretched = names.iter().zip(frame.scale).filter_map(|(name, scale)| {
-            let factor = scale / least;
+            let factor = scale / min;
             (factor > 1.001).then(|| format!("{name} stretched {} times", rounded(factor, 2)))
         });
         let stretched: Vec<_> = stretched.collect();

@@ -115,16 +115,16 @@ fn trials_give_the_same_bits_for_any_number_of_threads() {
 #[test]
 fn trials_report_progress_and_can_be_cancelled() {
     let setup = setup_of(|_| ());
-    let most = AtomicU64::new(0);
+    let max = AtomicU64::new(0);
     let run = |trials, cancelled| {
         let progress = |done| {
-            most.fetch_max(done, Ordering::Relaxed);
+            max.fetch_max(done, Ordering::Relaxed);
         };
         let options = SimulationOptions { trials, seed: 1 };
         simulate(&setup, options, progress, &AtomicBool::new(cancelled))
     };
     run(10, false).unwrap();
-    assert_eq!(most.load(Ordering::Relaxed), 10, "all trials are reported");
+    assert_eq!(max.load(Ordering::Relaxed), 10, "all trials are reported");
     assert_eq!(run(10, true), Err(TriangulationError::Cancelled));
     assert_eq!(run(9, false).unwrap_err().parameter(), Some("trials"));
 }

@@ -56,10 +56,10 @@ fn a_window_about_the_line_itself_cuts_as_much_from_both_sides() {
         let f = density(b, sigma);
         let second = f * (b * b / sigma.powi(4) - 1.0 / (sigma * sigma));
         let light = 1.0 - 2.0 * cumulative(-b, sigma);
-        let most = 31.0 * second.abs() / 62.0 / (light - 31.0 * f);
-        assert!(most < 4e-4, "the bound says something: {most}");
+        let max = 31.0 * second.abs() / 62.0 / (light - 31.0 * f);
+        assert!(max < 4e-4, "the bound says something: {max}");
         let method = LineMethod::IteratedCentreOfGravity;
-        compare(method, &[sigma], most + 1e-6, |_, _| 0.0);
+        compare(method, &[sigma], max + 1e-6, |_, _| 0.0);
     }
 }
 
@@ -79,10 +79,10 @@ fn a_threshold_lets_only_the_pixels_at_it_err() {
     let reach = sigma * (2.0 * (1.0 / t).ln()).sqrt();
     let slope = reach / (sigma * sigma) * density(reach, sigma);
     let light = 1.0 - 2.0 * cumulative(-reach, sigma) - 2.0 * reach * density(reach, sigma);
-    let most = 2.0 * reach * slope / 8.0 / light;
-    assert!(most < 0.2, "the bound says something: {most}");
+    let max = 2.0 * reach * slope / 8.0 / light;
+    assert!(max < 0.2, "the bound says something: {max}");
     let method = LineMethod::ThresholdedCentreOfGravity { threshold: t };
-    compare(method, &[sigma], most, |_, _| 0.0);
+    compare(method, &[sigma], max, |_, _| 0.0);
 }
 
 #[test]

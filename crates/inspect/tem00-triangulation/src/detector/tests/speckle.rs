@@ -66,7 +66,7 @@ fn under_speckle_a_wide_centre_of_gravity_is_best_and_three_points_are_two_to_th
     };
     let length = 8.0 / core::f64::consts::PI * (0..steps).map(integrand).sum::<f64>();
     let law = |radius: f64| (radius * length / (8.0 * core::f64::consts::PI.sqrt())).sqrt();
-    for (radius, least, most) in [(3.0, 2.0, 2.6), (6.0, 2.8, 3.5)] {
+    for (radius, min, max) in [(3.0, 2.0, 2.6), (6.0, 2.8, 3.5)] {
         let columns = columns(radius);
         let gravity = scatter(LineMethod::CentreOfGravity, &columns);
         // 6144 columns, of which neighbours share a few percent: 1.0 % of standard error. The law is for
@@ -81,7 +81,7 @@ fn under_speckle_a_wide_centre_of_gravity_is_best_and_three_points_are_two_to_th
             assert!(ratio > 0.999, "{method} at w = {radius} h: {ratio}");
             if method.min_window() == 3 && !method.name().contains("gravity") {
                 assert!(
-                    (least..most).contains(&ratio),
+                    (min..max).contains(&ratio),
                     "{method} at w = {radius} h: {ratio}"
                 );
             }

@@ -11,15 +11,15 @@ fn poisson(count: u32, mean: f64) -> f64 {
 
 /// The numbers of pixels for all counts of a range, and what theory says of them. The first and the
 /// last count stand for all that lie beyond.
-fn histogram(frame: &RawFrame, mean: f64, [least, most]: [u32; 2]) -> (Vec<u64>, Vec<f64>) {
+fn histogram(frame: &RawFrame, mean: f64, [min, max]: [u32; 2]) -> (Vec<u64>, Vec<f64>) {
     let values = frame.values.values();
-    let bin = |value: u16| u32::from(value).clamp(least, most);
-    let observed = (least..=most).map(|k| values.iter().filter(|&&v| bin(v) == k).count() as u64);
+    let bin = |value: u16| u32::from(value).clamp(min, max);
+    let observed = (min..=max).map(|k| values.iter().filter(|&&v| bin(v) == k).count() as u64);
     let pixels = values.len() as f64;
-    let mut expected: Vec<f64> = (least..=most).map(|k| pixels * poisson(k, mean)).collect();
-    expected[0] += (0..least).map(|k| pixels * poisson(k, mean)).sum::<f64>();
+    let mut expected: Vec<f64> = (min..=max).map(|k| pixels * poisson(k, mean)).collect();
+    expected[0] += (0..min).map(|k| pixels * poisson(k, mean)).sum::<f64>();
     let rest = pixels - expected.iter().sum::<f64>();
-    expected[(most - least) as usize] += rest;
+    expected[(max - min) as usize] += rest;
     (observed.collect(), expected)
 }
 

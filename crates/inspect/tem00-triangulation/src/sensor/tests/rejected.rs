@@ -13,12 +13,12 @@ fn every_quantity_has_a_range() {
             "fill_factor",
             "pixel_pitch",
         ];
-        let least = if positive.contains(&quantity.key()) {
+        let min = if positive.contains(&quantity.key()) {
             0.0
         } else {
             -1e-9
         };
-        for bad in [least, -1.0, 2e12, f64::NAN, f64::INFINITY] {
+        for bad in [min, -1.0, 2e12, f64::NAN, f64::INFINITY] {
             let mut setup = SetupDescription::default();
             quantity.set(&mut setup, bad);
             let error = Sensor::new(setup.sensor).unwrap_err();

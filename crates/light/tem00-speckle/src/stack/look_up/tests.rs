@@ -140,8 +140,8 @@ proptest! {
         // The oracle is the midpoint rule: over n points it errs by at most π q / (6 n²) of a wave
         // of q periods, 1e-4. Between two slices there are up to two waves in a speckle.
         let midpoints = |centre: f64, size: f64| {
-            let least = (PI * (2.0 * size / speckle_size) / 6e-4).sqrt();
-            let count = (1_u32..).find(|count| f64::from(*count) >= least).unwrap();
+            let min = (PI * (2.0 * size / speckle_size) / 6e-4).sqrt();
+            let count = (1_u32..).find(|count| f64::from(*count) >= min).unwrap();
             let at = move |i| centre + size * ((f64::from(i) + 0.5) / f64::from(count) - 0.5);
             (0..count).map(at).collect::<Vec<_>>()
         };

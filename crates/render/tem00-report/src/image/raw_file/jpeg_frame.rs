@@ -176,7 +176,7 @@ fn coded_units(frame: &[u8]) -> usize {
             sampling.clone().map(|factors| factors >> 4).max(),
             sampling.map(|factors| factors & 15).max(),
         ]
-        .map(|most| usize::from(most.unwrap_or(1)).max(1)),
+        .map(|max| usize::from(max.unwrap_or(1)).max(1)),
     };
     side(2).div_ceil(8 * across) * side(0).div_ceil(8 * down)
 }

@@ -144,6 +144,9 @@ def test_rigid_motions_are_matrices() -> None:
     np.testing.assert_allclose(both.point(point), turn.point(point) + [1, 2, 3], atol=1e-14)
     np.testing.assert_allclose(both.inverse().point(both.point(point)), point, atol=1e-14)
     np.testing.assert_allclose(turn.direction(point), matrix @ point, atol=1e-15)
+    points = np.arange(12.0).reshape(2, 2, 3)
+    np.testing.assert_allclose(given.point(points), points @ matrix.T + [1, 2, 3], atol=1e-14)
+    np.testing.assert_allclose(given.direction(points), points @ matrix.T, atol=1e-14)
 
 
 BENCH = Bench()

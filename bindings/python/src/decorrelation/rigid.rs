@@ -51,11 +51,32 @@ methods! {
     /// Return the motion back.
     fn inverse() -> RigidMotion = this.0.inverse();
 
-    /// Return where the motion takes a point of shape (3,), in metres.
-    try point(point: DVec3) -> Floats = finite("point", this.0.point(point));
+    /// Return where the motion takes points.
+    ///
+    /// Parameters
+    /// ----------
+    /// points : array_like, shape (..., 3)
+    ///     Points, in metres.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, shape (..., 3)
+    ///     The points behind the motion, in metres.
+    over point(points: 3) -> [3] = |point| this.0.point(point.into()).to_array();
 
-    /// Return where the motion turns a direction of shape (3,).
-    fn direction(direction: DVec3) -> Floats = this.0.direction(direction);
+    /// Return where the motion turns directions.
+    ///
+    /// Parameters
+    /// ----------
+    /// directions : array_like, shape (..., 3)
+    ///     Directions, of any length.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, shape (..., 3)
+    ///     The directions behind the motion.
+    over direction(directions: 3) -> [3] =
+        |direction| this.0.direction(direction.into()).to_array();
 
     /// Rotation matrix of shape (3, 3).
     get rotation -> Floats;

@@ -32,8 +32,8 @@ HOLE = (24, 24, 24)
 OVERVIEW = {
     "render.frames": FRAMES,
     "camera.position": '["70 mm", "-230 mm", "190 mm"]',
-    "camera.look_at": '["0 mm", "-2 mm", "0 mm"]',
-    "camera.pixel_pitch": '"5.175 um"',
+    "camera.look_at": '["0 mm", "6 mm", "0 mm"]',
+    "camera.pixel_pitch": '"6.2 um"',
     "camera.resolution": f"[{WIDTH}, {VIEW}]",
     "laser[0].position": '["0 mm", "0 mm", "250 mm"]',
     "laser[0].look_at": '["0 mm", "0 mm", "8 mm"]',
@@ -53,7 +53,7 @@ def colours(heights: np.ndarray) -> np.ndarray:
 
 
 def height_map(heights: np.ndarray, profiles: int) -> Image.Image:
-    """The heights of the first profiles, the first of them below."""
+    """The heights of the first profiles, the first of them at the top: the part moves away from the camera."""
     seen = np.where(np.arange(len(heights))[:, None] < profiles, heights, np.nan)
     return Image.fromarray(colours(seen)).resize((BELOW, BELOW), Image.Resampling.NEAREST)
 
@@ -99,13 +99,14 @@ def film(samples: str) -> None:
         for number in range(FRAMES):
             frame = Image.new("RGB", (WIDTH, VIEW + BELOW), HOLE)
             frame.paste(Image.open(f"{view}/machined_part_{number:04}.png").convert("RGB"), (0, 0))
-            raw = Image.fromarray((np.asarray(Image.open(f"{scan}/raw_{number:04}.png")) >> 4).astype(np.uint8))
+            raw = np.asarray(Image.open(f"{scan}/raw_{number:04}.png")) / 4095
+            raw = Image.fromarray((255 * np.sqrt(raw)).astype(np.uint8))
             frame.paste(raw.resize((WIDTH - BELOW, 147)), (0, VIEW + (BELOW - 147) // 2))
             frame.paste(height_map(heights, number + 1), (WIDTH - BELOW, VIEW))
             frames.append(frame)
     first, *others = frames
     options = {"save_all": True, "append_images": others, "duration": 80, "loop": 0}
-    first.save(FIGURES / "film.webp", quality=50, method=6, **options)
+    first.save(FIGURES / "film.webp", quality=75, method=6, **options)
 
 
 if __name__ == "__main__":

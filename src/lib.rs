@@ -16,6 +16,7 @@
 //! | [`speckle`] | `tem00-speckle` | pupil field → pattern → stack → look-up |
 //! | [`decorrelation`] | `tem00-decorrelation` | imaging geometry → displacement → correlation |
 //! | [`coherence`] | `tem00-coherence` | linewidth → contrast, grain and line noise of speckle |
+//! | [`translucence`] | `tem00-translucence` | a line on a body that lets light in: shift and contrast |
 //! | [`camera`] | `tem00-camera` | lens and sensor: projection, focus, tilt, distortion |
 //! | [`optics`] | `tem00-optics` | lenses, apertures and fits of measured beams |
 //! | [`numerics`] | `tem00-numerics` | grids, pruned Fourier transform, pupil functions |
@@ -89,6 +90,7 @@ pub use tem00_scan as scan;
 #[cfg(feature = "tracer")]
 pub use tem00_scene as scene;
 pub use tem00_speckle as speckle;
+pub use tem00_translucence as translucence;
 #[cfg(feature = "statistics")]
 pub use tem00_statistics as statistics;
 #[cfg(feature = "scan")]

@@ -1,0 +1,162 @@
+use core::f64::consts::PI;
+
+use tem00_coherence::{DelayedLight, PathPairs, SpectralLine};
+
+use crate::{
+    Medium, Walk,
+    walk::{BLOCKS, Block},
+};
+
+/// Line-spread function of a half space for one pair of angles, with the path lengths behind it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LineSpread {
+    radiance_factor: f64,
+    albedo: f64,
+    centroid: f64,
+    standard_error: f64,
+    samples: Vec<PathSample>,
+    optical: f64,
+}
+
+/// Path of light from the place of entry to where it leaves the surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PathSample {
+    /// The light of the path, in a common unit.
+    pub weight: f64,
+    /// The place across the line at which the light leaves, from where it entered, in metres.
+    pub place: f64,
+    /// The geometrical length of the path below the surface, in metres.
+    pub length: f64,
+}
+
+impl LineSpread {
+    pub(crate) fn collect(medium: &Medium, walk: &Walk, camera: usize, blocks: &[Block]) -> Self {
+        let sums = || blocks.iter().map(|block| block.tallies[camera].sums);
+        let [weight, moment] = [0, 1].map(|index| sums().map(|sums| sums[index]).sum::<f64>());
+        let centroid = moment / weight;
+        let squares = sums().map(|[part, moment]| (moment - centroid * part).powi(2));
+        let count = blocks.len() as f64;
+        let variance = squares.sum::<f64>() * count / (count - 1.0) / weight.powi(2);
+        let escaped: u64 = blocks.iter().map(|block| block.escaped).sum();
+        let photons = walk.photons.div_ceil(BLOCKS) as f64 * count;
+        let exit = walk.exits[camera];
+        Self {
+            radiance_factor: PI * medium.scattered_fraction() * weight / photons
+                * medium.transmitted_solid_angle(exit)
+                * medium.transmittance(walk.incidence)
+                * medium.transmittance(exit),
+            albedo: escaped as f64 / photons,
+            centroid,
+            standard_error: variance.sqrt(),
+            samples: blocks
+                .iter()
+                .flat_map(|block| block.tallies[camera].samples.iter().copied())
+                .collect(),
+            optical: medium.refractive_index(),
+        }
+    }
+
+    /// Returns the radiance of the light from below the surface over that of a white Lambertian
+    /// surface in the same irradiance.
+    pub const fn radiance_factor(&self) -> f64 {
+        self.radiance_factor
+    }
+
+    /// Returns the fraction of the light that entered which leaves the surface again, in all
+    /// directions.
+    pub const fn albedo(&self) -> f64 {
+        self.albedo
+    }
+
+    /// Returns the centre of the light across the line, from where it entered, in metres.
+    ///
+    /// All of the light counts; a detector that looks at a window or at the peak of the line finds
+    /// a smaller shift, down to a third.
+    pub const fn centroid(&self) -> f64 {
+        self.centroid
+    }
+
+    /// Returns the standard error of the centre, in metres, from the scatter of 64 blocks of
+    /// photons.
+    pub const fn standard_error(&self) -> f64 {
+        self.standard_error
+    }
+
+    /// Returns a path of each photon that sent light to the camera, drawn by its light.
+    pub fn samples(&self) -> &[PathSample] {
+        &self.samples
+    }
+
+    /// Returns the speckle contrast of the light that leaves at `places`, in metres from the entry,
+    /// in light of a spectrum; `None` if fewer than two photons leave there.
+    ///
+    /// C² = ⟨|γ(n (l − l′))|²⟩ over pairs of independent paths (Goodman 2007), for polarised light;
+    /// unpolarised light has C/√2.
+    pub fn contrast(&self, line: &SpectralLine, places: [f64; 2]) -> Option<f64> {
+        let within = |sample: &&PathSample| (places[0]..=places[1]).contains(&sample.place);
+        let paths = self
+            .samples
+            .iter()
+            .filter(within)
+            .map(|sample| DelayedLight {
+                weight: sample.weight,
+                delay: self.optical * sample.length,
+            });
+        let paths: Vec<_> = paths.collect();
+        let mut pairs = PathPairs::default();
+        for pair in paths.chunks_exact(2) {
+            pairs.add(line, &pair[..1], &pair[1..]);
+        }
+        pairs.self_coherence().map(f64::sqrt)
+    }
+}
+
+/// Light that a camera sees of a block of photons.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Tally {
+    /// Σ w and Σ w x.
+    sums: [f64; 2],
+    samples: Vec<PathSample>,
+    /// The path of the photon that is drawn so far, with the light of all of its paths.
+    drawn: PathSample,
+    uniform: f64,
+}
+
+impl Tally {
+    /// Begins a photon, with a uniform number that chooses one of its paths.
+    pub(crate) const fn begin(&mut self, uniform: f64) {
+        (self.drawn, self.uniform) = (
+            PathSample {
+                weight: 0.0,
+                place: 0.0,
+                length: 0.0,
+            },
+            uniform,
+        );
+    }
+
+    pub(crate) fn add(&mut self, path: PathSample) {
+        self.sums[0] += path.weight;
+        self.sums[1] += path.weight * path.place;
+        // One number serves all choices of a photon: what is left of it is uniform again.
+        let weight = self.drawn.weight + path.weight;
+        let chance = if weight > 0.0 {
+            path.weight / weight
+        } else {
+            0.0
+        };
+        if self.uniform < chance {
+            self.uniform /= chance;
+            self.drawn = path;
+        } else {
+            self.uniform = (self.uniform - chance) / (1.0 - chance);
+        }
+        self.drawn.weight = weight;
+    }
+
+    pub(crate) fn end(&mut self) {
+        if self.drawn.weight > 0.0 {
+            self.samples.push(self.drawn);
+        }
+    }
+}

@@ -1,0 +1,256 @@
+use core::f64::consts::PI;
+
+use rand_chacha::ChaCha8Rng;
+use rand_core::{Rng, SeedableRng};
+use tem00_numerics::{
+    Refusal, check,
+    seed::{Purpose, derived},
+};
+
+use crate::{LineSpread, Medium, PathSample, spread::Tally};
+
+/// The largest angle of incidence or exit, in radians: 85°.
+const MAX_ANGLE: f64 = 85.0 * PI / 180.0;
+
+/// Simulation of a laser line on a half space, seen by one camera or more.
+///
+/// Angles are in radians to the normal, in the plane across the line, and positive towards +x: the
+/// laser travels towards +x for a positive incidence, and a camera at a positive exit sees light
+/// that leaves towards +x.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Walk {
+    /// The angle of incidence θi, from −85° to 85°.
+    pub incidence: f64,
+    /// The angles θo of the cameras, likewise.
+    pub exits: Vec<f64>,
+    /// The number of photons, from 64 to 10⁹; rounded up to a multiple of 64.
+    pub photons: u64,
+    /// The seed; the same seed gives the same bits for any number of threads.
+    pub seed: u64,
+}
+
+impl LineSpread {
+    /// Follows photons through a medium and returns what each camera sees.
+    ///
+    /// A photon flies from collision to collision, is reflected at the boundary by chance, and sends
+    /// a part of its light to each camera at every collision (next event). A walk and its mirror
+    /// image across the line are equally likely between the first and the last collision but for
+    /// the two scattering angles there: both count, each with its conditional probability, so that
+    /// the sideways diffusion does not add noise to the centre of the line.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if an angle or the number of photons is out of range.
+    pub fn simulate(medium: &Medium, walk: &Walk) -> Result<Vec<Self>, Refusal> {
+        let angle = |name, angle| check::range(name, angle, [-MAX_ANGLE, MAX_ANGLE], "rad");
+        angle("incidence", walk.incidence)?;
+        check::each(&walk.exits, |exit| angle("exits", exit))?;
+        check::range("photons", walk.photons as f64, [64.0, 1e9], "")?;
+        let blocks = blocks(|number| block(medium, walk, number));
+        let collected = |camera| Self::collect(medium, walk, camera, &blocks);
+        Ok((0..walk.exits.len()).map(collected).collect())
+    }
+}
+
+/// The number of blocks of photons, each with random numbers of its own.
+pub(crate) const BLOCKS: u64 = 64;
+
+#[cfg(feature = "parallel")]
+fn blocks<T: Send>(block: impl Fn(u64) -> T + Sync + Send) -> Vec<T> {
+    use rayon::prelude::*;
+    (0..BLOCKS).into_par_iter().map(block).collect()
+}
+
+#[cfg(not(feature = "parallel"))]
+fn blocks<T>(block: impl Fn(u64) -> T) -> Vec<T> {
+    (0..BLOCKS).map(block).collect()
+}
+
+/// Light of a block of photons.
+pub(crate) struct Block {
+    /// What each camera sees.
+    pub(crate) tallies: Vec<Tally>,
+    /// The number of photons that left the medium.
+    pub(crate) escaped: u64,
+}
+
+/// Follows the photons of a block.
+fn block(medium: &Medium, walk: &Walk, number: u64) -> Block {
+    let random = ChaCha8Rng::seed_from_u64(derived(walk.seed, Purpose::Pattern, number + 1));
+    let exits = walk.exits.iter().map(|&exit| {
+        let [sine, cosine] = medium.refracted(exit);
+        Exit { sine, cosine }
+    });
+    let mut photon = Photon {
+        medium,
+        random,
+        exits: exits.collect(),
+        seen: Block {
+            tallies: walk.exits.iter().map(|_| Tally::default()).collect(),
+            escaped: 0,
+        },
+    };
+    let [sine, cosine] = medium.refracted(walk.incidence);
+    // First flights are stratified: they decide where the line is seen. In random order, so that
+    // neighbours are independent pairs of paths.
+    let count = walk.photons.div_ceil(BLOCKS);
+    let mut strata: Vec<_> = (0..count as u32).collect();
+    for left in (1..strata.len()).rev() {
+        let drawn = uniform(&mut photon.random) * (left + 1) as f64;
+        strata.swap(left, drawn as usize);
+    }
+    for stratum in strata {
+        let first = (f64::from(stratum) + uniform(&mut photon.random)) / count as f64;
+        photon.follow([sine, 0.0, cosine], first);
+    }
+    photon.seen
+}
+
+/// Direction below the surface of the light that a camera sees.
+struct Exit {
+    sine: f64,
+    cosine: f64,
+}
+
+struct Photon<'a> {
+    medium: &'a Medium,
+    random: ChaCha8Rng,
+    exits: Vec<Exit>,
+    seen: Block,
+}
+
+/// Where a photon is between its first collision and its end.
+struct State {
+    /// Place of the first collision across the line.
+    entry: f64,
+    /// Place across the line behind that, and depth.
+    place: [f64; 2],
+    direction: [f64; 3],
+    length: f64,
+    /// The conditional probability of the walk, of it and its mirror image.
+    probability: f64,
+}
+
+impl Photon<'_> {
+    fn follow(&mut self, incident: [f64; 3], first: f64) {
+        for tally in &mut self.seen.tallies {
+            tally.begin(uniform(&mut self.random));
+        }
+        let length = self.flight(first);
+        let mut state = State {
+            entry: length * incident[0],
+            place: [0.0, length * incident[2]],
+            direction: incident,
+            length,
+            probability: 1.0,
+        };
+        self.send(&state);
+        if !self.survives() {
+            return self.end();
+        }
+        state.direction = self.scattered(incident);
+        let [x, y, z] = state.direction;
+        let [own, mirrored] = [x, -x].map(|x| {
+            let cosine = incident[0] * x + incident[1] * y + incident[2] * z;
+            self.medium.phase(cosine)
+        });
+        state.probability = own / (own + mirrored);
+        while self.advance(&mut state) {
+            self.send(&state);
+            if !self.survives() {
+                break;
+            }
+            state.direction = self.scattered(state.direction);
+        }
+        self.end();
+    }
+
+    fn end(&mut self) {
+        for tally in &mut self.seen.tallies {
+            tally.end();
+        }
+    }
+
+    /// Moves a photon to its next collision; false if it leaves the medium.
+    fn advance(&mut self, state: &mut State) -> bool {
+        let drawn = uniform(&mut self.random);
+        let mut rest = self.flight(drawn);
+        loop {
+            let to_surface = -state.place[1] / state.direction[2];
+            let meets = state.direction[2] < 0.0 && to_surface < rest;
+            let step = if meets { to_surface } else { rest };
+            state.place[0] += step * state.direction[0];
+            state.length += step;
+            if !meets {
+                state.place[1] += step * state.direction[2];
+                return true;
+            }
+            state.place[1] = 0.0;
+            rest -= step;
+            let reflectance = self.medium.reflectance_from_inside(-state.direction[2]);
+            if uniform(&mut self.random) >= reflectance {
+                self.seen.escaped += 1;
+                return false;
+            }
+            state.direction[2] = -state.direction[2];
+        }
+    }
+
+    /// Sends light of a collision to the cameras.
+    fn send(&mut self, state: &State) {
+        let [beside, depth] = state.place;
+        let [x, _, z] = state.direction;
+        let extinction = self.medium.extinction();
+        for (exit, tally) in self.exits.iter().zip(&mut self.seen.tallies) {
+            let flight = depth / exit.cosine;
+            let seen = libm::exp(-extinction * flight);
+            let length = state.length + flight;
+            let first = state.entry + flight * exit.sine;
+            let walks = [
+                (state.probability, x, beside),
+                (1.0 - state.probability, -x, -beside),
+            ];
+            for (probability, x, beside) in walks {
+                if probability > 0.0 {
+                    let phase = self.medium.phase(x * exit.sine - z * exit.cosine);
+                    let weight = probability * phase * seen;
+                    tally.add(PathSample {
+                        weight,
+                        place: first + beside,
+                        length,
+                    });
+                }
+            }
+        }
+    }
+
+    /// Returns the length of a flight for a uniform number.
+    fn flight(&self, uniform: f64) -> f64 {
+        -libm::log1p(-uniform) / self.medium.extinction()
+    }
+
+    fn survives(&mut self) -> bool {
+        uniform(&mut self.random) < self.medium.scattered_fraction()
+    }
+
+    /// Draws the direction behind a collision.
+    fn scattered(&mut self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        let cosine = self.medium.scattering_cosine(uniform(&mut self.random));
+        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+        let (sin, cos) = libm::sincos(2.0 * PI * uniform(&mut self.random));
+        let [u, v] = [sine * cos, sine * sin];
+        // A frame around the direction (Frisvad 2012, as revised by Duff et al. 2017).
+        let sign = 1.0_f64.copysign(z);
+        let a = -1.0 / (sign + z);
+        let b = x * y * a;
+        let along = [1.0 + sign * x * x * a, sign * b, -sign * x];
+        let across = [b, sign + y * y * a, -y];
+        let direction = [x, y, z];
+        core::array::from_fn(|i| u * along[i] + v * across[i] + cosine * direction[i])
+    }
+}
+
+/// A uniform number from 0 to below 1.
+fn uniform(random: &mut ChaCha8Rng) -> f64 {
+    (random.next_u64() >> 11) as f64 * (0.5_f64).powi(53)
+}

@@ -21,6 +21,7 @@ mod reference_and_engine;
 mod renders;
 mod step_height;
 mod tilted_sensors;
+mod translucence;
 mod two_estimators;
 mod wave_judges_decorrelation;
 mod wave_judges_speckle;

@@ -1,0 +1,59 @@
+//! Bits and refusals; `tests/judges` holds the physics against other sources.
+
+use tem00_translucence::{LineSpread, Medium, Walk};
+
+fn marble() -> Medium {
+    Medium::new(1.5, 2.19e3, 2.1).expect("a medium")
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bits() {
+    let medium = marble();
+    let walk = Walk {
+        incidence: 0.1,
+        exits: vec![0.3, 0.5],
+        photons: 1_000,
+        seed: 3,
+    };
+    let run = || LineSpread::simulate(&medium, &walk).expect("a simulation");
+    assert_eq!(run(), run());
+}
+
+#[test]
+fn what_is_out_of_range_is_named() {
+    let medium = marble();
+    let walk = |incidence, exit, photons| {
+        let walk = Walk {
+            incidence,
+            exits: vec![exit],
+            photons,
+            seed: 0,
+        };
+        LineSpread::simulate(&medium, &walk)
+            .expect_err("out of range")
+            .to_string()
+    };
+    let said = [
+        walk(1.6, 0.0, 100),
+        walk(0.0, f64::NAN, 100),
+        walk(0.0, 0.0, 63),
+    ];
+    for (said, name) in said.iter().zip(["incidence", "exits", "photons"]) {
+        assert!(said.contains(name), "{said}");
+    }
+    let wrong = [
+        Medium::new(0.9, 1e3, 1.0),
+        Medium::new(1.5, 0.0, 1.0),
+        Medium::new(1.5, 1e3, 0.0),
+        medium.with_anisotropy(1.0),
+    ];
+    for (refused, name) in wrong.iter().zip([
+        "refractive_index",
+        "reduced_scattering",
+        "absorption",
+        "anisotropy",
+    ]) {
+        let refusal = refused.as_ref().expect_err(name);
+        assert_eq!(refusal.parameter, name);
+    }
+}

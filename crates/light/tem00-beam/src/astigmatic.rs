@@ -9,7 +9,7 @@ use crate::{GaussianBeam, LocatedBeam, Refusal};
 /// its own waist, waist position and M².
 ///
 /// The beam travels along +z from the reference plane z = 0, the aperture. In its principal axes
-/// `u` and `v` it is the product of two beams of one dimension:
+/// `u` and `v` it is the product of two one-dimensional beams:
 ///
 /// ```text
 /// E / P = 2 / (π w_u w_v) · exp(−2 u² / w_u² − 2 v² / w_v²)     with w_u(z), w_v(z)
@@ -17,17 +17,17 @@ use crate::{GaussianBeam, LocatedBeam, Refusal};
 /// v = −x sin φ + y cos φ
 /// ```
 ///
-/// The rotation `φ` turns the axis of x to the first principal axis, about +z by the right hand.
+/// The rotation `φ` turns the x axis to the first principal axis, right-handed about +z.
 ///
 /// # Validity
 ///
-/// Both axes are paraxial. Not here: a beam whose ellipse turns on its way, as behind a cylinder
-/// lens that is aligned with neither axis.
+/// Both axes are paraxial. The type cannot describe a beam whose ellipse rotates as it propagates,
+/// as behind a cylinder lens that is aligned with neither axis.
 ///
 /// # Examples
 ///
-/// A laser diode of 650 nm: its data sheet gives full widths at half maximum of 9° and 22° and an
-/// astigmatic distance of 10 µm. It lights an upright ellipse:
+/// A laser diode of 650 nm, whose data sheet gives full widths at half maximum of 9° and 22° and an
+/// astigmatic distance of 10 µm, lights an upright ellipse:
 ///
 /// ```
 /// use core::f64::consts::LN_2;
@@ -72,7 +72,7 @@ impl AstigmaticBeam {
         })
     }
 
-    /// Creates the circular beam that is `beam` in both axes.
+    /// Creates the circular beam whose two axes both equal `beam`.
     pub const fn stigmatic(beam: LocatedBeam) -> Self {
         Self {
             axes: [beam, beam],
@@ -84,7 +84,7 @@ impl AstigmaticBeam {
     /// divergence half-angles along x and y, in radians, with both waists at z = 0.
     ///
     /// The half-angle reaches to 1/e² of the peak. Data sheets of laser diodes give the full width
-    /// at half maximum `θ`; `exp(−2 (θ/2)² / δ²) = 1/2` makes that
+    /// at half maximum `θ`, and `exp(−2 (θ/2)² / δ²) = 1/2` converts it:
     ///
     /// ```text
     /// δ = θ / √(2 ln 2) = 0.849 θ     the full angle to 1/e² is 1.699 θ
@@ -93,7 +93,7 @@ impl AstigmaticBeam {
     /// # Errors
     ///
     /// Returns an error if `wavelength` is not a length from 1e−30 m to 1e30 m, if a divergence is
-    /// not in the interval (0, 0.5], or if the waist that follows is beyond 1e30 m.
+    /// not in the interval (0, 0.5], or if the resulting waist radius exceeds 1e30 m.
     pub fn from_divergences(wavelength: f64, divergences: [f64; 2]) -> Result<Self, Refusal> {
         let axis = |divergence| {
             let beam = GaussianBeam::from_divergence(wavelength, divergence)?;
@@ -105,8 +105,8 @@ impl AstigmaticBeam {
     /// Returns this beam with its waists at other signed distances from the reference plane, in
     /// metres.
     ///
-    /// Their difference is the astigmatic distance. Of an edge-emitting diode the waist of the fast
-    /// axis lies at the facet, that of the slow axis a few micrometres behind.
+    /// Their difference is the astigmatic distance. In an edge-emitting diode the waist of the fast
+    /// axis lies at the facet and the waist of the slow axis a few micrometres behind it.
     ///
     /// # Errors
     ///
@@ -180,8 +180,8 @@ impl AstigmaticBeam {
     ///
     /// Where the two waists are apart, one of them lies between the line foci: the circle of least
     /// confusion of a focused beam. Diffraction-limited axes of different waists are equally wide
-    /// in two planes; with M² there may be fewer. A beam that is circular everywhere has no plane
-    /// to name, and planes beyond 1e30 m are not named either.
+    /// in two planes; with M² there may be fewer. For a beam that is circular everywhere no plane
+    /// is returned, and planes beyond 1e30 m are left out.
     ///
     /// # Examples
     ///
@@ -217,16 +217,16 @@ impl AstigmaticBeam {
         2.0 / (PI * wu * wv)
     }
 
-    /// Returns the irradiance per watt of beam power, in m⁻², at `point` on a plane square to the
-    /// axis.
+    /// Returns the irradiance per watt of beam power, in m⁻², at `point` on a plane perpendicular
+    /// to the axis.
     ///
-    /// Its integral over any plane of constant z is 1. On a surface of another orientation take
+    /// Its integral over any plane of constant z is 1. For a surface of another orientation use
     /// [`flux_per_watt`](Self::flux_per_watt).
     pub fn irradiance_per_watt(&self, point: DVec3) -> f64 {
         let radii = DVec2::from(self.radii_at(point.z));
         let rho = self.principal(point) / radii;
         let exponent = 2.0 * rho.length_squared();
-        // exp is 0 beyond. The comparison also refuses the distance of a point where it overflows.
+        // exp is 0 beyond. The comparison also rejects a point whose distance overflows.
         if exponent < 750.0 {
             self.peak_irradiance_per_watt(point.z) * (-exponent).exp()
         } else {
@@ -275,7 +275,7 @@ fn crossings(x: &LocatedBeam, y: &LocatedBeam) -> [f64; 2] {
     let waists = (wx - wy) * (wx + wy);
     let half_linear = sy * sy * d;
     let constant = waists - sy * d * (sy * d);
-    // Negative where the radii never meet: the root and all that follows is then NaN.
+    // The difference is negative where the radii never meet: the root and the results are then NaN.
     let root = ((sx * sy * d) * (sx * sy * d) - spread * waists).sqrt();
     let sum = -(half_linear + root.copysign(half_linear));
     [sum / spread, constant / sum]

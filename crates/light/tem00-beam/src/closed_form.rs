@@ -6,7 +6,7 @@
 //!
 //! # Examples
 //!
-//! Put the functions before a shader of your own:
+//! The functions precede a shader of your own:
 //!
 //! ```
 //! use tem00_beam::closed_form::WGSL;
@@ -26,5 +26,6 @@ pub const WGSL: &str = include_str!("../shaders/tem00_beam.wgsl");
 
 /// Irradiance and next event of all lights in C99, for `float` and for `double`.
 ///
-/// The text of the header `tem00_beam.h`, which includes itself by that name: save it under it.
+/// It is the text of the header `tem00_beam.h`. The header includes itself by this name, so save it
+/// under this name.
 pub const C_HEADER: &str = include_str!("../include/tem00_beam.h");

@@ -1,7 +1,7 @@
-//! The exponential function from additions and multiplications alone.
+//! Exponential function computed from additions and multiplications alone.
 //!
-//! No branch and no table, so that a loop over it fills the vector units; no library and no fused
-//! multiplication, so that its bits are the same on every platform.
+//! It has no branch and no table, so that a loop over it fills the vector units, and uses no
+//! library and no fused multiplication, so that its bits are the same on every platform.
 //!
 //! ```text
 //! exp(x) = 2ᵏ exp(r)     with k = round(x / ln 2), r = x − k ln 2, |r| ≤ ln 2 / 2
@@ -16,7 +16,7 @@ use core::f64::consts::LOG2_E;
 pub(crate) fn exponential(x: f64) -> f64 {
     // Numbers near 1.5 · 2⁵² are 1 apart, so the sum rounds and has k in its lowest bits.
     const ROUND: f64 = 6_755_399_441_055_744.0;
-    // 32 bits of ln 2, which times k are exact, and the rest.
+    // ln 2 as 32 bits, whose product with k is exact, and a remainder.
     const LN_2_HEAD: f64 = f64::from_bits(0x3FE6_2E42_FEE0_0000);
     const LN_2_TAIL: f64 = f64::from_bits(0x3DEA_39EF_3579_3C76);
     let rounded = x * LOG2_E + ROUND;
@@ -58,8 +58,8 @@ mod tests {
         (0..200_000).map(move |i| from + (to - from) * (f64::from(i) * 0.618_033_988_749).fract())
     }
 
-    /// It errs by 1.5 units at most: half a unit each in the last sum and in what it
-    /// adds, a quarter in `k ln 2`, and a series that ends below 0.1 units. Libm errs by one unit.
+    /// The error is 1.5 units at most: half a unit each in the last sum and in its summand, a
+    /// quarter in `k ln 2`, and below 0.1 units from the truncated series. Libm errs by one unit.
     #[test]
     fn exponentials_are_those_of_libm_to_the_last_places() {
         for x in spread(-708.0, 709.78).chain(spread(-32.0, 0.0)) {

@@ -8,11 +8,10 @@ use crate::Refusal;
 /// The largest divergence, in radians, for which the paraxial model is trusted.
 const PARAXIAL_LIMIT: f64 = 0.5;
 
-/// A circular TEM₀₀ Gaussian beam in a homogeneous medium, or its partially coherent relative with
-/// M² > 1.
+/// A circular Gaussian beam in a homogeneous medium: TEM₀₀, or partially coherent with M² > 1.
 ///
-/// The beam travels along +z and its waist lies at z = 0. The wavelength `λ` in the medium it
-/// travels in, the waist radius `w₀` and the beam quality factor `M²` determine everything else:
+/// The beam travels along +z and its waist lies at z = 0. The wavelength `λ` in the medium of
+/// propagation, the waist radius `w₀` and the beam quality factor `M²` determine everything else:
 ///
 /// ```text
 /// z_R  = π w₀² / (M² λ)           Rayleigh range
@@ -27,7 +26,7 @@ const PARAXIAL_LIMIT: f64 = 0.5;
 ///
 /// The beam solves the *paraxial* wave equation. Constructors reject waists below `2 M² λ / π`,
 /// where the divergence reaches 0.5 rad and the model is no longer trustworthy. Lengths must lie
-/// between 1e−30 m and 1e30 m, so that no square of them leaves the range of `f64`.
+/// between 1e−30 m and 1e30 m, so that their squares stay within the range of `f64`.
 ///
 /// # Examples
 ///
@@ -64,8 +63,8 @@ impl GaussianBeam {
     /// Creates a diffraction-limited beam (M² = 1) from its wavelength and waist radius, both in
     /// metres.
     ///
-    /// The wavelength is that in the medium the beam travels in, `λ_vacuum / n`; in air or vacuum
-    /// they are one.
+    /// The wavelength is the one in the medium of propagation, `λ_vacuum / n`; in air and in vacuum
+    /// it equals the vacuum wavelength.
     ///
     /// # Errors
     ///
@@ -89,21 +88,21 @@ impl GaussianBeam {
         .paraxial()
     }
 
-    /// Creates a diffraction-limited beam (M² = 1) from its wavelength in the medium it travels in,
-    /// in metres, and its far-field divergence half-angle, in radians.
+    /// Creates a diffraction-limited beam (M² = 1) from its wavelength in the medium of
+    /// propagation, in metres, and its far-field divergence half-angle, in radians.
     ///
     /// ```text
     /// w₀ = λ / (π δ)
     /// ```
     ///
-    /// Where a data sheet gives the divergence *and* an M², ask for the divergence `δ / M²` and
-    /// then for the M², which brings it back to `δ`: [`with_m_squared`](Self::with_m_squared) keeps
-    /// the waist.
+    /// Where a data sheet gives the divergence *and* an M², create the beam with the divergence `δ
+    /// / M²` and then set M²: [`with_m_squared`](Self::with_m_squared) keeps the waist, so that the
+    /// divergence becomes `δ`.
     ///
     /// # Errors
     ///
     /// Returns an error if `wavelength` is not a length from 1e−30 m to 1e30 m, if `divergence` is
-    /// not in the interval (0, 0.5], or if the waist that follows is beyond 1e30 m.
+    /// not in the interval (0, 0.5], or if the resulting waist radius exceeds 1e30 m.
     ///
     /// # Examples
     ///
@@ -138,7 +137,7 @@ impl GaussianBeam {
 
     /// Returns this beam with another beam quality factor `M²` and the same waist radius.
     ///
-    /// Divergence grows with M², so the depth of focus shrinks by it.
+    /// The divergence is multiplied by M² and the depth of focus divided by it.
     ///
     /// # Errors
     ///
@@ -177,7 +176,7 @@ impl GaussianBeam {
         }
     }
 
-    /// Returns the wavelength `λ` in the medium the beam travels in, in metres.
+    /// Returns the wavelength `λ` in the medium of propagation, in metres.
     ///
     /// It is the vacuum wavelength divided by the refractive index.
     pub const fn wavelength(&self) -> f64 {
@@ -203,7 +202,8 @@ impl GaussianBeam {
 
     /// Returns the far-field divergence half-angle `δ = M² λ / (π w₀)`, in radians.
     ///
-    /// In the paraxial model angle and slope are one: δ is the slope of the asymptote of `w(z)`.
+    /// The paraxial model does not distinguish angle and slope: δ is the slope of the asymptote of
+    /// `w(z)`.
     pub const fn divergence(&self) -> f64 {
         self.m_squared * self.wavelength / (PI * self.waist_radius)
     }
@@ -215,15 +215,15 @@ impl GaussianBeam {
     }
 
     /// Returns the depth of focus, in metres: the full length, half of it on either side of the
-    /// waist, over which the beam radius stays within `growth` times the waist radius.
+    /// waist, over which the beam radius does not exceed `growth` times the waist radius.
     ///
     /// ```text
     /// 2 z_R √(growth² − 1)
     /// ```
     ///
-    /// There is no one convention. With `growth = √2`, where the irradiance on the axis has halved,
-    /// it is the confocal parameter `2 z_R`; makers of optics also quote a growth by 5 %, which
-    /// gives `0.64 z_R`.
+    /// Conventions differ. With `growth = √2`, where the irradiance on the axis has halved, it is
+    /// the confocal parameter `2 z_R`; makers of optics also quote a growth by 5 %, which gives
+    /// `0.64 z_R`.
     ///
     /// # Errors
     ///
@@ -247,7 +247,8 @@ impl GaussianBeam {
             "",
             "finite and greater than 1",
         )?;
-        // √(growth² − 1), where neither the square overflows nor the difference loses digits.
+        // √(growth² − 1), in a form in which neither the square overflows nor the difference loses
+        // digits.
         let lengths = (growth - 1.0).sqrt() * (growth + 1.0).sqrt();
         Ok(self.confocal_parameter() * lengths)
     }
@@ -297,7 +298,7 @@ impl GaussianBeam {
     /// It is positive where the beam diverges (z > 0), negative where it converges and 0 at the
     /// waist, where the radius of curvature itself would be infinite. Its largest magnitude is
     /// `1 / (2 z_R)`, one Rayleigh range from the waist. A beam with M² > 1 has no single
-    /// wavefront; the value is then that of its mean energy flow.
+    /// wavefront; the value then describes its mean energy flow.
     pub fn curvature_at(&self, z: f64) -> f64 {
         let z_r = self.rayleigh_range();
         1.0 / (z + z_r / z * z_r)
@@ -326,7 +327,7 @@ impl GaussianBeam {
     /// E(r, z) / P = 2 / (π w²) · exp(−2 r² / w²)     with w = w(z)
     /// ```
     ///
-    /// Its integral over any plane of constant z is 1. On a surface of another orientation take
+    /// Its integral over any plane of constant z is 1. For a surface of another orientation use
     /// [`flux_per_watt`](Self::flux_per_watt).
     pub fn irradiance_per_watt(&self, r: f64, z: f64) -> f64 {
         let rho = r / self.radius_at(z);
@@ -346,7 +347,8 @@ impl GaussianBeam {
     ///
     /// # Examples
     ///
-    /// A surface tilted by 60° receives half the irradiance, spread over twice the area:
+    /// A surface tilted by 60° receives half the irradiance, since the power spreads over twice the
+    /// area:
     ///
     /// ```
     /// use tem00_beam::{DVec3, GaussianBeam};

@@ -7,20 +7,22 @@ use crate::normal::normal_density;
 use crate::profile::{SlopeDensity, SlopeProfile};
 use crate::{GaussianBeam, LineProfile, Refusal};
 
-/// The apex offset must exceed this many source radii, so that the fan has a sharp apex.
+/// Smallest apex offset in source radii, so that the fan has a sharp apex.
 const MIN_SOURCE_RADII: f64 = 100.0;
 
-/// Curve of best focus: the position of the waist of a laser line, over the angles of the fan.
+/// Curve of best focus: the position of the waist of a laser line as a function of the fan angle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FocusCurve {
-    /// On the circle about the virtual apex: at the same slant distance from it at every angle.
+    /// The waist lies on a circle about the virtual apex, at the same slant distance from it at
+    /// every angle.
     ///
     /// ```text
     /// r_w = focus_distance + z_a
     /// ```
     #[default]
     EqualDistance,
-    /// On the plane square to the axis: the line is equally thin all along a flat screen there.
+    /// The waist lies on a plane perpendicular to the axis: the line is equally thin along a flat
+    /// screen there.
     ///
     /// ```text
     /// r_w = (focus_distance + z_a) / cos θ
@@ -39,14 +41,14 @@ pub struct FanGeometry {
     /// A beam that is `w_in` wide (half-width at 1/e²) on the lens has its apex at `w_in / T`
     /// behind it, `T = tan(α/2)`.
     pub apex_offset: f64,
-    /// Distance from the lens along the axis to where the line is thinnest, in metres; negative for
-    /// a line that diverges from a waist before the lens.
+    /// Distance from the lens along the axis to the point where the line is thinnest, in metres;
+    /// negative for a line that diverges from a waist before the lens.
     pub focus_distance: f64,
     /// Curve on which the line is thinnest off the axis.
     pub focus_curve: FocusCurve,
 }
 
-/// A laser line: a Gaussian beam, fanned out in one plane by a cylinder or Powell lens.
+/// A laser line: a Gaussian beam fanned out in one plane by a cylinder or Powell lens.
 ///
 /// The light travels along +z, z = 0 is the lens, the fan opens along x and its plane has the
 /// normal y. All rays seem to come from a virtual apex at `z = −z_a`, so nothing is singular at the
@@ -59,9 +61,9 @@ pub struct FanGeometry {
 /// w = w(r − r_w)     with r_w = focus_distance + z_a, or that over cos θ (see FocusCurve)
 /// ```
 ///
-/// It has no divergence, so that any surface that cuts the whole fan receives the full power. In
-/// the cylindrical coordinates (r, θ, y) the flow has no component along θ, and whatever depends on
-/// θ alone, `f` and `r_w`, is a constant of the streamline:
+/// The flow is divergence-free, so that any surface that cuts the whole fan receives the full
+/// power. In the cylindrical coordinates (r, θ, y) the flow has no component along θ, and `f` and
+/// `r_w`, which depend on θ alone, are constant along a streamline:
 ///
 /// ```text
 /// ∇·F / P = ∂(r F_r)/∂r / r + ∂F_y/∂y = f/r · [∂G/∂r + ∂(G y w'/w)/∂y] = 0
@@ -71,10 +73,10 @@ pub struct FanGeometry {
 ///
 /// # Validity
 ///
-/// The beam across the fan is paraxial, the fan itself may be wide. Diffraction in the fan plane
-/// is neglected: it widens the apex to the radius [`source_radius`](Self::source_radius), about one
+/// The beam across the fan is paraxial; the fan itself may be wide. Diffraction in the fan plane is
+/// neglected: it widens the apex to the radius [`source_radius`](Self::source_radius), about one
 /// micrometre, which changes the energy flow by the square of its ratio to `r`. The constructor
-/// holds that below 1e−4 everywhere; at working distances it is about 1e−11.
+/// keeps this change below 1e−4 everywhere; at working distances it is about 1e−11.
 ///
 /// # Examples
 ///
@@ -101,8 +103,8 @@ pub struct FanGeometry {
 ///
 /// # References
 ///
-/// - S. Bergmann et al., 2016, section 4, whose scaling of x, here normalised, gives the power
-///   `T z / w` instead of 1.
+/// - S. Bergmann et al., 2016, section 4. Their scaling of x gives the power `T z / w` instead of
+///   1; it is normalised here.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LaserLine {
     focus: GaussianBeam,
@@ -119,8 +121,8 @@ impl LaserLine {
     ///
     /// Returns an error if the fan angle is not in (0, π), if a Powell profile's edge is not in
     /// [1e−6, 1], if the focus distance is not finite or beyond 1e30 m, or if the apex offset is
-    /// beyond 1e30 m or below 100 times the [`source_radius`](Self::source_radius): a beam so
-    /// narrow on the lens could not be fanned out by that angle only.
+    /// beyond 1e30 m or below 100 times the [`source_radius`](Self::source_radius): diffraction
+    /// would fan out so narrow a beam on the lens by a larger angle.
     pub fn new(
         focus: GaussianBeam,
         fan: FanGeometry,
@@ -187,7 +189,7 @@ impl LaserLine {
     /// w_b = M² λ / (π T)
     /// ```
     ///
-    /// It is the waist of a beam whose divergence is that of the fan. It makes the radiance of the
+    /// It is the waist radius of a beam that diverges as the fan does. It makes the radiance of the
     /// line finite.
     pub fn source_radius(&self) -> f64 {
         self.focus.waist_radius() * self.focus.divergence() / self.half_slope
@@ -228,7 +230,7 @@ impl LaserLine {
     ///
     /// # Examples
     ///
-    /// A fan that is Gaussian has all but 4.6 % of its power between its edges:
+    /// A Gaussian fan has all but 4.6 % of its power between its edges:
     ///
     /// ```
     /// # use tem00_beam::{FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineProfile};
@@ -249,8 +251,9 @@ impl LaserLine {
     }
 
     /// Returns the fraction of the power that falls between `x_min` and `x_max`, in metres, in
-    /// either order, on the plane at the distance `z` from the lens: what a window lets through, or
-    /// a sensor sees, that is high enough for the thickness of the line. It is 0 for z < 0.
+    /// either order, on the plane at the distance `z` from the lens. A window transmits this
+    /// fraction, or a sensor receives it, if it is high enough for the thickness of the line. It is
+    /// 0 for z < 0.
     ///
     /// # Examples
     ///
@@ -344,7 +347,7 @@ impl LaserLine {
         }
     }
 
-    /// Asks the profile along the fan.
+    /// Evaluates a query on the profile along the fan.
     fn along(&self, query: impl Fn(&dyn SlopeProfile) -> f64) -> f64 {
         match &self.profile {
             LineProfile::Tabulated(profile) => query(&profile.table()),

@@ -2,12 +2,12 @@ use tem00_numerics::check;
 
 use crate::{GaussianBeam, Refusal};
 
-/// A Gaussian beam and where its waist lies, seen from a reference plane.
+/// A Gaussian beam and the position of its waist relative to a reference plane.
 ///
-/// The reference plane is wherever two parts of a set-up meet: an aperture, a lens, the end of an
+/// The reference plane lies where two parts of a set-up meet: an aperture, a lens, the end of an
 /// optical system. The beam travels along +z, z = 0 is the reference plane, and the waist lies at
-/// `z = waist_distance`: positive where it is still to come, negative where it has been passed or
-/// is virtual.
+/// `z = waist_distance`: positive if the waist is still ahead, negative if the beam has passed it
+/// or it is virtual.
 ///
 /// # Examples
 ///

@@ -27,7 +27,7 @@ pub(crate) fn joint_normal_density(x: [f64; 2], sigma: [f64; 2]) -> f64 {
 /// The probability that a standard normal variate lies between `a` and `b`, `a` ≤ `b`.
 pub(crate) fn normal_between(a: f64, b: f64) -> f64 {
     let beyond = |t: f64| 0.5 * libm::erfc(t * FRAC_1_SQRT_2);
-    // Tails keep their digits where 1 minus them has none.
+    // A tail keeps its digits where 1 minus the tail loses them.
     if a > 0.0 {
         beyond(a) - beyond(b)
     } else if b < 0.0 {

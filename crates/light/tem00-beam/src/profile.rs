@@ -14,15 +14,15 @@ pub(crate) use density::{SlopeDensity, SlopeProfile, Variable};
 /// Each profile is a density in a variable `v` of the fan angle `θ`: in `tan θ`, in `θ` itself or
 /// in `sin θ`. With the full fan angle `α`, the edges of the fan are at `v(α/2)`: the 1/e² points
 /// of a Gaussian, the ends of a uniform profile, the half-value points of a Powell profile. On a
-/// plane square to the axis `tan θ` is proportional to the position along the line.
+/// plane perpendicular to the axis `tan θ` is proportional to the position along the line.
 ///
 /// The densities are normalised on `|θ| < π/2`; the tails of a Gaussian in θ or sin θ that would
-/// lie beyond are left out.
+/// lie outside of this range are cut off.
 ///
 /// # Validity
 ///
-/// No profile is right for every lens. Rays traced through glass of index 1.517 differ from the
-/// three Gaussian profiles by this part of the peak:
+/// No profile is right for every lens. Rays traced through glass of index 1.517 deviate from the
+/// three Gaussian profiles by the following fractions of the peak:
 ///
 /// | full fan angle | 10° | 30° | 60° |
 /// |---|---|---|---|
@@ -32,12 +32,12 @@ pub(crate) use density::{SlopeDensity, SlopeProfile, Variable};
 /// | plano-convex lens, curved exit, Gaussian in tan θ | 0.025 | 0.180 | 0.455 |
 ///
 /// A beam that spreads by diffraction alone is Gaussian in sin θ. Up to 10° the choice hardly
-/// matters. The roll-off of real Powell lenses is manufacturer's data; an error function is a model
-/// of it.
+/// matters. The roll-off of a real Powell lens is known to its manufacturer; an error function is a
+/// model of it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LineProfile {
-    /// Gaussian in `u = tan θ`, and so along the line on a plane square to the axis.
+    /// Gaussian in `u = tan θ`, and so along the line on a plane perpendicular to the axis.
     ///
     /// ```text
     /// g(u) = √(2/π) / T · exp(−2 u² / T²)     with T = tan(α/2)
@@ -72,15 +72,15 @@ pub enum LineProfile {
         /// (a top hat) to 1.
         edge: f64,
     },
-    /// The power per angle of a table. It need not end at the edges of the fan.
+    /// Power per angle from a table. The table need not end at the edges of the fan.
     ///
-    /// Placed in a scene by [`TabulatedLineLight`](crate::TabulatedLineLight).
+    /// [`TabulatedLineLight`](crate::TabulatedLineLight) places such a line in a scene.
     Tabulated(AngularProfile),
 }
 
 impl LineProfile {
-    /// Returns the density of the slope for a fan of the full angle `fan_angle`; that of a table is
-    /// dark, the table stands in for it.
+    /// Returns the density of the slope for a fan of the full angle `fan_angle`. For a tabulated
+    /// profile it is dark, and the table is used instead.
     pub(crate) fn slope_density(&self, fan_angle: f64) -> Result<SlopeDensity, Refusal> {
         let half_angle = 0.5 * fan_angle;
         let half_slope = half_angle.tan();

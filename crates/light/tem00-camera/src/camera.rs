@@ -14,15 +14,15 @@ pub use self::lens::{CameraConnection, CameraRay};
 /// The sine of the smallest accepted angle between `up` and the viewing direction.
 const MIN_SINE: f64 = 1e-6;
 
-/// Distance beyond the edges of the image up to which its points may be asked for, in pixels: as
-/// far as a reconstruction filter may reach.
+/// Margin around the image, in pixels, within which image points are accepted: the largest radius
+/// of a reconstruction filter.
 pub const IMAGE_MARGIN: f64 = 16.0;
 
 /// A perspective camera with a thin lens and a sensor, from which the speckle size follows.
 ///
-/// Rays start at points of the lens, which is the entrance pupil, and those of one image point meet
-/// again in the plane in focus. The lens decides the perspective, by its image distance, the blur
-/// and the speckle, by its diameter.
+/// Rays start at points of the lens, which is the entrance pupil, and all rays of one image point
+/// meet again in the plane in focus. The image distance of the lens determines the perspective; its
+/// diameter determines the blur and the speckle.
 ///
 /// ```text
 /// d_PI = f L / (L − f)      image distance for the focus distance L
@@ -31,17 +31,16 @@ pub const IMAGE_MARGIN: f64 = 16.0;
 ///
 /// Image points are given in pixels, `(0, 0)` at the upper left corner of the image, x to the right
 /// and y *down*; the centre of the first pixel is `(0.5, 0.5)`. The image is upright. The sensor
-/// may stand off the axis, by a principal point, and may be [tilted](crate::SensorTilt); the lens
-/// may [distort](crate::RadialDistortion) the image. Without either the axis is normal to the
-/// sensor.
+/// may be decentred, by its principal point, and [tilted](crate::SensorTilt); the lens may
+/// [distort](crate::RadialDistortion) the image. Without tilt the axis is normal to the sensor.
 ///
 /// The value of a pixel is the mean radiance, over its area and over the pupil: a scene of uniform
-/// radiance L has the value L in every pixel. What falls on the sensor is another matter, see
-/// [`irradiance_per_radiance`](Self::irradiance_per_radiance).
+/// radiance L has the value L in every pixel. The irradiance on the sensor is a different quantity,
+/// see [`irradiance_per_radiance`](Self::irradiance_per_radiance).
 ///
 /// # Validity
 ///
-/// The lens is ideal but for its distortion: all light of an image point meets in one point, at
+/// The lens is ideal except for its distortion: all rays of an image point meet in one point, at
 /// the distance along the axis that the lens equation gives for the depth of the image point. There
 /// is no vignetting, and the pupil is a disc across the axis. Image points may lie up to 16 pixels
 /// beyond the edges of the image.
@@ -76,7 +75,7 @@ impl Camera {
                 Refusal::new("look_at", description.look_at.to_array(), allowed).in_unit("m")
             })?;
         let across = view.cross(description.up.normalize_or_zero());
-        // Rounding alone makes the product of parallel directions about 1e−16 long.
+        // For parallel directions, rounding leaves a product of about 1e−16.
         let right = (across.length() > MIN_SINE)
             .then(|| across.normalize())
             .ok_or_else(|| {
@@ -95,7 +94,7 @@ impl Camera {
         Ok(camera)
     }
 
-    /// Returns what the camera was created from.
+    /// Returns the description from which the camera was created.
     pub const fn description(&self) -> &CameraDescription {
         &self.description
     }
@@ -133,8 +132,8 @@ impl Camera {
     /// Returns the plane that is in focus: where the axis meets it, in metres, and its unit normal
     /// towards the camera.
     ///
-    /// It meets the planes of the lens and of the sensor in one line (Scheimpflug's rule). A
-    /// distorting lens bends it where the sensor is tilted.
+    /// It meets the planes of the lens and of the sensor in one line (Scheimpflug's rule). If the
+    /// lens distorts and the sensor is tilted, the surface in focus is curved.
     pub fn plane_in_focus(&self) -> (DVec3, DVec3) {
         let focus_distance = self.description.focus_distance;
         let DVec3 { x, y, z } = self.sensor.normal;
@@ -154,8 +153,8 @@ impl Camera {
         self.geometry_for(wavelength, self.description.focus_distance)
     }
 
-    /// Returns the imaging geometry at an image point, for a wavelength in metres: for a tilted
-    /// sensor, whose distance varies over the image.
+    /// Returns the imaging geometry at an image point, for a wavelength in metres. On a tilted
+    /// sensor it varies over the image.
     ///
     /// ```text
     /// h = λ s / D      speckle size, s the depth of the image point behind the lens
@@ -163,13 +162,13 @@ impl Camera {
     ///
     /// # Validity
     ///
-    /// Distances are those along the axis. On a sensor tilted by τ the speckle is stretched by
+    /// Distances are measured along the axis. On a sensor tilted by τ the speckle is stretched by
     /// 1/cos τ across the line about which it is tilted; that stretch is not part of the geometry.
     ///
     /// # Errors
     ///
-    /// Returns an error if the wavelength is not positive and finite or exceeds the pupil, or if
-    /// nothing real is in focus at the image point, as above the horizon of the plane in focus.
+    /// Returns an error if the wavelength is not positive and finite or exceeds the pupil, or if no
+    /// real point is in focus at the image point, as above the horizon of the plane in focus.
     pub fn imaging_geometry_at(
         &self,
         pixel: DVec2,
@@ -181,20 +180,21 @@ impl Camera {
             focus_distance,
             ..
         } = self.description;
-        // On the axis the lens equation would give the focus distance but for rounding.
+        // On the axis the lens equation would give the focus distance only up to rounding.
         let offset = depth - self.sensor.distance;
         let beyond_focus = self.sensor.distance * focal_length / focus_distance + offset;
         let in_focus = focus_distance - (focus_distance - focal_length) * offset / beyond_focus;
         self.geometry_for(wavelength, in_focus)
     }
 
-    /// Returns the vergence 1/L of what is in focus at an image point, in 1/m, with its distance L
-    /// along the axis: not positive where nothing real is.
+    /// Returns the vergence 1/L at an image point, in 1/m, of the object point in focus at the
+    /// distance L along the axis. It is not positive where no real point is in focus.
     pub fn focus_vergence_at(&self, pixel: DVec2) -> f64 {
         self.description.focal_length.recip() - self.sensor.point(pixel).z.recip()
     }
 
-    /// Returns the tangents of the viewing angle at an image point, to the right and up.
+    /// Returns the tangents of the viewing angle at an image point, horizontally to the right and
+    /// vertically up.
     pub fn tangents_at(&self, pixel: DVec2) -> DVec2 {
         let chief = self.chief(pixel);
         chief.truncate() / chief.z
@@ -209,8 +209,8 @@ impl Camera {
     }
 
     /// Returns the direction of the ray through the centre of the lens that arrives at an image
-    /// point, one metre along the axis, and its derivatives by the image point, per pixel to the
-    /// right and per pixel down; all in the axes of the world.
+    /// point, one metre along the axis, and its derivatives with respect to the image point, per
+    /// pixel to the right and per pixel down; all in world axes.
     ///
     /// Returns `None` for an image point that no ray reaches.
     pub fn sight(&self, pixel: DVec2) -> Option<(DVec3, [DVec3; 2])> {
@@ -228,8 +228,8 @@ impl Camera {
 
     /// Returns the image point of a point in space, by the ray through the centre of the lens.
     ///
-    /// It may lie outside of the image. Returns `None` if the point lies behind the lens, where the
-    /// sensor is not met, or where the distortion would fold it back into the image.
+    /// It may lie outside of the image. Returns `None` if the point lies behind the lens, if its
+    /// ray misses the sensor, or if the distortion would fold it back into the image.
     pub fn project(&self, point: DVec3) -> Option<DVec2> {
         let offset = self.local(point - self.position());
         if offset.z <= 0.0 {
@@ -255,8 +255,8 @@ impl Camera {
         self.sensor.tangents_per_pixel(depth) * cosine.powi(3) / stretch
     }
 
-    /// Returns the irradiance on the sensor, in W/m², per radiance of what the pixel sees, in
-    /// W/(m² sr).
+    /// Returns the irradiance on the sensor, in W/m², per radiance of the surface that the pixel
+    /// sees, in W/(m² sr).
     ///
     /// ```text
     /// E/L = π D²/4 · cos θ Ω / pitch²                in general: what enters the pupil arrives
@@ -267,11 +267,11 @@ impl Camera {
     /// # Validity
     ///
     /// The pupil is small against its distance to the sensor: the error is of the order of the
-    /// square of half its diameter by that distance, 0.3 % at f/8. No light is lost in the lens.
+    /// square of the pupil radius over this distance, 0.3 % at f/8. No light is lost in the lens.
     ///
     /// # Examples
     ///
-    /// On the axis, only the working f-number counts: E/L is π / 4 by its square.
+    /// On the axis only the working f-number N matters: E/L is π / (4 N²).
     ///
     /// ```
     /// # use glam::{DVec2, DVec3};
@@ -354,7 +354,7 @@ impl Camera {
         })
     }
 
-    /// Checks that each image point stands behind the lens, in front of the sensor, and has one
+    /// Checks that each image point lies behind the lens, on the front of the sensor, and has one
     /// ray.
     fn check_sensor(&self) -> Result<(), Refusal> {
         let tilt = self.description.tilt.angle;

@@ -19,9 +19,9 @@ pub struct CameraDescription {
     pub up: DVec3,
     /// The focal length of the lens, in metres.
     pub focal_length: f64,
-    /// The f-number: focal length by diameter of the entrance pupil.
+    /// The f-number: focal length divided by the diameter of the entrance pupil.
     pub f_number: f64,
-    /// The distance from the lens, along its axis, to what is in focus there, in metres.
+    /// The distance from the lens, along its axis, to the point in focus, in metres.
     pub focus_distance: f64,
     /// The pixel pitch, in metres.
     pub pixel_pitch: f64,
@@ -33,8 +33,8 @@ pub struct CameraDescription {
     pub tilt: SensorTilt,
     /// The distortion of the image by the lens.
     pub distortion: RadialDistortion,
-    /// The blur of what is out of focus. Without it the camera is sharp everywhere, as if all
-    /// light went through the centre of the lens; the speckle keeps its size.
+    /// Whether objects out of focus are blurred. Without blur the camera is sharp everywhere, as if
+    /// all light went through the centre of the lens; the speckle keeps its size.
     pub depth_of_field: bool,
 }
 
@@ -44,8 +44,8 @@ pub struct CameraDescription {
 /// `azimuth` from the right of the image towards its top. The turn is right-handed about that line
 /// in the axes right, up and from the scene towards the camera.
 ///
-/// With azimuth 0 and a positive angle, what is higher in the image is in focus farther away, as a
-/// floor is: the plane in focus turns the other way, by τ′ with
+/// With azimuth 0 and a positive angle, points higher in the image are in focus farther away, as on
+/// a floor: the plane in focus turns the other way, by τ′ with
 ///
 /// ```text
 /// tan τ′ = (L / d_PI) tan τ      L, d_PI: distances of object and image along the axis
@@ -85,8 +85,8 @@ pub struct RadialDistortion {
 }
 
 impl Default for CameraDescription {
-    /// A lens of 25 mm at f/8 and 640 × 480 pixels of 3.45 µm, 0.3 m above the origin, which it
-    /// looks at and has in focus.
+    /// A lens of 25 mm at f/8 and 640 × 480 pixels of 3.45 µm, placed 0.3 m above the origin, at
+    /// which the camera looks and is focused.
     fn default() -> Self {
         Self {
             position: 0.3 * DVec3::Z,
@@ -106,7 +106,7 @@ impl Default for CameraDescription {
 }
 
 impl CameraDescription {
-    /// Checks everything that can be checked without the geometry.
+    /// Checks all parameters that can be checked without the geometry.
     pub(crate) fn check(&self) -> Result<(), Refusal> {
         for (parameter, value, unit) in [
             ("focal_length", self.focal_length, "m"),

@@ -8,15 +8,16 @@
 //!
 //! # Main types
 //!
-//! A [`Camera`] is made of a [`CameraDescription`]. [`Camera::project`] and [`Camera::ray`] go to
-//! and fro through the centre of the lens; [`Camera::sample_ray`] and [`Camera::connect`] go
-//! through any point of it. [`Camera::imaging_geometry_at`] is what the laws of speckle ask for.
+//! A [`Camera`] is created from a [`CameraDescription`]. [`Camera::project`] and [`Camera::ray`]
+//! map scene to image and back through the centre of the lens; [`Camera::sample_ray`] and
+//! [`Camera::connect`] use any point of the lens. [`Camera::imaging_geometry_at`] gives the lengths
+//! that the laws of speckle need.
 //!
 //! # Scope and non-goals
 //!
-//! A thin lens, its pupil at the lens; a flat sensor that may be tilted (Scheimpflug); radial
-//! distortion. No chromatic aberration, no other aberration than distortion, no diffraction: those
-//! of the pupil are the speckle's.
+//! The crate models a thin lens with its pupil at the lens, a flat sensor that may be tilted
+//! (Scheimpflug), and radial distortion. It models no chromatic aberration, no aberration other
+//! than distortion, and no diffraction: diffraction at the pupil is part of the speckle.
 
 mod camera;
 mod description;

@@ -1,6 +1,6 @@
 use glam::DVec3;
 
-/// A half-line along which light is followed.
+/// A half-line along which light is traced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
     /// The start of the ray, in metres.

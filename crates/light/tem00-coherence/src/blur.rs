@@ -1,4 +1,4 @@
-//! Overlap of a pupil out of focus for two parts of the light.
+//! Overlap of a defocused pupil for two parts of the light.
 
 use core::f64::consts::{FRAC_1_PI, PI};
 
@@ -7,9 +7,9 @@ use tem00_numerics::disc_overlap;
 
 use crate::{chebyshev::Grid, lens};
 
-/// The mean of the phases of defocus over the lens that two displaced pupils share: `linear · s`
-/// along their displacement s, in diameters, and `bend · κ` at the edge for the difference κ of two
-/// wave numbers.
+/// The mean phasor of the defocus over the lens-shaped overlap of two displaced pupils. Its phase
+/// is `linear · s` along their displacement s, in diameters, and `bend · κ` at the edge for the
+/// difference κ of two wave numbers.
 #[derive(Debug)]
 pub(crate) struct Blur {
     linear: f64,
@@ -17,15 +17,15 @@ pub(crate) struct Blur {
     table: Option<Grid>,
 }
 
-/// Phases in radians beyond which the squared mean, that of a jinc or less, is taken without its
-/// oscillations.
+/// Phases in radians beyond which the squared mean, at most the square of a jinc, is taken without
+/// its oscillations.
 const FAR: f64 = 60.0;
 
-/// Phases in radians beyond which nothing is left of a mean.
+/// Phases in radians beyond which a mean is negligible.
 const FARTHEST: f64 = 3e3;
 
 impl Blur {
-    /// Creates the blur of phases, of which `is_often` asked.
+    /// Creates the blur of these phases, with a table if it `is_often` evaluated.
     pub(crate) fn new([linear, bend]: [f64; 2], is_often: bool) -> Self {
         let [linear, bend] = [linear, bend].map(f64::abs);
         Self {
@@ -35,7 +35,7 @@ impl Blur {
         }
     }
 
-    /// Returns the mean of the phases.
+    /// Returns the mean phasor.
     pub(crate) fn mean(&self, shift: f64, kappa: f64) -> Complex<f64> {
         let (linear, bend) = (self.linear * shift, self.bend * kappa);
         if linear == 0.0 && bend == 0.0 {
@@ -57,7 +57,7 @@ impl Blur {
             return disc_overlap(shift).powi(2);
         }
         let (phase, bend) = (self.linear * shift * (1.0 - shift), self.bend * kappa.abs());
-        // Beyond the first far displacement all are.
+        // All displacements beyond the first far one are far, too.
         if phase > FAR || bend > FAR || self.linear * (shift - 0.5) > 2.0 * FAR {
             return smooth(shift, phase, bend);
         }
@@ -69,9 +69,9 @@ impl Blur {
     }
 }
 
-/// Returns the squared mean of large phases without its oscillations: half of a jinc's envelope or,
-/// where the phase is stationary within the lens, of what is about that place, and about the edge
-/// without a displacement.
+/// Returns the squared mean of large phases without its oscillations. It is half of a jinc's
+/// envelope or, where the phase is stationary within the lens, the contribution of the stationary
+/// point and, without a displacement, of the edge.
 fn smooth(shift: f64, phase: f64, bend: f64) -> f64 {
     if bend > FAR && phase < 2.0 * bend {
         let edge = if phase < 1.0 { 2.0 } else { 1.0 };
@@ -80,7 +80,7 @@ fn smooth(shift: f64, phase: f64, bend: f64) -> f64 {
     disc_overlap(shift).powi(2) * 4.0 * FRAC_1_PI / phase.max(FAR).powi(3)
 }
 
-/// Breaks of displacements between which the phase changes by 2, up to the first one that is far.
+/// Breaks of displacements between which the phase changes by 2, up to the first far displacement.
 fn shifts(linear: f64) -> Vec<f64> {
     let root = (0.25 - FAR / linear).max(0.0).sqrt();
     let end = if root > 0.0 { 0.5 - root } else { 1.0 };
@@ -120,7 +120,7 @@ mod tests {
                 }
             }
         }
-        // Over some periods of a defocused pupil.
+        // The sums run over some periods of a defocused pupil.
         let blur = Blur::new([1e4, 1e-9], false);
         let places = || (0..400).map(|i| 0.0065 + 1e-6 * f64::from(i) * PI);
         let sum: f64 = places().map(|shift| blur.mean(shift, 0.0).norm_sqr()).sum();

@@ -15,26 +15,26 @@ pub struct CellGeometry {
     pub to_pupil: DVec3,
     /// Normal of the surface, of any length.
     pub normal: DVec3,
-    /// Aperture of the lens, `sin u = D / 2L`: half the pupil's diameter over its distance.
+    /// Aperture of the lens, `sin u = D / 2L`: half the pupil's diameter divided by its distance.
     pub sin_aperture: f64,
     /// Wavelength, in metres.
     pub wavelength: f64,
 }
 
-/// The relief of a surface that is finer than a resolution cell. Lengths in metres.
+/// The part of a surface's relief that is finer than a resolution cell. Lengths are in metres.
 ///
-/// What is longer than a cell tilts it and spreads no paths: the roughness of a drawing, over 0.8
-/// mm, says little.
+/// Height variations longer than a cell tilt it and do not spread its paths. The roughness on a
+/// drawing, measured over 0.8 mm, therefore says little about `rms_height`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Relief {
     /// Root mean square height.
     pub rms_height: f64,
     /// Distance ℓ at which the correlation `exp(−d²/ℓ²)` of the heights falls to 1/e. 0 stands for
-    /// heights that differ as soon as scatterers do.
+    /// heights that are uncorrelated between scatterers.
     pub correlation_length: f64,
 }
 
-/// The paths of the light that one resolution cell of a camera brings to one point of the image.
+/// The paths of the light from one resolution cell of a camera to one point of the image.
 ///
 /// The sum of both directions splits into a part across the line of sight and one along the normal,
 ///
@@ -42,24 +42,25 @@ pub struct Relief {
 /// l_S + l = v + q n,     v ⊥ l,     q = (1 + l_S·l) / n·l
 /// ```
 ///
-/// so that a scatterer of the height z that is imaged at ξ has the path −v·ξ − qz. With κ the
-/// difference of two wave numbers, the fields of both correlate by
+/// so that a scatterer of height z that is imaged at ξ has the path −v·ξ − qz. With the difference
+/// κ of two wave numbers, their fields have the correlation
 ///
 /// ```text
 /// |P̂(κ)| = chat(|κ|/κ_t) exp(−κ² σ_L²/2)     κ_t = 4π sin u / (λ |v|),   σ_L = q R_q
 /// ```
 ///
-/// The first factor is the *tilt* of the cell: another wavelength sees the pupil displaced, as by a
-/// motion. In the plane of incidence, both angles positive on one side of the normal,
-/// `|v| = |sin θᵢ + sin θₒ| / cos θₒ` and `q = (1 + cos(θᵢ − θₒ)) / cos θₒ`, which is
+/// The first factor is due to the *tilt* of the cell: for another wavelength the field is displaced
+/// across the pupil, as by a motion. In the plane of incidence, both angles positive on one side of
+/// the normal, `|v| = |sin θᵢ + sin θₒ| / cos θₒ` and `q = (1 + cos(θᵢ − θₒ)) / cos θₒ`, which is
 /// `cos θᵢ + cos θₒ` for θₒ = 0 and for mirror directions only: a height also shifts the image.
 ///
 /// # Validity
 ///
-/// Rough surfaces, `σ_L > λ/2`; many scatterers to a cell; normal heights without shadows and
-/// multiple scattering. A bandwidth small against the wavelength: the sizes of speckle differ over
-/// it, which is left out. Where neither tilt nor heights tell wave numbers apart, contrasts are too
-/// large by `0.48 Δλ/λ`, 2 % at 20 nm of 450 nm.
+/// The laws hold for rough surfaces, `σ_L > λ/2`, with many scatterers in a cell and normally
+/// distributed heights, without shadows and multiple scattering. The bandwidth must be small
+/// compared with the wavelength: the speckle size varies over it, which is neglected. Where neither
+/// tilt nor heights decorrelate the wave numbers, contrasts are too large by `0.48 Δλ/λ`, 2 % at 20
+/// nm of 450 nm.
 ///
 /// # References
 ///
@@ -81,12 +82,12 @@ pub struct ResolutionCell {
 }
 
 impl ResolutionCell {
-    /// Creates the cell of a surface without relief, in focus.
+    /// Creates the cell of a surface in focus, without relief.
     ///
     /// # Errors
     ///
-    /// Returns an error unless source and pupil stand on the side of the normal,
-    /// `0 < sin_aperture ≤ 1` and the wavelength is positive and finite.
+    /// Returns an error unless source and pupil lie on the side of the normal, `0 < sin_aperture ≤
+    /// 1` and the wavelength is positive and finite.
     pub fn new(geometry: CellGeometry) -> Result<Self, Refusal> {
         let normal = unit("normal", geometry.normal)?;
         let above = |parameter, value: DVec3| {
@@ -150,14 +151,16 @@ impl ResolutionCell {
     /// w = δ − p n,   p = δ·l / n·l,   δ = l_S − l_S'
     /// ```
     ///
-    /// A change δ of the direction to the source displaces the field across the pupil, by w of its
-    /// distance, as a change of the wave number does, by κ v / k; and it changes the phases of
-    /// heights. In the plane of incidence `|w| = |δ| cos θᵢ / cos θₒ`, across it `|w| = |δ|`.
+    /// A change δ of the direction to the source displaces the field across the pupil by w times
+    /// the distance of the pupil, as a change of the wave number displaces it by κ v / k, and it
+    /// changes the phases of heights. In the plane of incidence `|w| = |δ| cos θᵢ / cos θₒ`, across
+    /// it `|w| =
+    /// |δ|`.
     ///
     /// # Validity
     ///
-    /// All light of one direction is coherent over the cell, and lights of two are not with each
-    /// other.
+    /// Light of one direction is coherent over the cell, and light of two different directions is
+    /// mutually incoherent.
     ///
     /// # Examples
     ///
@@ -209,7 +212,7 @@ impl ResolutionCell {
         self.relief
     }
 
-    /// Returns the tilt v of the cell, across the line of sight: path per length on the object.
+    /// Returns the tilt v of the cell, across the line of sight, as path per length on the object.
     pub const fn tilt(&self) -> DVec3 {
         self.tilt
     }
@@ -229,10 +232,10 @@ impl ResolutionCell {
         self.source
     }
 
-    /// Returns what a change of the unit vector to the source makes, over the wave number: the
-    /// displacement of the field across the pupil in its diameters, along the tilt and across it;
-    /// and the difference of wave numbers that changes the phases of heights as much. Both are
-    /// linear in that vector.
+    /// Returns the effects of a change of the unit vector to the source, divided by the wave
+    /// number: the displacement of the field across the pupil in pupil diameters, along the tilt
+    /// and across it, and the difference of wave numbers that changes the phases of heights by the
+    /// same amount. Both are linear in the change.
     pub(crate) fn change_with_source(&self, change: DVec3) -> (DVec2, f64) {
         let height_factor = change.dot(self.pupil) / self.normal.dot(self.pupil);
         let moved = change - height_factor * self.normal;
@@ -243,9 +246,9 @@ impl ResolutionCell {
         )
     }
 
-    /// Returns the greatest change that a radian of the direction to the source makes, over the
-    /// wave number: of the displacement in pupil diameters, and of the phases of heights and of
-    /// defocus in radians.
+    /// Returns the largest effect per radian of the direction to the source, divided by the wave
+    /// number: on the displacement in pupil diameters, and on the phases of heights and of defocus
+    /// in radians.
     pub(crate) fn greatest_change_with_source(&self) -> f64 {
         let height = self.normal.dot(self.pupil).recip();
         let moved = (1.0 + height) / self.full_displacement();
@@ -253,8 +256,9 @@ impl ResolutionCell {
         moved.max(height * self.relief.rms_height).max(blur)
     }
 
-    /// The directions across the line of sight: of the tilt or, without one, of the plane of
-    /// incidence or any; and across it.
+    /// Two directions perpendicular to the line of sight. The first is the direction of the tilt;
+    /// without a tilt it lies in the plane of incidence or, without such a plane, is arbitrary. The
+    /// second is perpendicular to it.
     fn axes(&self) -> [DVec3; 2] {
         let across_sight = |v: DVec3| v - v.dot(self.pupil) * self.pupil;
         let along = [self.tilt, self.normal, self.pupil.any_orthonormal_vector()]
@@ -265,13 +269,13 @@ impl ResolutionCell {
         [along, self.pupil.cross(along)]
     }
 
-    /// Returns the gradient of the phase over the object, in rad/m, by which a field is displaced
-    /// by the diameter of the pupil.
+    /// Returns the gradient of the phase over the object, in rad/m, that displaces a field by the
+    /// diameter of the pupil.
     fn full_displacement(&self) -> f64 {
         2.0 * TAU * self.sin_aperture / self.wavelength
     }
 
-    /// Returns the standard deviation `σ_L` of the paths by heights, in metres.
+    /// Returns the standard deviation `σ_L` of the paths due to heights, in metres.
     pub fn path_spread(&self) -> f64 {
         self.height_factor * self.relief.rms_height
     }
@@ -295,20 +299,20 @@ impl ResolutionCell {
         tilt.min(self.path_spread().recip()).min(2.0 / blur)
     }
 
-    /// Returns the correlation P̂ of the fields of two wave numbers that differ by κ, in rad/m, in
-    /// one point of the image, for a dense relief without correlation length.
+    /// Returns the correlation P̂ of the fields of two wave numbers that differ by κ, in rad/m, at
+    /// one point of the image, for a relief without correlation length.
     pub fn field_correlation(&self, kappa: f64) -> Complex<f64> {
         let shift = kappa / self.tilt_wave_number();
         self.blur(false).mean(shift, kappa) * self.height_correlation(kappa)
     }
 
-    /// Returns the mean of `|P̂|²`, with the correlation length of the relief.
+    /// Returns the mean of `|P̂|²`, including the correlation length of the relief.
     ///
     /// ```text
     /// ⟨|P̂|²⟩ = ∬ |h|² |h'|² exp(−κ² σ_L² (1 − ρ) + iκ v·(ξ − ξ'))     h the image of a point
     /// ```
     ///
-    /// The correlation length is taken into account in focus, and left out beside it.
+    /// The correlation length is taken into account in focus and neglected out of focus.
     pub fn squared_correlation(&self, kappa: f64) -> f64 {
         let difference = Difference {
             kappa,
@@ -323,8 +327,8 @@ impl ResolutionCell {
         self.relief.correlation_length / self.speckle_size()
     }
 
-    /// Returns what the correlation length of the relief adds to a mean over lags with the weights
-    /// of a kernel, of which `is_often` asked.
+    /// Returns the contribution of the relief's correlation length to a mean over lags with the
+    /// weights of a kernel, with a table if it `is_often` evaluated.
     pub(crate) fn height_excess(&self, kernel: LagKernel, is_often: bool) -> HeightExcess {
         HeightExcess::new(
             kernel,
@@ -336,7 +340,7 @@ impl ResolutionCell {
     /// Returns `exp(−κ² σ_L²/2)`.
     pub(crate) fn height_correlation(&self, kappa: f64) -> f64 {
         let exponent = 0.5 * (kappa * self.path_spread()).powi(2);
-        // Underflow takes long.
+        // Computing a result that underflows takes long.
         if exponent > 750.0 {
             0.0
         } else {
@@ -344,11 +348,11 @@ impl ResolutionCell {
         }
     }
 
-    /// Returns what parts of the light share of the pupil, with the phases of defocus, for which
-    /// `is_often` asked.
+    /// Returns the overlap of the pupil for two parts of the light, with the phases of defocus and
+    /// with a table if it `is_often` evaluated.
     fn blur(&self, is_often: bool) -> Blur {
         let half_depth = 0.5 * self.defocus * self.sin_aperture.powi(2);
-        // Of the displacement: that of a sphere about the plane in focus.
+        // Phase per displacement of a sphere about the plane in focus.
         let linear = 2.0 * half_depth * self.full_displacement() / self.sin_aperture;
         Blur::new([linear, half_depth], is_often)
     }
@@ -386,16 +390,17 @@ impl<'a> Correlation<'a> {
 /// Difference of two parts of the light.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Difference {
-    /// Their wave numbers, in rad/m.
+    /// Difference κ of their wave numbers, in rad/m.
     pub kappa: f64,
-    /// The places in the pupil at which their fields are alike, in its diameters, along the tilt
-    /// and across it.
+    /// Displacement between the positions in the pupil at which their fields are alike, in pupil
+    /// diameters, along the tilt and across it.
     pub shift: DVec2,
-    /// The difference of wave numbers, in rad/m, that changes the phases of heights as much.
+    /// The difference of wave numbers, in rad/m, that changes the phases of heights by the same
+    /// amount.
     pub of_heights: f64,
 }
 
-/// Returns a direction of length 1, if the vector has one.
+/// Returns the unit vector along a vector, if the vector has a direction.
 pub(crate) fn unit(parameter: &'static str, vector: DVec3) -> Result<DVec3, Refusal> {
     let refused = || Refusal::new(parameter, vector.to_array(), "finite and not zero");
     vector.try_normalize().ok_or_else(refused)

@@ -1,4 +1,4 @@
-//! Functions that are asked for often, as polynomials between breaks.
+//! Frequently evaluated functions as piecewise polynomials.
 
 use core::{array::from_fn, cell::OnceCell, f64::consts::PI};
 
@@ -17,7 +17,7 @@ pub(crate) fn polynomials<const N: usize>(x: f64) -> [f64; N] {
     })
 }
 
-/// Returns the coefficients of the polynomials that have these values at the nodes.
+/// Returns the coefficients of the polynomials for these values at the nodes.
 pub(crate) fn coefficients<const N: usize>(values: [f64; N]) -> [f64; N] {
     let mut sums = [0.0; N];
     for (k, value) in values.into_iter().enumerate() {
@@ -29,20 +29,20 @@ pub(crate) fn coefficients<const N: usize>(values: [f64; N]) -> [f64; N] {
     sums
 }
 
-/// Returns the panel between breaks in which a value lies, and its place there from −1 to 1.
+/// Returns the panel between breaks in which a value lies, and its position there from −1 to 1.
 pub(crate) fn place(breaks: &[f64], value: f64) -> Option<(usize, f64)> {
     let panel = breaks.partition_point(|end| *end <= value).checked_sub(1)?;
     let (start, end) = (breaks[panel], *breaks.get(panel + 1)?);
     Some((panel, (2.0 * value - start - end) / (end - start)))
 }
 
-/// Returns the value at a place of a panel from `start` to `end`.
+/// Returns the value at a position, from −1 to 1, of a panel from `start` to `end`.
 pub(crate) fn at_place([start, end]: [f64; 2], place: f64) -> f64 {
     0.5 * (start + end) + 0.5 * (end - start) * place
 }
 
-/// A function that is smooth between breaks. It is asked for at the nodes of a panel where a value
-/// in it is wanted.
+/// A function that is smooth between breaks, evaluated at the nodes of a panel when a value in the
+/// panel is first needed.
 pub(crate) struct Tabulated<F> {
     function: F,
     breaks: Vec<f64>,
@@ -59,7 +59,7 @@ impl<F: Fn(f64) -> f64> Tabulated<F> {
         }
     }
 
-    /// Returns the value, from the function itself beyond the breaks.
+    /// Returns the value; beyond the breaks the function itself is evaluated.
     pub(crate) fn at(&self, x: f64) -> f64 {
         let Some((panel, place)) = place(&self.breaks, x) else {
             return (self.function)(x);
@@ -79,8 +79,8 @@ pub(crate) const SIDE: usize = 8;
 /// Coefficients of the polynomials on a cell, of the first argument first.
 pub(crate) type CellFit = [[f64; SIDE]; SIDE];
 
-/// A function of two numbers that is smooth between breaks. It is asked for at the nodes of a cell
-/// where a value in it is wanted.
+/// A function of two numbers that is smooth between breaks, evaluated at the nodes of a cell when a
+/// value in the cell is first needed.
 #[derive(Clone, Debug)]
 pub(crate) struct Grid {
     breaks: [Vec<f64>; 2],
@@ -110,7 +110,7 @@ impl Grid {
         })
     }
 
-    /// Interpolates from values by panel and node of both arguments.
+    /// Interpolates from values that are given by panel and node of both arguments.
     pub(crate) fn at_nodes(
         &self,
         x: [f64; 2],
@@ -129,7 +129,7 @@ impl Grid {
     }
 }
 
-/// Returns the coefficients of the polynomials that have these values at the nodes of a cell.
+/// Returns the coefficients of the polynomials for these values at the nodes of a cell.
 fn fitted(value: impl Fn(usize, usize) -> f64) -> CellFit {
     let of_first: CellFit = from_fn(|l| coefficients(from_fn(|k| value(k, l))));
     from_fn(|m| coefficients(from_fn(|l| of_first[l][m])))

@@ -3,8 +3,9 @@ use num_complex::Complex;
 /// The largest number of steps towards an eigenvalue; two or three are usual.
 const MAX_STEPS: usize = 100;
 
-/// Returns the eigenvalues of a Hermitian matrix, row by row, good to rounding of the largest: by
-/// Householder's reflections to three diagonals, and QL steps with implicit shifts.
+/// Returns the eigenvalues of a Hermitian matrix, which is given row by row, to the rounding error
+/// of the largest one: by Householder reflections to tridiagonal form and QL steps with implicit
+/// shifts.
 ///
 /// # References
 ///
@@ -29,7 +30,7 @@ pub(crate) fn hermitian_eigenvalues(mut a: Vec<Complex<f64>>, n: usize) -> Vec<f
     diagonal
 }
 
-/// Reflects the column k below the diagonal onto its first element, whose size is returned.
+/// Reflects the column k below the diagonal onto its first element, whose magnitude is returned.
 fn reflect(a: &mut [Complex<f64>], n: usize, k: usize) -> f64 {
     let mut v: Vec<Complex<f64>> = (k + 1..n).map(|i| a[i * n + k]).collect();
     let size = v.iter().map(Complex::norm_sqr).sum::<f64>().sqrt();
@@ -69,8 +70,8 @@ fn reflect(a: &mut [Complex<f64>], n: usize, k: usize) -> f64 {
     size
 }
 
-/// Takes a QL step of three diagonals between two rows, by plane rotations from the last row to the
-/// first.
+/// Applies a QL step to a tridiagonal matrix between two rows, by plane rotations from the last row
+/// to the first.
 fn step(diagonal: &mut [f64], beside: &mut [f64], [first, last]: [usize; 2]) {
     let half = (diagonal[first + 1] - diagonal[first]) / (2.0 * beside[first]);
     let root = half.hypot(1.0).copysign(half);

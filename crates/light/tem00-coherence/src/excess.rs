@@ -15,8 +15,8 @@ use reach::{STEEP, is_beyond};
 /// lags η, in speckles, with the phase x of the heights and the displacement s of the pupil in
 /// diameters.
 ///
-/// A single value takes an integral over the lags. Where many are asked for, or the integral is
-/// long, they come from a table, so that the work is bounded for any relief.
+/// A single value is an integral over the lags. If many values are needed, or the integral is long,
+/// they come from a table, so that the work is bounded for any relief.
 #[derive(Clone, Debug)]
 pub(crate) struct HeightExcess {
     kernel: LagKernel,
@@ -27,7 +27,7 @@ pub(crate) struct HeightExcess {
     table: OnceCell<table::Table>,
 }
 
-/// Correlation lengths in speckles whose integrals are tabulated in any case.
+/// Correlation length in speckles above which the integrals are always tabulated.
 const LONG: f64 = 8.0;
 
 impl HeightExcess {
@@ -41,7 +41,7 @@ impl HeightExcess {
         }
     }
 
-    /// Returns the excess at a difference of wave numbers that heights see, in rad/m, and a
+    /// Returns the excess for a difference of wave numbers that acts on heights, in rad/m, and a
     /// displacement of the pupil.
     pub(crate) fn at(&self, of_heights: f64, shift: f64) -> f64 {
         let phase = (of_heights * self.path_spread).abs();
@@ -67,8 +67,8 @@ fn by_lags(kernel: LagKernel, length: f64, [phase, shift]: [f64; 2]) -> f64 {
         let excess = (-exponent * (1.0 - correlation)).exp() - (-exponent).exp();
         TAU * lag * kernel.at(lag) * excess * libm::j0(turns * lag)
     };
-    // The excess falls from lag 0 on over ℓ or, if heights are large, over less; the images over a
-    // speckle.
+    // The excess falls from lag 0 on over ℓ or, for large heights, over a shorter distance; the
+    // image kernel falls over a speckle.
     let width = length / (1.0 + exponent).sqrt();
     if is_beyond(shift, width) {
         return 0.0;

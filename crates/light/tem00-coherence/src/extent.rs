@@ -5,19 +5,19 @@ use tem00_numerics::{check, disc_overlap, quadrature::for_each_node};
 
 use crate::{Refusal, cell::unit};
 
-/// The directions from which the light of a source reaches the surface: those of its transverse
-/// modes, of the points of a lamp or a fibre, or of a diffuser that moves many times while the
-/// detector integrates.
+/// The directions from which the light of a source reaches the surface: the directions of its
+/// transverse modes, of the points of a lamp or a fibre, or of the points of a diffuser that moves
+/// many times while the detector integrates.
 ///
-/// Lights of different directions do not interfere: the detector adds their intensities, as it adds
-/// those of wave numbers. For
+/// Light from different directions does not interfere: the detector adds the intensities, as it
+/// adds the intensities of different wave numbers. The extent is an argument of
 /// [`ResolutionCell::with_source_extent`](crate::ResolutionCell::with_source_extent). The default
 /// is a point.
 ///
 /// # Validity
 ///
-/// Discs and Gaussians are small against a radian: to first order in the angle, errors are of the
-/// order of its square.
+/// Discs and Gaussians must be small compared with a radian: the model is of first order in the
+/// angle, and its errors are of the order of the squared angle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SourceExtent {
     directions: Directions,
@@ -41,16 +41,18 @@ impl Default for SourceExtent {
 /// The largest angles of discs and Gaussians, in radians.
 const ANGLES: [f64; 2] = [0.0, 0.3];
 
-/// Beyond so many standard deviations of a difference a Gaussian ends, at 2e-11 of its light.
+/// Number of standard deviations of a difference at which a Gaussian is cut off, with 2e-11 of its
+/// light beyond.
 const GAUSSIAN_REACH: f64 = 7.0;
 
-/// The largest number of single directions: all pairs of them count.
+/// The largest number of single directions: the work grows with the number of pairs.
 const MAX_DIRECTIONS: usize = 100;
 
-/// The number of panels of the smallest difference that matters; beyond, they grow.
+/// The number of panels as wide as the smallest difference that matters; beyond them the panels
+/// grow.
 const EVEN_PANELS: f64 = 12.0;
 
-/// Directions of differences on a turn.
+/// Number of azimuths of a difference over a full turn.
 const AZIMUTHS: i32 = 32;
 
 /// Checks an angle. It counts as 0 where its square would underflow.
@@ -60,7 +62,7 @@ fn angle(name: &'static str, angle: f64) -> Result<f64, Refusal> {
 }
 
 impl SourceExtent {
-    /// A disc about the direction to the source, equally bright, of this half-angle in radians as
+    /// Creates a uniform disc about the direction to the source, with its half-angle in radians as
     /// seen from the surface.
     ///
     /// # Errors
@@ -74,8 +76,8 @@ impl SourceExtent {
         })
     }
 
-    /// A round Gaussian about the direction to the source, of this standard deviation along each
-    /// axis, in radians as seen from the surface.
+    /// Creates a round Gaussian about the direction to the source, with its standard deviation
+    /// along each axis in radians as seen from the surface.
     ///
     /// # Errors
     ///
@@ -88,13 +90,13 @@ impl SourceExtent {
         })
     }
 
-    /// Single directions from the surface to the source, of any length, each with its share of the
-    /// light; shares are scaled to the sum 1.
+    /// Creates single directions from the surface to the source, of any length, each with its
+    /// fraction of the light; the fractions are scaled to the sum 1.
     ///
     /// # Errors
     ///
-    /// Returns an error if there are more than 100, a direction has no length, a share is negative
-    /// or not finite, or all are 0.
+    /// Returns an error if there are more than 100, a direction has no length, a fraction is
+    /// negative or not finite, or all fractions are 0.
     pub fn directions(list: &[(DVec3, f64)]) -> Result<Self, Refusal> {
         let count = list.len();
         let allowed = "from 1 to 100 in number";
@@ -112,7 +114,7 @@ impl SourceExtent {
         })
     }
 
-    /// Tells whether all light comes from one direction.
+    /// Returns whether all light comes from one direction.
     pub fn is_point(&self) -> bool {
         match &self.directions {
             Directions::Disc { half_angle: angle } | Directions::Gaussian { spread: angle } => {
@@ -122,7 +124,7 @@ impl SourceExtent {
         }
     }
 
-    /// Visits the differences of two directions of the light, as vectors in radians about the
+    /// Visits the differences between two directions of the light, as vectors in radians about the
     /// direction `to_source`, each with its probability; `feature` is the smallest difference that
     /// matters.
     pub(crate) fn for_each_difference(
@@ -144,8 +146,7 @@ impl SourceExtent {
                     visit(radius * (angle.cos() * first + angle.sin() * second), share);
                 }
             };
-            // Far from each other directions have nothing in common but what varies as the source
-            // does.
+            // For directions far apart the integrand varies only as slowly as the source does.
             let mut from = end.min(EVEN_PANELS * feature.max(1e-12 * end));
             for_each_node(
                 [0.0, from],

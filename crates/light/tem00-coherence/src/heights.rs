@@ -1,5 +1,5 @@
 /// Returns nodes `z` and weights `w` of the Gauss–Hermite rule of the standard normal distribution:
-/// the weights sum to 1, and polynomials up to degree 2n − 1 have their exact mean.
+/// the weights sum to 1, and the means of polynomials up to degree 2n − 1 are exact.
 ///
 /// # References
 ///
@@ -38,13 +38,13 @@ pub(crate) fn gauss_hermite(count: usize) -> Vec<[f64; 2]> {
 }
 
 /// Heights that stand for a normal distribution in light of a finite bandwidth, in units of the
-/// root mean square height, each with its fraction of the light; `spread = 2 σ_k σ_L` is small for
-/// few.
+/// root mean square height, each with its fraction of the light. A small `spread = 2 σ_k σ_L` needs
+/// few heights.
 ///
-/// The fields of patterns of these heights, of independent seeds, add to one of which two wave
-/// numbers correlate as `exp(−κ² σ_L²/2)`: to 0.006 in the contrast for one height below 0.15, and
-/// to 0.004 for more up to a spread of 4. Beyond it there is no such rule: coherent modes are as
-/// good.
+/// The fields of patterns of these heights, with independent seeds, add up to a field whose wave
+/// numbers correlate as `exp(−κ² σ_L²/2)`: to 0.006 in the contrast with one height at spreads
+/// below 0.15, and to 0.004 with more heights up to a spread of 4. Beyond it there is no such rule,
+/// and coherent modes do equally well.
 pub(crate) fn representative_heights(spread: f64) -> Option<Vec<[f64; 2]>> {
     const COUNTS: [(f64, usize); 7] = [
         (0.15, 1),
@@ -83,8 +83,8 @@ mod tests {
     fn few_heights_keep_the_contrast() {
         for spread in [0.1, 0.15, 0.4, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0_f64] {
             let nodes = representative_heights(spread).unwrap();
-            // ⟨|Σ w e^{iκσz}|²⟩ over the difference of two draws of a Gaussian line, κσ_L of the
-            // variance spread²/2.
+            // ⟨|Σ w e^{iκσz}|²⟩ over the difference of two draws from a Gaussian line, where κσ_L
+            // has the variance spread²/2.
             let pairs = nodes.iter().flat_map(|a| nodes.iter().map(move |b| (a, b)));
             let squared: f64 = pairs
                 .map(|(a, b)| a[1] * b[1] * (-0.25 * (spread * (a[0] - b[0])).powi(2)).exp())

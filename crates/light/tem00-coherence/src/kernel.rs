@@ -5,8 +5,8 @@ use std::sync::OnceLock;
 
 use tem00_numerics::{cast::to_usize, disc_overlap, jinc, quadrature::for_each_node};
 
-/// An isotropic weight of lags, of unit area: of the contrast, of the noise of tall rows, or
-/// between both.
+/// An isotropic weight of lags, of unit area: the kernel of the contrast, of the noise of tall
+/// rows, or a mixture of both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LagKernel {
     /// Weight of the contrast kernel in this kernel.
@@ -33,22 +33,22 @@ impl LagKernel {
     }
 }
 
-/// Lags per speckle of the table of the autocorrelation, and the last one, after which a series is
-/// as good.
+/// Lags per speckle in the table of the autocorrelation, and its last lag, beyond which a series is
+/// equally accurate.
 const LAGS: f64 = 64.0;
 const LAST_LAG: f64 = 30.0;
 
-/// Returns the intensity of a point's image, in units of a speckle, of unit area.
+/// Returns the intensity of a point's image, normalised to unit area, with lengths in speckles.
 fn image_of_point(lag: f64) -> f64 {
     0.25 * PI * jinc(PI * lag).powi(2)
 }
 
-/// Returns the autocorrelation of the intensity of a point's image, in units of a speckle, of unit
-/// area.
+/// Returns the autocorrelation of the intensity of a point's image, normalised to unit area, with
+/// lengths in speckles.
 fn image_autocorrelation(lag: f64) -> f64 {
     static TABLE: OnceLock<Vec<f64>> = OnceLock::new();
     if lag >= LAST_LAG {
-        // Of the cusp of chat² at 0: −8ρ/π + 4ρ³/3π.
+        // Series from the cusp of chat² at 0: −8ρ/π + 4ρ³/3π.
         return 2.0 / (PI * lag).powi(3) + 0.75 / (PI * lag).powi(5);
     }
     let table = TABLE.get_or_init(|| {
@@ -59,7 +59,7 @@ fn image_autocorrelation(lag: f64) -> f64 {
     });
     let at = lag * LAGS;
     let (first, t) = (to_usize(at), at.fract());
-    // Four points; the function is even.
+    // Interpolation through four points; the function is even.
     let [a, b, c, d] = [first.abs_diff(1), first, first + 1, first + 2].map(|i| table[i]);
     let [a, d] = [a * (1.0 - t) * (2.0 - t), d * (1.0 + t) * (1.0 - t)];
     let inner = b * (1.0 - t) * (2.0 - t) * (1.0 + t) + c * t * (1.0 + t) * (2.0 - t);

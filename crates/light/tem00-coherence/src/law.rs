@@ -12,24 +12,24 @@ use crate::{
     line::{LADDER_END, breaks_about},
 };
 
-/// The speckle that light of a finite bandwidth makes of one rough surface.
+/// Speckle of one rough surface in light of a finite bandwidth.
 ///
-/// The detector adds the intensities of all wave numbers, and fields of a rough surface are jointly
-/// circular Gaussian over place and wave number, so that
+/// The detector adds the intensities of all wave numbers, and the fields of a rough surface are
+/// jointly circular Gaussian over position and wave number, so that
 ///
 /// ```text
 /// ⟨I(x) I(x')⟩ − ⟨I⟩⟨I'⟩ = ∬ S(k) S(k') |⟨U(x, k) U*(x', k')⟩|² dk dk'
 /// ```
 ///
-/// All answers are cases of this one law: the contrast at `x = x'`, the covariance of two frames
-/// where the second is displaced across the pupil, the autocovariance along the image, and the
-/// noise of a line's centroid, the power at low frequencies. They differ: *a contrast does not tell
-/// the noise of a line*.
+/// All results are cases of this one law: the contrast is its value at `x = x'`, the covariance of
+/// two frames its value where the second is displaced across the pupil, the autocovariance its
+/// value along the image, and the noise of a line's centroid its power at low frequencies. These
+/// differ: *the noise of a line does not follow from the contrast*.
 ///
 /// # Validity
 ///
-/// That of [`ResolutionCell`] and of [`SpectralLine`], polarised light, and a detector that
-/// integrates over many coherence times.
+/// The limits of [`ResolutionCell`] and [`SpectralLine`] apply. The light is polarised, and the
+/// detector integrates over many coherence times.
 ///
 /// # Examples
 ///
@@ -68,7 +68,7 @@ pub struct PolychromaticSpeckle<'a> {
     pub cell: &'a ResolutionCell,
 }
 
-/// The rows or columns of a sensor along which a line is looked for.
+/// Height of the sensor rows, or width of the columns, along which a line is detected.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Rows {
     /// Finer than a speckle.
@@ -76,12 +76,12 @@ pub enum Rows {
     Thin,
     /// Rows of this height, in speckle sizes.
     Height(f64),
-    /// Much taller than a speckle; round spots are alike.
+    /// Much taller than a speckle. Round spots behave alike.
     Tall,
 }
 
 impl Rows {
-    /// Rows taller than so many speckles count as tall: to 0.005 in f.
+    /// Height in speckles above which rows count as tall, to 0.005 in f.
     const TALLEST: f64 = 40.0;
 
     /// Returns f of [`line_noise_ratio`](PolychromaticSpeckle::line_noise_ratio) from a table by
@@ -111,8 +111,8 @@ impl Rows {
         }
     }
 
-    /// Returns f of [`line_noise_ratio`](PolychromaticSpeckle::line_noise_ratio), of a displacement
-    /// along the tilt and across it.
+    /// Returns f of [`line_noise_ratio`](PolychromaticSpeckle::line_noise_ratio) as a function of a
+    /// displacement along the tilt and across it.
     fn shared_by_all(self) -> impl Fn(DVec2) -> f64 {
         let of_chord = self.power_of_chord();
         let power = move |shift| of_chord.as_ref().map(|of_chord| power_in(shift, of_chord));
@@ -124,7 +124,7 @@ impl Rows {
     }
 
     /// Returns `K(L) ∝ ∫ (L − |g|)₊ sinc²(πag) dg` of chords L along the rows, in diameters of the
-    /// pupil; none for tall rows, whose power is the area.
+    /// pupil; `None` for tall rows, whose power is the area.
     fn power_of_chord(self) -> Option<impl Fn(f64) -> f64> {
         const STEPS: f64 = 4096.0;
         let height = match self {
@@ -153,8 +153,9 @@ impl Rows {
         })
     }
 
-    /// Returns how much of the kernel of a contrast, in place of that of tall rows, the correlation
-    /// of heights takes: 0.6 for thin rows, and for others as f lies between both.
+    /// Returns the weight of the contrast kernel, relative to the kernel of tall rows, in the
+    /// effect of correlated heights: 0.6 for thin rows, and for others in proportion to the
+    /// position of f between thin and tall rows.
     fn weight_of_contrast(self) -> f64 {
         const OF_THIN_ROWS: f64 = 0.6;
         let half = DVec2::new(0.5, 0.0);
@@ -177,12 +178,12 @@ fn power_in(shift: DVec2, of_chord: impl Fn(f64) -> f64) -> f64 {
     if end <= 0.0 {
         return 0.0;
     }
-    // Chords end with a root, and those on the other side of the middle are alike.
+    // Chords end like a square root, and the chords on the other side of the middle are equal.
     let by_root = |t: f64| 4.0 * end * t * of_chord(chord(end * (1.0 - t * t)));
     integrate(by_root, [0.0, 1.0], 0.125)
 }
 
-/// Lags in radians across the pupil beyond which less than 3e−9 is left.
+/// Lags in radians across the pupil beyond which less than 3e−9 remains.
 const FARTHEST: f64 = 1e3;
 
 impl PolychromaticSpeckle<'_> {
@@ -191,8 +192,8 @@ impl PolychromaticSpeckle<'_> {
         self.covariance([0.0; 2]).sqrt()
     }
 
-    /// Returns the covariance over ⟨I⟩² of two frames between which the field moved across the
-    /// pupil by `displacement`, in pupil diameters along the tilt and across it, in focus.
+    /// Returns the covariance, divided by ⟨I⟩², of two frames in focus between which the field
+    /// moved across the pupil by `displacement`, in pupil diameters along the tilt and across it.
     ///
     /// ```text
     /// cov(I₁, I₂) / ⟨I⟩² = ∫ R(κ) exp(−κ² σ_L²) chat²(|m + κ v̂ / κ_t|) dκ
@@ -212,8 +213,8 @@ impl PolychromaticSpeckle<'_> {
         })
     }
 
-    /// Returns the autocovariance over ⟨I⟩² at a lag on the object, in speckle sizes along the tilt
-    /// and across it, in focus: grains grow along the tilt.
+    /// Returns the autocovariance in focus, divided by ⟨I⟩², at a lag on the object, in speckle
+    /// sizes along the tilt and across it. Speckles are elongated along the tilt.
     pub fn autocovariance(&self, lag: [f64; 2]) -> f64 {
         let lag = PI * DVec2::from_array(lag);
         self.mean(|difference| {
@@ -231,8 +232,8 @@ impl PolychromaticSpeckle<'_> {
         })
     }
 
-    /// Returns the standard deviation of the position of a line over that in light of one
-    /// wavelength, for a tilt across the line.
+    /// Returns the standard deviation of the position of a line divided by its value in light of
+    /// one wavelength, for a tilt across the line.
     ///
     /// ```text
     /// √∫ R(κ) exp(−κ² σ_L²) f(s) dκ,     s = |κ| / κ_t
@@ -241,19 +242,21 @@ impl PolychromaticSpeckle<'_> {
     /// f = ∫ K(L(x, s)) dx / ∫ K(L(x, 0)) dx,   K(L) = ∫ (L − |g|)₊ sinc²(πag) dg      rows of a speckle sizes
     /// ```
     ///
-    /// with the chords L along the rows of the lens that two discs of the diameter 1 share, s
-    /// apart: K is L² for thin rows and L for tall ones. Directions of an extended source displace
-    /// the discs along the rows as well.
+    /// with the chords L, along the rows, of the lens-shaped overlap of two discs of diameter 1 at
+    /// the distance s: K is L² for thin rows and L for tall ones. Directions of an extended source
+    /// displace the discs along the rows as well.
     ///
-    /// A centroid asks for the power at low frequencies, to which a lens of the pupil counts with
-    /// its area or its chords, and not, as in the contrast, with the square of its area.
+    /// A centroid depends on the power at low frequencies, to which the overlap of the pupils
+    /// contributes with its area or its chords and not, as in the contrast, with the square of its
+    /// area.
     ///
     /// # Validity
     ///
-    /// Lines four speckles wide or wider; at two first order is up to 10 % higher. Defocus drops
-    /// out as long as the wavelengths are displaced by less than the width of the line. A
-    /// correlation length of the relief takes for thin rows a mean of two kernels: to 0.005 of the
-    /// deviation without a tilt of the cell, and to 0.01 with one.
+    /// The ratio holds for lines at least four speckles wide; at a width of two speckles, first
+    /// order gives up to 10 % more. Defocus drops out as long as the wavelengths are displaced by
+    /// less than the width of the line. For thin rows, a correlation length of the relief is
+    /// treated with a mean of two kernels: to 0.005 of the standard deviation without a tilt of the
+    /// cell, and to 0.01 with a tilt.
     ///
     /// # References
     ///
@@ -272,7 +275,7 @@ impl PolychromaticSpeckle<'_> {
         let contrast_like = rows.weight_of_contrast();
         let kernel = LagKernel { contrast_like };
         let excess = self.cell.height_excess(kernel, self.is_of_many_parts());
-        // Heights that are correlated over many speckles leave f alone.
+        // Heights that are correlated over many speckles do not change f.
         let long = self.cell.correlation_length().powi(2);
         let long = long / (long + 4.0);
         self.mean(|difference| {
@@ -288,7 +291,7 @@ impl PolychromaticSpeckle<'_> {
         })
     }
 
-    /// Returns whether the light is of so many parts that tables pay.
+    /// Returns whether the light has enough parts for tables to save time.
     fn is_of_many_parts(&self) -> bool {
         !self.cell.source_extent().is_point() || self.line.has_many_pairs()
     }
@@ -323,7 +326,7 @@ impl PolychromaticSpeckle<'_> {
         if !line.has_width() {
             return line.mean_over_pairs(scale, over_source);
         }
-        // Directions are many, and their mean is smooth over wave numbers.
+        // There are many directions, and their mean is smooth over wave numbers.
         let unit = scale.min(1e200);
         let over_source =
             Tabulated::new(breaks_about([(0.0, unit)], LADDER_END * unit), over_source);

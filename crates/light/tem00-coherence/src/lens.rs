@@ -1,14 +1,14 @@
-//! Integrals over the lens that two displaced pupils share.
+//! Integrals over the lens-shaped overlap of two displaced pupils.
 
 use core::f64::consts::PI;
 
 use num_complex::Complex;
 use tem00_numerics::quadrature::for_each_node;
 
-/// Returns `(1/π) ∫ exp(iφ)` over the lens that two unit discs share whose centres are 2 `shift`
-/// apart along the first axis. The phase is a sum of one along it, which changes by at most some
-/// `range` from the centre to the edge, and of one across, of which `across` is the integral of
-/// `exp(iφ)` over a chord, from its half length.
+/// Returns `(1/π) ∫ exp(iφ)` over the overlap of two unit discs whose centres are 2 `shift` apart
+/// along the first axis. The phase is the sum of a phase along this axis, which changes by about
+/// `range` at most from the centre to the edge, and of a phase across it. `across` maps the half
+/// length of a chord to the integral of `exp(iφ)` over the chord.
 pub(crate) fn mean_over_lens(
     shift: f64,
     range: f64,
@@ -21,7 +21,7 @@ pub(crate) fn mean_over_lens(
         return Complex::ZERO;
     }
     let mut sum = Complex::ZERO;
-    // The lens ends like a root: place = half (1 − t²).
+    // The overlap ends like a square root: place = half (1 − t²).
     for_each_node([0.0, 1.0], 4.0 / range.max(4.0), |t, weight| {
         let place = half * (1.0 - t * t);
         let chord = ((1.0 - place - shift) * (1.0 + place + shift)).sqrt();
@@ -50,7 +50,7 @@ pub(crate) fn linear_across(q: f64, c: f64) -> Complex<f64> {
 pub(crate) fn quadratic_across(b: f64, c: f64) -> Complex<f64> {
     let phase = b.abs() * c * c;
     let of_positive = if phase < 4.0 {
-        // Powers of −i in turn.
+        // The terms cycle through the powers of −i.
         let (mut term, mut parts, mut n) = (1.0, [0.0; 4], 0);
         while term > 1e-18 {
             let order = f64::from(n);
@@ -60,8 +60,8 @@ pub(crate) fn quadratic_across(b: f64, c: f64) -> Complex<f64> {
         }
         2.0 * c * Complex::new(parts[0] - parts[2], parts[3] - parts[1])
     } else {
-        // All of the axis less both tails: exp(−z²) / (z + ½/(z + 1/(z + 3/2/(z + …)))) for z = √i
-        // y √b.
+        // Integral over the whole axis minus both tails: exp(−z²) / (z + ½/(z + 1/(z + 3/2/(z +
+        // …)))) for z = √i y √b.
         let z = Complex::from_polar(phase.sqrt(), 0.25 * PI);
         let fraction = (1..=60)
             .rev()

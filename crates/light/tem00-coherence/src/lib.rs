@@ -2,10 +2,12 @@
 //!
 //! # Conventions
 //!
-//! - SI units and radians. Wave numbers are those of vacuum, in rad/m; κ is the difference of two.
+//! - SI units and radians. Wave numbers are vacuum wave numbers, in rad/m; κ is the difference of
+//!   two.
 //! - Directions lead *away from the surface*: to the source, to the pupil.
-//! - Displacements across the pupil are in pupil diameters, lags on the object in speckle sizes
-//!   `λ / (2 sin u)`; both along the tilt of the resolution cell, then across it.
+//! - Displacements across the pupil are in pupil diameters, lags on the object in speckle sizes `λ
+//!   / (2 sin u)`. The first component is along the tilt of the resolution cell, the second across
+//!   it.
 //! - Paths are *group* paths: in glass every length counts with the group index.
 //!
 //! # Main types
@@ -22,9 +24,9 @@
 //!
 //! # Scope and non-goals
 //!
-//! No dispersion of the line by the colour of the surface; scattering within one relief happens
-//! once. Paths over several surfaces are given, not found. Surfaces are rough: below `σ_L = λ/2` a
-//! mirror part is left that these laws do not know.
+//! The colour of the surface does not change the shape of the line, and light scatters once within
+//! one relief. The caller supplies the paths over several surfaces. Surfaces are rough: below
+//! `σ_L = λ/2` there is a specular part, which these laws do not include.
 
 mod blur;
 mod cell;

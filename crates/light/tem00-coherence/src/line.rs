@@ -17,20 +17,20 @@ use crate::{Refusal, chebyshev::Tabulated};
 /// R(κ) = ∫ S(k) S(k + κ) dk          density of the difference of two draws of the wave number
 /// ```
 ///
-/// One peak stands for a single line, several for the modes of a cavity; all peaks have one shape
-/// P. Linewidths are full widths at half maximum of the power per wavelength; inside, everything is
-/// a wave number.
+/// One peak represents a single line, several peaks the modes of a cavity; all peaks have one shape
+/// P. Linewidths are full widths at half maximum of the power per wavelength; internally, all
+/// quantities are wave numbers.
 ///
 /// # Validity
 ///
-/// Widths small against the wavelength, at most a tenth of it: to there a shape in wavelength is as
-/// good as the same shape in wave number, and a pupil in units of the wavelength is the same for
-/// all of the line.
+/// Widths must be small compared with the wavelength, at most a tenth of it. Up to this limit a
+/// shape in wavelength is equivalent to the same shape in wave number, and a pupil in units of the
+/// wavelength is the same for the whole line.
 ///
 /// # Examples
 ///
-/// A single-mode laser is coherent over its paths, a superluminescent diode of 20 nm over some 20
-/// µm:
+/// A single-mode laser is coherent over all its paths, a superluminescent diode of 20 nm over some
+/// 20 µm:
 ///
 /// ```
 /// use tem00_coherence::{LineShape, SpectralLine};
@@ -49,8 +49,8 @@ use crate::{Refusal, chebyshev::Tabulated};
 pub struct SpectralLine {
     wavelength: f64,
     shape: LineShape,
-    /// Standard deviation, half width or full width of a peak in rad/m, by its shape; 0 without a
-    /// width.
+    /// Width of a peak in rad/m: standard deviation, half width or full width, depending on its
+    /// shape; 0 without a width.
     width: f64,
     peaks: Vec<Peak>,
 }
@@ -61,29 +61,29 @@ pub enum LineShape {
     /// A normal distribution: many modes under a gain curve, inhomogeneous broadening, a filter.
     #[default]
     Gaussian,
-    /// A Cauchy distribution, of long wings: spontaneous emission, a single mode of a diode.
+    /// A Cauchy distribution, with long wings: spontaneous emission, a single mode of a diode.
     Lorentzian,
-    /// Constant between two ends: a wavelength that is swept during the exposure.
+    /// A constant density between two ends: a wavelength that is swept during the exposure.
     Rectangular,
 }
 
 /// A peak of a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Peak {
-    /// Wave number less that of the line, in rad/m.
+    /// Wave number relative to the wave number of the line, in rad/m.
     offset: f64,
     /// The fraction of the power.
     weight: f64,
 }
 
-/// The largest linewidth in wavelengths.
+/// The largest linewidth as a fraction of the wavelength.
 const MAX_RELATIVE_WIDTH: f64 = 0.1;
-/// The largest number of peaks whose widths count for modes.
+/// The largest number of peaks whose widths are included in the modes.
 const MAX_WIDE_PEAKS: usize = 24;
-/// The largest number of peaks whose pairs are taken one by one.
+/// The largest number of peaks whose pairs are evaluated one by one.
 const MAX_PEAKS_IN_PAIRS: usize = 8;
-/// Standard deviations of a Gaussian and half widths of a Lorentzian after which nothing is left:
-/// 1e−16 of the first, 1e−12 of the second.
+/// Standard deviations of a Gaussian and half widths of a Lorentzian beyond which the density is
+/// negligible: 1e−16 of the Gaussian and 1e−12 of the Lorentzian lie beyond.
 const GAUSSIAN_REACH: f64 = 8.5;
 const LORENTZIAN_REACH: f64 = 1e12;
 
@@ -95,7 +95,7 @@ impl SpectralLine {
     ///
     /// # Errors
     ///
-    /// Returns an error unless it is positive and finite.
+    /// Returns an error unless the wavelength is positive and finite.
     pub fn monochromatic(wavelength: f64) -> Result<Self, Refusal> {
         Self::new(wavelength, 0.0, LineShape::Gaussian)
     }
@@ -105,7 +105,7 @@ impl SpectralLine {
     /// # Errors
     ///
     /// Returns an error unless the wavelength is positive and finite and the linewidth lies between
-    /// 0 and a tenth of it.
+    /// 0 and a tenth of the wavelength.
     pub fn new(wavelength: f64, linewidth: f64, shape: LineShape) -> Result<Self, Refusal> {
         let single = Peak {
             offset: 0.0,
@@ -114,12 +114,13 @@ impl SpectralLine {
         Self::checked(wavelength, vec![single])?.with_linewidth(linewidth, shape)
     }
 
-    /// Creates `count` equal peaks without a width, the first and the last `span` apart, in metres:
-    /// the longitudinal modes of a cavity.
+    /// Creates `count` equal peaks without a width, with the distance `span` between the first and
+    /// the last, in metres: the longitudinal modes of a cavity.
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new) for the span, and unless there are between 1 and `MAX_PEAKS`.
+    /// Returns the errors of [`new`](Self::new) for the span, and an error unless there are between
+    /// 1 and `MAX_PEAKS` peaks.
     pub fn comb(wavelength: f64, span: f64, count: usize) -> Result<Self, Refusal> {
         let width = full_width(wavelength, span, "span")?;
         let place = |j: usize| match count {
@@ -134,12 +135,12 @@ impl SpectralLine {
     }
 
     /// Creates peaks without a width from wavelengths in metres, each with its power in any unit.
-    /// The wavelength of the line is that of the mean wave number.
+    /// The wavelength of the line is the wavelength of the mean wave number.
     ///
     /// # Errors
     ///
-    /// Returns an error unless there are between 1 and `MAX_PEAKS`, within a tenth of the
-    /// wavelength, and powers are finite and positive.
+    /// Returns an error unless there are between 1 and `MAX_PEAKS` peaks, they lie within a tenth
+    /// of the wavelength, and their powers are finite and positive.
     pub fn from_peaks(peaks: &[[f64; 2]]) -> Result<Self, Refusal> {
         check_count(peaks.len())?;
         for &[wavelength, power] in peaks {
@@ -169,7 +170,7 @@ impl SpectralLine {
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new).
+    /// Returns the errors of [`new`](Self::new).
     pub fn with_linewidth(self, linewidth: f64, shape: LineShape) -> Result<Self, Refusal> {
         let full = full_width(self.wavelength(), linewidth, "linewidth")?;
         let width = match shape {
@@ -204,7 +205,7 @@ impl SpectralLine {
         TAU / self.wavelength
     }
 
-    /// Returns whether all of the light has one wavelength.
+    /// Returns whether all light has one wavelength.
     pub fn is_monochromatic(&self) -> bool {
         self.width == 0.0 && self.peaks.len() == 1
     }
@@ -236,7 +237,7 @@ impl SpectralLine {
             LineShape::Rectangular => sinc(0.5 * x),
         };
         let peaks = self.peaks.iter();
-        // A phase that no number holds stands for any.
+        // A phase that overflows counts as random: its mean phasor is 0.
         let phase = |peak: &Peak| Some(peak.offset * path).filter(|phase| phase.is_finite());
         let between = peaks.map(|peak| {
             phase(peak).map_or(Complex::ZERO, |phase| {
@@ -263,8 +264,8 @@ impl SpectralLine {
     /// Returns the mean `∫ R(κ) f(κ) dκ` of a function over the difference κ of two wave numbers of
     /// the line, in rad/m.
     ///
-    /// `scale` is the width of the finest feature of f; f may have a cusp at 0, and falls or stays
-    /// as it is far away.
+    /// `scale` is the width of the finest feature of f; f may have a cusp at 0, and far away it
+    /// decreases or is constant.
     pub fn mean_over_pairs(&self, scale: f64, f: impl Fn(f64) -> f64) -> f64 {
         let of_offset = |offset| match self.has_width() {
             true => self.mean_over_peaks(offset, scale, &f),
@@ -285,12 +286,12 @@ impl SpectralLine {
         self.width > 0.0
     }
 
-    /// Returns whether the peaks are so many that a function of their differences is tabulated.
+    /// Returns whether there are enough peaks that a function of their differences is tabulated.
     pub(crate) const fn has_many_pairs(&self) -> bool {
         self.peaks.len() > MAX_PEAKS_IN_PAIRS
     }
 
-    /// The mean over pairs of peaks, of a function of what they are apart.
+    /// The mean over pairs of peaks, of a function of their difference.
     fn mean_over_differences(&self, of_offset: impl Fn(f64) -> f64) -> f64 {
         let pairs = self
             .peaks
@@ -306,8 +307,9 @@ impl SpectralLine {
     /// Returns the difference κ between a wave number drawn from the line and the mean one, in
     /// rad/m, for a uniform number between 0 and 1.
     ///
-    /// It grows with that number within a peak, and from peak to peak in the order in which they
-    /// were given. The wings of a Lorentzian end at a tenth of the mean wave number.
+    /// The difference increases with the uniform number within a peak; the peaks follow in the
+    /// order in which they were given. The wings of a Lorentzian end at a tenth of the mean wave
+    /// number.
     pub fn draw(&self, uniform: f64) -> f64 {
         let mut rest = uniform.clamp(0.0, 1.0);
         let last = self.peaks.len() - 1;
@@ -330,10 +332,10 @@ impl SpectralLine {
         (self.draw(1.0 - tail) - self.draw(tail)).abs() / (8.0 * LN_2).sqrt()
     }
 
-    /// Returns wave numbers, less the mean one, with the fractions of the power for which they
-    /// stand in an integral: 16 or more for each peak with a width, as a function asks whose finest
-    /// feature is `scale` wide; nothing if that takes more than `max`. Of more than 24 peaks the
-    /// widths are left out.
+    /// Returns wave numbers, relative to the mean one, with the fractions of the power that they
+    /// represent in an integral. Each peak with a width has 16 nodes or more, as many as a function
+    /// needs whose finest feature is `scale` wide. Returns `None` if more than `max` nodes are
+    /// needed. With more than 24 peaks the widths are neglected.
     pub(crate) fn nodes(&self, scale: f64, max: usize) -> Option<Vec<[f64; 2]>> {
         let is_wide = self.width > 0.0 && self.peaks.len() <= MAX_WIDE_PEAKS;
         let fewest = if self.peaks.len() <= 4 { 4.0 } else { 1.0 };
@@ -362,7 +364,7 @@ impl SpectralLine {
     /// ∫ f(κ) times the density of the difference of two draws from two peaks that are `offset`
     /// apart.
     fn mean_over_peaks(&self, offset: f64, scale: f64, f: &impl Fn(f64) -> f64) -> f64 {
-        // In widths of a peak, of which there may be no reciprocal.
+        // Lengths are in widths of a peak, whose reciprocal may overflow.
         let width = self.width;
         let reach = match self.shape {
             LineShape::Gaussian => 2.0_f64.sqrt() * GAUSSIAN_REACH,
@@ -387,7 +389,7 @@ impl LineShape {
         }
     }
 
-    /// The value that a draw from a peak of width 1 does not exceed with the probability `u`.
+    /// The quantile `u` of a peak of width 1.
     fn quantile(self, u: f64) -> f64 {
         match self {
             Self::Gaussian => normal_quantile(u),
@@ -428,10 +430,10 @@ pub(crate) fn breaks_about(features: impl IntoIterator<Item = (f64, f64)>, reach
     breaks
 }
 
-/// The last step away from a feature, in its widths.
+/// The largest step away from a feature, in widths of the feature.
 pub(crate) const LADDER_END: f64 = (1_u64 << 59) as f64;
 
-/// Steps away from a feature of width 1: even ones beside it, doubling ones far away.
+/// Steps away from a feature of width 1: evenly spaced nearby, doubling far away.
 fn ladder() -> impl Iterator<Item = f64> {
     let near = (1..=16).map(|step| 0.5 * f64::from(step));
     near.chain((4..60).map(|power| 2.0_f64.powi(power)))
@@ -442,7 +444,7 @@ fn check_count(peaks: usize) -> Result<(), Refusal> {
     check::that(holds, "peaks", peaks, "", "from 1 to 256")
 }
 
-/// Returns a width in wavelength as one in wave number.
+/// Converts a width in wavelength to a width in wave number.
 fn full_width(wavelength: f64, width: f64, parameter: &'static str) -> Result<f64, Refusal> {
     check::positive("wavelength", wavelength, "m")?;
     let holds = width >= 0.0 && width <= MAX_RELATIVE_WIDTH * wavelength;

@@ -2,29 +2,29 @@ use tem00_numerics::{check, disc_overlap, quadrature::integrate};
 
 use crate::Refusal;
 
-/// The light of a pixel that met one rough surface, *single*, mixed with light that met several,
-/// *multiple*.
+/// Mixture of the light of a pixel that met one rough surface, *single* light, with light that met
+/// several, *multiple* light.
 ///
-/// Each is a circular Gaussian field over the wave numbers, and fields add. With the fractions f of
-/// both, their degrees of polarisation P in the same two components, and what paths share of their
-/// coherence,
+/// Each is a circular Gaussian field over the wave numbers, and the fields add. With the fractions
+/// f of both, their degrees of polarisation P in the same two components, and the coherence c that
+/// their paths share,
 ///
 /// ```text
 /// C² = f₁² c₁₁ (1 + P₁²)/2 + f₁ f₂ c₁₂ (1 + P₁ P₂) + f₂² c₂₂ (1 + P₂²)/2
 /// cᵢⱼ = ∬ pᵢ(l) pⱼ(l') |γ(l − l')|² dl dl'
 /// ```
 ///
-/// The default is polarised light of one wavelength without any multiple light: C = 1.
+/// The default is polarised light of one wavelength without multiple light: C = 1.
 ///
 /// # Validity
 ///
-/// Many scatterers share a resolution cell, and of the other surface so much is lit that its own
-/// speckle is much finer than the cell: see [`cascade_variance`].
+/// A resolution cell contains many scatterers, and the lit part of the other surface is large
+/// enough that its own speckle is much finer than the cell: see [`cascade_variance`].
 ///
 /// # Examples
 ///
-/// A corner with 30 parts of multiple to 100 of single light, behind a laser of one wavelength and
-/// behind one so broad that only the single light interferes:
+/// A corner with 30 parts of multiple light to 100 parts of single light, lit by a laser of one
+/// wavelength and by a laser so broad that only the single light interferes:
 ///
 /// ```
 /// use tem00_coherence::MixedLight;
@@ -44,11 +44,11 @@ use crate::Refusal;
 pub struct MixedLight {
     /// The fraction f₂ of the multiple light, from 0 to 1.
     pub multiple: f64,
-    /// c₁₁, the squared contrast of the polarised single light alone, from 0 to 1: that of
-    /// [`PolychromaticSpeckle`](crate::PolychromaticSpeckle).
+    /// c₁₁, the squared contrast of the polarised single light alone, from 0 to 1, as
+    /// [`PolychromaticSpeckle`](crate::PolychromaticSpeckle) gives it.
     pub within_single: f64,
-    /// c₁₂ of single with multiple light, from 0 to 1: of [`PathPairs`](crate::PathPairs), as the
-    /// next.
+    /// c₁₂ of single with multiple light, from 0 to 1. [`PathPairs`](crate::PathPairs) gives c₁₂
+    /// and c₂₂.
     pub with_single: f64,
     /// c₂₂ of the multiple light with itself, from 0 to 1.
     pub within_multiple: f64,
@@ -88,7 +88,7 @@ impl MixedLight {
             check::range(name, value, [0.0, 1.0], "")?;
         }
         let single = 1.0 - self.multiple;
-        // What two coherency matrices of these degrees have in common, the trace of their product.
+        // The trace of the product of two coherency matrices with these degrees of polarisation.
         let shared = |a: f64, b: f64| 0.5 * (1.0 + a * b);
         let squared = single.powi(2) * self.within_single * shared(first, first)
             + 2.0 * single * self.multiple * self.with_single * shared(first, second)
@@ -97,8 +97,8 @@ impl MixedLight {
     }
 }
 
-/// Returns the relative variance 1/M, over a resolution cell, of the light that the speckle of a
-/// small lit part of another surface sends there.
+/// Returns the relative variance 1/M, over a resolution cell, of the light that the cell receives
+/// from a small lit part of another surface, due to the speckle of that part.
 ///
 /// ```text
 /// 1/M = ∫ chat²(ν) chat(ν/r) ν dν / ∫ chat(ν/r) ν dν
@@ -106,9 +106,9 @@ impl MixedLight {
 /// ```
 ///
 /// for a round part of the half-angle α seen from the cell, r = sin α / sin u. A part much smaller
-/// than the aperture of the camera, r → 0, makes the squared contrast 3, as of a K distribution:
-/// speckle of speckle. With single light and a linewidth f₂² (1 + c₂₂) / M is added to the squared
-/// contrast of [`MixedLight`].
+/// than the aperture of the camera, r → 0, makes the squared contrast 3, as for a K distribution:
+/// speckle of speckle. With single light and a finite linewidth, the term f₂² (1 + c₂₂) / M is
+/// added to the squared contrast of [`MixedLight`].
 ///
 /// # Errors
 ///
@@ -116,7 +116,7 @@ impl MixedLight {
 ///
 /// # Examples
 ///
-/// A wall that fills ten times the aperture leaves nothing to see of its own speckle:
+/// The speckle of a wall that fills ten times the aperture is invisible:
 ///
 /// ```
 /// use tem00_coherence::cascade_variance;
@@ -129,7 +129,7 @@ pub fn cascade_variance(relative_aperture: f64) -> Result<f64, Refusal> {
     let r = relative_aperture;
     let allowed = "0 or positive, the sine of the lit part's half-angle over the aperture's";
     check::that(r >= 0.0, "relative_aperture", r, "", allowed)?;
-    // Over the wider of both spectra, the narrower ends the integral.
+    // Lengths are relative to the wider of the two spectra; the narrower one ends the integral.
     let (of_pupil, of_part) = if r < 1.0 { (r, 1.0) } else { (1.0, r.recip()) };
     let integrand = |t: f64| disc_overlap(of_pupil * t).powi(2) * disc_overlap(of_part * t) * t;
     // ∫ chat(t) t dt = 1/8.

@@ -3,9 +3,10 @@ use crate::SpectralLine;
 /// Light that met several rough surfaces on one path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DelayedLight {
-    /// Its radiance, or any other measure of energy: finite and not negative.
+    /// Radiance of the light, or any other measure of energy: finite and not negative.
     pub weight: f64,
-    /// Its group path less that of the light which met only the surface seen, in metres.
+    /// Group path of the light minus the group path of the light that met only the surface seen, in
+    /// metres.
     pub delay: f64,
 }
 
@@ -17,18 +18,20 @@ pub struct DelayedLight {
 /// c₁₂ = ∫ p₂(l) |γ(l)|² dl                     with the singly scattered light
 /// ```
 ///
-/// with the density p₂ of the delays by their light. A pair of draws stands for the double
-/// integral, so that no histogram is needed and p₂ may have any shape: long tails, several peaks.
+/// with the density p₂ of the delays, weighted by their light. Pairs of draws estimate the double
+/// integral, so that no histogram is needed and p₂ may have any shape, with long tails or several
+/// peaks.
 ///
 /// # Validity
 ///
 /// Both samples of a pair must be *independent*: neighbours of a low-discrepancy sequence are not.
-/// The paths of the resolution cell itself, its tilt and its relief, are left out; they multiply.
+/// The spread of paths within the resolution cell, by its tilt and its relief, is not included; it
+/// is a separate factor.
 ///
 /// # Examples
 ///
-/// Half of the light 2 mm longer on its way than the other half, in a line whose coherence ends
-/// between them:
+/// Half of the light has a path 2 mm longer than the other half, beyond the coherence length of the
+/// line:
 ///
 /// ```
 /// use tem00_coherence::{DelayedLight, LineShape, PathPairs, SpectralLine};
@@ -50,7 +53,7 @@ pub struct PathPairs {
 }
 
 impl PathPairs {
-    /// Adds a camera sample's paths and those of another, independent sample of the same place.
+    /// Adds the paths of a camera sample and of another, independent sample of the same position.
     pub fn add(&mut self, line: &SpectralLine, sample: &[DelayedLight], other: &[DelayedLight]) {
         for path in sample {
             let with_single = path.weight * line.squared_coherence(path.delay);
@@ -63,19 +66,20 @@ impl PathPairs {
         }
     }
 
-    /// Adds the sums of other pairs, times a factor: a mean over neighbouring places of an image.
+    /// Adds the sums of other pairs, times a factor, to average over neighbouring positions of an
+    /// image.
     pub fn add_scaled(&mut self, other: &Self, factor: f64) {
         add_to(&mut self.of_pairs, other.of_pairs, factor);
         add_to(&mut self.with_single, other.with_single, factor);
     }
 
-    /// Returns c₂₂ = Σ E E' |γ(Δ − Δ')|² / Σ E E' over the pairs; nothing without light.
+    /// Returns c₂₂ = Σ E E' |γ(Δ − Δ')|² / Σ E E' over the pairs; `None` without light.
     pub fn self_coherence(&self) -> Option<f64> {
         ratio(self.of_pairs)
     }
 
     /// Returns c₁₂ = Σ E |γ(Δ)|² / Σ E over the paths of the first samples, so that each counts
-    /// once; nothing without light.
+    /// once; `None` without light.
     pub fn coherence_with_single(&self) -> Option<f64> {
         ratio(self.with_single)
     }
@@ -84,8 +88,8 @@ impl PathPairs {
 /// Returns the ratio t of the fractions `(1 − t) tⁿ` of independent patterns whose squares sum to a
 /// squared contrast between 0 and 1.
 ///
-/// They are the modes of a Gaussian line over normally distributed paths, and nearly those of other
-/// densities.
+/// They are the modes of a Gaussian line over normally distributed paths, and approximate the modes
+/// of other densities.
 pub const fn mode_ratio(squared_contrast: f64) -> f64 {
     (1.0 - squared_contrast) / (1.0 + squared_contrast)
 }

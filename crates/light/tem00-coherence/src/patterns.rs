@@ -1,4 +1,4 @@
-//! Patterns of one wavelength that together make the speckle of other light.
+//! Sums of single-wavelength patterns that reproduce the speckle of other light.
 
 use num_complex::Complex;
 
@@ -11,46 +11,47 @@ use crate::{
     mode_ratio,
 };
 
-/// Speckle patterns of one wavelength that together make the speckle of other light, for renderers.
+/// Speckle patterns of one wavelength whose sum reproduces the speckle of other light, for
+/// renderers.
 ///
 /// ```text
 /// I = Σⱼ fⱼ ⟨ |Σₕ rₕ exp(iκ q zₕ) Uⱼₕ|² ⟩      mean over wave numbers κ drawn from the line
 /// ```
 ///
-/// Each wave number sees the patterns displaced across the pupil by `κ/κ_t` diameters along the
+/// For each wave number the patterns are displaced across the pupil by `κ/κ_t` diameters along the
 /// tilt of the cell.
 ///
 /// # Validity
 ///
-/// Contrasts are right, to 0.006 of representative heights. Where heights dominate, patterns are
-/// the coherent modes, and look alike in all wave numbers. Directions of an extended source add
-/// patterns that leave the grains and the correlation of frames as those of a point; truly,
-/// [`autocovariance`](PolychromaticSpeckle::autocovariance) and
-/// [`covariance`](PolychromaticSpeckle::covariance) reach a little farther.
+/// Contrasts are correct, with representative heights to 0.006. Where heights dominate, the
+/// patterns are the coherent modes and are the same for all wave numbers. The directions of an
+/// extended source add patterns that leave speckle shape and correlation of frames as for a point
+/// source; the true [`autocovariance`](PolychromaticSpeckle::autocovariance) and
+/// [`covariance`](PolychromaticSpeckle::covariance) extend a little farther.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PatternSum {
     /// Fractions f of the light in independent patterns whose intensities add, the largest first;
     /// their sum is 1, and there are at most 1024.
     pub fractions: Vec<f64>,
-    /// Heights z of the relief in metres whose fields add, each with the root r of its fraction of
-    /// the light; none where the patterns are looked up as in one wavelength.
+    /// Heights z of the relief in metres whose fields add, each with the square root r of its
+    /// fraction of the light; empty if the patterns are looked up as for one wavelength.
     pub heights: Vec<[f64; 2]>,
 }
 
-/// The largest fraction of the light in the last modes that are left out.
+/// The largest fraction of the light in the last modes, which are dropped.
 const NEGLIGIBLE_FRACTION: f64 = 1e-4;
 
-/// The largest number of wave numbers that stand for a line in its modes.
+/// The largest number of wave numbers that represent a line in its modes.
 const MAX_NODES: usize = 400;
 
 /// The largest number of patterns that add up.
 const MAX_PATTERNS: u32 = 1024;
 
 impl PolychromaticSpeckle<'_> {
-    /// Returns the patterns that together have a variance: the squared [`contrast`](Self::contrast)
-    /// or [`line_noise_ratio`](Self::line_noise_ratio).
+    /// Returns the patterns whose sum has a given variance: the squared
+    /// [`contrast`](Self::contrast) or [`line_noise_ratio`](Self::line_noise_ratio).
     ///
-    /// The variance of light in 1024 equal patterns is the least: a contrast of 1/32.
+    /// The smallest variance is that of 1024 equal patterns, a contrast of 1/32.
     pub fn patterns(&self, variance: impl Fn(&PolychromaticSpeckle<'_>) -> f64) -> PatternSum {
         let of = |cell: &ResolutionCell| {
             let line = self.line;
@@ -83,12 +84,13 @@ impl PolychromaticSpeckle<'_> {
     /// sum to the squared contrast.
     ///
     /// They are the eigenvalues of `√S(k) P̂(k − k') √S(k')`: the intensity is the sum of as many
-    /// independent speckle patterns. The last modes, of together 10⁻⁴ of the light, are left out.
-    /// The correlation length of the relief is left out.
+    /// independent speckle patterns. The last modes, which together hold 10⁻⁴ of the light, are
+    /// dropped. The correlation length of the relief is neglected.
     ///
-    /// Where the paths are spread so widely that more than some hundred modes would count, the
-    /// fractions fall by one ratio, which is exact for a Gaussian line and heights alone, and keep
-    /// the contrast down to that of 1024 modes, 1/32. So do those of a source that is not a point.
+    /// Where the paths are spread so widely that more than some hundred modes would matter, the
+    /// fractions form a geometric series, which is exact for a Gaussian line and heights alone, and
+    /// keep the contrast down to 1/32, the contrast of 1024 modes. The fractions of an extended
+    /// source also form a geometric series.
     pub fn modes(&self) -> Vec<f64> {
         let is_point = self.cell.source_extent().is_point();
         let nodes = is_point.then(|| self.line.nodes(self.cell.scale(), MAX_NODES));
@@ -118,7 +120,8 @@ impl PolychromaticSpeckle<'_> {
 }
 
 impl<'a> PolychromaticSpeckle<'a> {
-    /// Returns the correlation of the fields of two wave numbers, from a table out of focus.
+    /// Returns the correlation of the fields of two wave numbers; out of focus it comes from a
+    /// table.
     fn field_correlation(&self) -> impl Fn(f64) -> Complex<f64> + use<'a> {
         let cell = self.cell;
         let unit = cell.scale().min(1e200);
@@ -178,7 +181,7 @@ fn geometric_fractions(variance: f64) -> Vec<f64> {
     if fractions.len() < MAX_PATTERNS as usize {
         return fractions;
     }
-    // Beyond the last pattern there is light: a ratio nearer to 1 makes up for it.
+    // Light beyond the last pattern is lost: a ratio nearer to 1 makes up for it.
     for _ in 0..50 {
         let middle = 0.5 * (low + high);
         let squares: f64 = of_ratio(middle).iter().map(|part| part * part).sum();

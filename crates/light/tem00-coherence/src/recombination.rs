@@ -1,13 +1,13 @@
 use crate::mode_ratio;
 
-/// Fractions of light in independent patterns of mean 1, whose sum is a mix of single and multiple
-/// light.
+/// Fractions of light in independent patterns of mean 1 whose sum is a mixture of single and
+/// multiple light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Recombination {
     /// The fractions: the first two are the fields of the single light and of the first mode of the
     /// multiple light, which overlap; then the further modes of the multiple light.
     pub patterns: [f64; Self::PATTERNS],
-    /// Fraction of multiple light in so many patterns that their sum is even.
+    /// Fraction of multiple light in patterns so numerous that their sum is uniform.
     pub even: f64,
 }
 
@@ -17,8 +17,8 @@ impl Recombination {
 
     /// Finds the patterns of polarised light.
     ///
-    /// The multiple light is a sum of modes of the fractions bₙ of it, with `Σ bₙ² = c₂₂`; the
-    /// first shares the coherence c₁₂ with the single light. Their two fields are those of the
+    /// The multiple light is a sum of modes with the fractions bₙ, where `Σ bₙ² = c₂₂`; the first
+    /// mode shares the coherence c₁₂ with the single light. The first two patterns are the
     /// eigenvalues of
     ///
     /// ```text
@@ -27,23 +27,24 @@ impl Recombination {
     /// ```
     ///
     /// so that the sum of the patterns has the mean `L₁ + L₂` and the variance
-    /// `L₁² + 2 c₁₂ L₁ L₂ + c₂₂ L₂²`. The modes fall by one ratio, unless c₁₂ asks for more in the
-    /// first; those from the fifth on are even, and the three before carry their variance.
+    /// `L₁² + 2 c₁₂ L₁ L₂ + c₂₂ L₂²`. The fractions of the modes form a geometric series, unless
+    /// c₁₂ needs a larger first mode; the modes from the fifth on are uniform, and the three before
+    /// them carry their variance.
     ///
     /// `radiances` are L₁ of the single and L₂ of the multiple light; `with_single` is c₁₂ and
-    /// `within_multiple` c₂₂, both from 0 to 1. By Schwarz's inequality `c₁₂² ≤ c₂₂`: of estimates
-    /// that are not so c₁₂ counts as `√c₂₂`.
+    /// `within_multiple` c₂₂, both from 0 to 1. By Schwarz's inequality `c₁₂² ≤ c₂₂`: if estimates
+    /// violate it, c₁₂ counts as `√c₂₂`.
     pub fn new(radiances: [f64; 2], with_single: f64, within_multiple: f64) -> Self {
         let with_single = with_single.min(within_multiple.sqrt());
         let first = (1.0 - mode_ratio(within_multiple)).max(with_single);
         Self::with_first(first, radiances, with_single, within_multiple)
     }
 
-    /// Finds two patterns of the same mean and variance: the first mode of the multiple light, √c₂₂
-    /// of it, carries all of its variance, and the rest is even.
+    /// Finds two patterns with the same mean and variance: the first mode, a fraction √c₂₂ of the
+    /// multiple light, carries all of its variance, and the rest is uniform.
     ///
-    /// The law of the intensities is that of [`new`](Self::new) only where c₂₂ is 0 or 1; for light
-    /// that is too faint to tell.
+    /// The distribution of the intensities equals the one of [`new`](Self::new) only where c₂₂ is 0
+    /// or 1; use it for light too faint for the difference to be visible.
     pub fn of_two(radiances: [f64; 2], with_single: f64, within_multiple: f64) -> Self {
         let first = within_multiple.sqrt();
         Self::with_first(first, radiances, with_single.min(first), within_multiple)
@@ -66,10 +67,10 @@ impl Recombination {
         let mut even = rest;
         if rest > 0.0 {
             let squared = (within_multiple - first * first) / (1.0 - first).powi(2);
-            let squared = squared.clamp(0.0, 1.0); // Of rounding.
+            let squared = squared.clamp(0.0, 1.0); // Rounding may leave the range.
             let ratio = mode_ratio(squared);
-            // Squares of three modes are those of all modes: Σ (1 − t)² t²ⁿ to the third lacks t⁶
-            // of it.
+            // The squares of three modes must sum to the squares of all modes: the partial sum of
+            // (1 − t)² t²ⁿ over three terms lacks the fraction t⁶.
             let mut mode = rest * (squared / (1.0 + ratio * ratio + ratio.powi(4))).sqrt();
             for fraction in &mut patterns[2..] {
                 *fraction = mode;

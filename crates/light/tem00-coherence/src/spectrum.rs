@@ -1,18 +1,18 @@
 use crate::{LineShape, Refusal, SourceExtent, SpectralLine};
 
-/// The light of a laser as a data sheet or a file states it: numbers as they were given. Lengths in
-/// metres.
+/// The light of a laser as a data sheet or a file states it, with the numbers as they were given.
+/// Lengths are in metres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LaserLight {
-    /// The wavelength in vacuum of the middle of the line.
+    /// The vacuum wavelength of the middle of the line.
     pub wavelength: f64,
     /// The linewidth, full width at half maximum; 0 for light of one wavelength.
     pub linewidth: f64,
     /// Distribution within the linewidth.
     pub spectrum: Spectrum,
     /// The half-angle in radians of the disc from which the light reaches the surface, seen from
-    /// there; 0 for a point. Light of its parts does not interfere: a fibre of many modes, a
-    /// diffuser that moves during an exposure, a lamp.
+    /// the surface; 0 for a point. Light from its parts does not interfere, as with a multimode
+    /// fibre, a diffuser that moves during an exposure, or a lamp.
     pub source_half_angle: f64,
 }
 
@@ -21,11 +21,11 @@ pub struct LaserLight {
 pub enum Spectrum {
     /// Single peak, as wide as the linewidth.
     Peak(LineShape),
-    /// Comb of equal lines without width, the first and the last a linewidth apart: the
+    /// Comb of equal lines without width, with one linewidth between the first and the last: the
     /// longitudinal modes of a cavity.
     Comb(u32),
-    /// Pairs of a wavelength, in metres, and a power, in any unit. Each of them is a Gaussian peak
-    /// of the linewidth.
+    /// Pairs of a wavelength, in metres, and a power, in any unit. Each pair is a Gaussian peak as
+    /// wide as the linewidth.
     Peaks(Vec<[f64; 2]>),
 }
 
@@ -46,12 +46,12 @@ impl LaserLight {
         }
     }
 
-    /// Creates the light of peaks, see [`Spectrum::Peaks`], about the wavelength of their mean wave
+    /// Creates light from peaks, see [`Spectrum::Peaks`], about the wavelength of their mean wave
     /// number.
     ///
     /// # Errors
     ///
-    /// Those of [`SpectralLine::from_peaks`].
+    /// Returns the errors of [`SpectralLine::from_peaks`].
     pub fn of_peaks(peaks: Vec<[f64; 2]>, linewidth: f64) -> Result<Self, Refusal> {
         Ok(Self {
             wavelength: SpectralLine::from_peaks(&peaks)?.wavelength(),
@@ -65,7 +65,7 @@ impl LaserLight {
     ///
     /// # Errors
     ///
-    /// That of [`SourceExtent::disc`].
+    /// Returns the error of [`SourceExtent::disc`].
     pub fn extent(&self) -> Result<SourceExtent, Refusal> {
         SourceExtent::disc(self.source_half_angle)
     }
@@ -74,8 +74,8 @@ impl LaserLight {
     ///
     /// # Errors
     ///
-    /// Those of the constructors of [`SpectralLine`], and an error for a wavelength that is not
-    /// that of its [`Peaks`](Spectrum::Peaks).
+    /// Returns the errors of the constructors of [`SpectralLine`], and an error if the wavelength
+    /// differs from the wavelength of the [`Peaks`](Spectrum::Peaks).
     pub fn line(&self) -> Result<SpectralLine, Refusal> {
         let &Self {
             wavelength,
@@ -93,7 +93,7 @@ impl LaserLight {
                 }),
             Spectrum::Peaks(peaks) => {
                 let line = SpectralLine::from_peaks(peaks)?;
-                // The mean of the same numbers: the same bits.
+                // The mean of the same numbers has the same bits.
                 if line.wavelength().to_bits() == wavelength.to_bits() {
                     line.with_linewidth(linewidth, LineShape::Gaussian)
                 } else {

@@ -11,7 +11,7 @@ pub struct Axis {
     pub w0_sq: f64,
     /// Squared divergence half-angle, in rad².
     pub theta_sq: f64,
-    /// Position of the waist, in metres, on the coordinate the light says.
+    /// Position of the waist, in metres, on the coordinate that the light's documentation names.
     pub z0: f64,
     /// Unused, 0. Completes a row of four.
     pub pad: f64,

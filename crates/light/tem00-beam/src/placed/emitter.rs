@@ -25,20 +25,20 @@ use super::slope::{aperture_point, direction, secant, slope_of, towards_light};
 /// the fraction exp(−2 · cutoff²) of the power of a spot, 1e−14 by default. The power is not raised
 /// to make up for it. Rays are not cut off.
 ///
-/// Uniform variates are expected in [0, 1). One that is 0 acts as half the spacing of such
+/// Uniform variates are expected in [0, 1). A variate of 0 acts as half the spacing of such
 /// variates.
 ///
 /// # Validity
 ///
-/// The irradiance carries the rounding of the coordinates, which is large where they come from
-/// `f32`. Within two beam radii of the axis its relative error is then usually below
-/// `4 ε (1 + |p| / w)` and below five times that wherever the light stands, with ε = 1.2e−7, the
-/// larger one `|p|` of the distances of the point and of the light from the world's origin, and the
-/// smaller beam radius `w`. In a line the half-length of the fan and the width of its roll-off
-/// count as radii too; at an abrupt end nothing can be said.
+/// The irradiance carries the rounding of the coordinates, which is large if they are stored as
+/// `f32`. Within two beam radii of the axis its relative error is then usually below `4 ε (1 + |p|
+/// / w)` and below five times this bound at any position of the light. Here ε = 1.2e−7, `|p|` is
+/// the larger of the distances of the point and of the light from the world's origin, and `w` is
+/// the smaller beam radius. In a line the half-length of the fan and the width of its roll-off
+/// count as radii too; at an abrupt end there is no bound.
 ///
 /// The batch forms give the bits of single calls, with and without the feature `simd`, which
-/// compiles their loops for the widest vector instructions that the processor turns out to have.
+/// compiles their loops for the widest vector instructions that the processor supports.
 ///
 /// The trait is sealed. [`SpotLight`](crate::SpotLight), [`LineLight`](crate::LineLight) and
 /// [`TabulatedLineLight`](crate::TabulatedLineLight) implement it.
@@ -114,7 +114,7 @@ pub trait Emitter: PhaseSpace {
         self.frame().ez
     }
 
-    /// Returns the irradiance, in W/m², of a plane through `p` at right angles to the axis.
+    /// Returns the irradiance, in W/m², of a plane through `p` perpendicular to the axis.
     #[inline]
     fn irradiance(&self, p: [f64; 3]) -> f64 {
         irradiance_at(self, p)
@@ -135,7 +135,7 @@ pub trait Emitter: PhaseSpace {
         }
     }
 
-    /// Returns the light at `p` as one direction: that of the mean energy flow.
+    /// Returns the light at `p` as one direction, the direction of the mean energy flow.
     ///
     /// A surface of normal `n` receives the irradiance `e_perp · |n·wi|`, and reflects
     /// `f · |n·wi| · V · e_perp`. Returns `None` outside the cut-off and behind the aperture, where
@@ -147,9 +147,10 @@ pub trait Emitter: PhaseSpace {
 
     /// Returns the light at `p` as one direction, drawn from the phase-space density at `p`.
     ///
-    /// The estimate of the reflected radiance is `f · |n·wi| · V · value`: `value` has been divided
-    /// by the density already. The mean over `u` is that of [`next_event`](Self::next_event).
-    /// Returns `None` outside the cut-off and behind the aperture.
+    /// The estimate of the reflected radiance is `f · |n·wi| · V · value`: `value` is already
+    /// divided by the density. Its mean over `u` equals the estimate of
+    /// [`next_event`](Self::next_event). Returns `None` outside the cut-off and behind the
+    /// aperture.
     #[inline]
     fn next_event_sampled(&self, p: [f64; 3], u: [f64; 2]) -> Option<SampledEvent> {
         let frame = self.frame();
@@ -169,8 +170,9 @@ pub trait Emitter: PhaseSpace {
     /// [`next_event_sampled`](Self::next_event_sampled) draws the unit vector `wi` towards the
     /// light at `p`; 0 outside the cut-off, behind the aperture and for a `wi` along the axis.
     ///
-    /// Multiple importance sampling needs it for a direction that another technique has drawn. The
-    /// product with the `value` of the event in that direction is the radiance along it.
+    /// Multiple importance sampling needs this density for a direction that another technique has
+    /// drawn. Its product with the `value` of the event in this direction is the radiance along the
+    /// direction.
     #[inline]
     fn next_event_pdf(&self, p: [f64; 3], wi: [f64; 3]) -> f64 {
         let frame = self.frame();
@@ -182,16 +184,16 @@ pub trait Emitter: PhaseSpace {
         }
     }
 
-    /// Returns the light that a ray from `p` along the unit vector `wi` meets: the other technique
-    /// beside [`next_event_sampled`](Self::next_event_sampled).
+    /// Returns the light that a ray from `p` along the unit vector `wi` meets: the second
+    /// technique, which complements [`next_event_sampled`](Self::next_event_sampled).
     ///
-    /// A material has drawn `wi` with the density `q`, per steradian. What it reflects of the light
-    /// is estimated by `f · |n·wi| · V · radiance / q`, which multiple importance sampling weighs
-    /// by `q / (q + pdf)`; the sampled event then has the weight `pdf / (pdf + q)`. The aperture is
-    /// in nobody's way: only a hit nearer than `distance` hides it.
+    /// A material has drawn `wi` with the density `q`, per steradian. The light it reflects is
+    /// estimated by `f · |n·wi| · V · radiance / q`, which multiple importance sampling weighs by
+    /// `q / (q + pdf)`; the sampled event then has the weight `pdf / (pdf + q)`. The aperture
+    /// occludes nothing: only a hit nearer than `distance` hides it.
     ///
     /// Returns `None` where [`next_event_sampled`](Self::next_event_sampled) does, for a ray that
-    /// runs with the light or along its aperture, and for one that meets no light.
+    /// runs with the light or along its aperture, and for a ray that meets no light.
     fn hit(&self, p: [f64; 3], wi: [f64; 3]) -> Option<ApertureHit> {
         let frame = self.frame();
         let local = frame.local_from_world_point(p);
@@ -209,7 +211,7 @@ pub trait Emitter: PhaseSpace {
 
     /// Draws a ray that leaves the aperture.
     ///
-    /// Every ray stands for the same power, so straight rays reproduce the irradiance at every
+    /// Every ray carries the same power, so straight rays reproduce the irradiance at every
     /// distance:
     ///
     /// ```text
@@ -231,9 +233,9 @@ pub trait Emitter: PhaseSpace {
     /// Returns the densities with which [`sample_ray`](Self::sample_ray) draws the ray through `o`
     /// along the unit vector `d`; 0 for a ray against the axis.
     ///
-    /// Any point `o` of the ray will do: the densities of position are those of the ray's point on
-    /// the aperture plane. Coordinates that were rounded to `f32` must still resolve the source,
-    /// which for a line is about a micrometre wide.
+    /// Any point `o` of the ray gives the same result: the densities of position refer to the ray's
+    /// point on the aperture plane. Coordinates that were rounded to `f32` must still resolve the
+    /// source, which for a line is about a micrometre wide.
     fn ray_pdf(&self, o: [f64; 3], d: [f64; 3]) -> RayPdf {
         let frame = self.frame();
         match slope_of(frame.local_from_world_vector(d)) {
@@ -248,8 +250,9 @@ pub trait Emitter: PhaseSpace {
     /// Returns the radiance, in W/(m² sr), of the ray through `o` along the unit vector `d`, the
     /// direction of travel; 0 for a ray against the axis.
     ///
-    /// Radiance is constant along a ray in free space, so any point `o` of it will do. Its integral
-    /// over direction, weighted with the cosine to the axis, is the irradiance at `o`.
+    /// Radiance is constant along a ray in free space, so any point `o` of the ray gives the same
+    /// result. The integral of the radiance over direction, weighted with the cosine to the axis,
+    /// is the irradiance at `o`.
     fn radiance(&self, o: [f64; 3], d: [f64; 3]) -> f64 {
         let frame = self.frame();
         match slope_of(frame.local_from_world_vector(d)) {
@@ -261,7 +264,7 @@ pub trait Emitter: PhaseSpace {
         }
     }
 
-    /// Returns bounds of the light from the aperture to the distance `l`, in metres, along its
+    /// Returns bounds of the light between the aperture and the distance `l`, in metres, along its
     /// axis.
     ///
     /// The box holds all points within the cut-off. The cone holds the mean energy flow at all of
@@ -290,16 +293,16 @@ pub trait Emitter: PhaseSpace {
     /// or empty.
     ///
     /// A light hierarchy that holds surfaces in boxes visits no light whose bound is 0, and chooses
-    /// among the others by their bounds. All light within the cut-off counts that passes through
-    /// the box, were nothing in its way.
+    /// among the others by their bounds. The bound counts all unoccluded light within the cut-off
+    /// that passes through the box.
     ///
     /// # Validity
     ///
-    /// Never less than the power. Of a box within the beam, as long as it is wide, the bound is
-    /// less than four times the power, plus what a box as wide that is turned into the axes of the
-    /// light receives more. Of rods along the axis, up to a thousand times as long as wide, half
-    /// have a bound within 10 % of the power; it is up to some twenty times the power beside a
-    /// focus that the rod passes.
+    /// The bound is never less than the power. For a box within the beam, as long as it is wide,
+    /// the bound is less than four times the power, plus the additional power that an equally wide
+    /// box turned into the axes of the light receives. Half of the rods along the axis, up to a
+    /// thousand times as long as wide, have a bound within 10 % of the power; next to a focus that
+    /// the rod passes it is up to some twenty times the power.
     fn power_bound(&self, min: [f64; 3], max: [f64; 3]) -> f64 {
         match LocalBox::around(&self.frame(), min, max) {
             Some(target) => {
@@ -335,7 +338,7 @@ pub trait Emitter: PhaseSpace {
     }
 
     /// Writes the [`next_event_sampled`](Self::next_event_sampled) at the points `p[i]` with the
-    /// uniforms `u[i]` to `out[i]`. Where no light arrives, all of it is 0.
+    /// uniforms `u[i]` to `out[i]`. Where no light arrives, all fields are 0.
     ///
     /// # Panics
     ///
@@ -374,7 +377,7 @@ fn radiance_of(light: &(impl Emitter + ?Sized), position: [f64; 2], slope: [f64;
     light.power() * pdf.position_given_direction * pdf.direction * secant(slope)
 }
 
-/// Panics unless all slices of a batch are of equal length.
+/// Panics unless all slices of a batch have equal length.
 fn check_lengths<const N: usize>(points: [&[f64]; 3], out: [usize; N]) {
     let [x, y, z] = points.map(<[f64]>::len);
     assert!(

@@ -1,4 +1,4 @@
-//! The laws of a laser line, whatever its profile along the fan.
+//! The laws of a laser line with any profile along the fan.
 #![expect(unnameable_types, reason = "it belongs to a sealed trait")]
 
 use core::f64::consts::FRAC_PI_2;
@@ -22,8 +22,8 @@ pub trait Fan {
     fn line(&self) -> &LineLight;
     fn profile(&self) -> Self::Profile;
 
-    /// Answers a query at many points. A profile without tables and special functions overrides it
-    /// with a loop that fills the vector units.
+    /// Answers a query at many points. A profile without tables and special functions overrides
+    /// this method with a loop that fills the vector units.
     fn run_batch(&self, batch: Batch<'_>)
     where
         Self: Sized,
@@ -32,14 +32,14 @@ pub trait Fan {
     }
 }
 
-/// Returns the density of the position on the aperture plane, per m², whatever the direction.
+/// Returns the marginal density of the position on the aperture plane, per m², over all directions.
 ///
 /// ```text
 /// ∫ δ(x − z_a tan θ − b sec θ) f(θ) G(b) dθ db = (f * G(σ_b/r)) cos² θ / z_a     at tan θ = x / z_a
 /// ```
 ///
-/// to second order in `σ_b/r`, the angle that the rays of a point differ by, and to first order
-/// within that angle of an abrupt end.
+/// to second order in `σ_b/r`, the angular spread of the rays through a point, and to first order
+/// within this angle of an abrupt end.
 fn position_density(fan: &impl Fan, [x, y]: [f64; 2]) -> f64 {
     let line = fan.line();
     let u = x / line.apex_offset;
@@ -134,7 +134,7 @@ impl<F: Fan> PhaseSpace for F {
         let (mean, sigma_s) = line.axis_towards(sec_fan).conditional_slope(y, along);
         let density =
             normal_density(b, 0.5 * line.source_radius) * normal_density(s - mean, sigma_s);
-        // A point next to infinity is `along` without bound, where 0 meets infinity.
+        // Far away `along` overflows, and 0 · ∞ would be NaN.
         if density > 0.0 {
             density * along * sec_elevation * sec_elevation * sec_elevation
         } else {
@@ -172,7 +172,7 @@ impl<F: Fan> PhaseSpace for F {
         let f = self.profile().per_angle(slope[0]);
         let elevation = normal_density(s, sigma_s) * sec_elevation * sec_elevation * sec_elevation;
         let given_direction = source * normal_density(y_waist, sigma_y) / sec_fan;
-        // A ray that overflows, so that 0 meets infinity, passes far from the light.
+        // A ray whose terms overflow, so that 0 · ∞ is NaN, passes far from the light.
         let given_direction = if given_direction > 0.0 {
             given_direction
         } else {
@@ -187,11 +187,12 @@ impl<F: Fan> PhaseSpace for F {
         }
     }
 
-    /// The part of the fan that meets the box, times the part of its light across that does.
+    /// The fraction of the fan that meets the box, times the fraction of the light across the fan
+    /// that does.
     fn fraction_bound(&self, target: &LocalBox) -> f64 {
         let line = self.line();
         let [near, far] = target.z.map(|z| z + line.apex_offset);
-        // Rays within the cut-off pass the apex at no more than this distance.
+        // Rays within the cut-off pass the apex at this distance or less.
         let source = line.cutoff * line.source_radius;
         let turn = (source / near).min(1.0).asin();
         let widest = self.profile().largest_slope(self.line().cutoff);
@@ -212,7 +213,7 @@ impl<F: Fan> PhaseSpace for F {
         along.min(1.0) * chance(&line.y, dz, target.y, line.cutoff)
     }
 
-    /// In double precision, because the squares of a slope next to infinity overflow.
+    /// Computed in double precision, because the square of a very large slope overflows.
     fn reach(&self, l: f64) -> Reach {
         let slope = self.profile().largest_slope(self.line().cutoff);
         let line = self.line();
@@ -255,7 +256,7 @@ impl Fan for LineLight {
         self.slope_density()
     }
 
-    /// Writes the constants of a Gaussian into the loop, whose compiler then drops the branches to
+    /// Writes the constants of a Gaussian into the loop, so that the compiler drops the branches to
     /// the other profiles.
     fn run_batch(&self, batch: Batch<'_>) {
         const TAN: f64 = Variable::Tan.code();
@@ -279,7 +280,7 @@ impl Fan for LineLight {
 
 impl LineLight {
     /// Returns the range of the distances from the waist, along rays whose secants are in a range,
-    /// at distances from the plane of the apex that are in another, each ±`slack`.
+    /// at distances from the plane of the apex in another range, each ±`slack`.
     fn distances_from_waist(
         &self,
         [near, far]: [f64; 2],

@@ -13,8 +13,8 @@ pub struct Placement {
     pub origin: DVec3,
     /// Direction of travel, of any length.
     pub direction: DVec3,
-    /// Any vector that is not parallel to `direction`. Its part at right angles to `direction` is
-    /// the x axis of the light, along which a fan opens.
+    /// Any vector that is not parallel to `direction`. Its component perpendicular to `direction`
+    /// is the x axis of the light, along which a fan opens.
     pub fan_axis: DVec3,
 }
 
@@ -58,7 +58,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Returns the frame with x and y turned by `angle`, in radians, about z by the right hand.
+    /// Returns the frame with x and y turned by `angle`, in radians, right-handed about z.
     pub(super) fn turned(self, angle: f64) -> Self {
         let (sin, cos) = angle.sin_cos();
         let [ex, ey] = [self.ex, self.ey].map(DVec3::from);

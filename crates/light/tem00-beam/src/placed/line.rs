@@ -8,9 +8,10 @@ use crate::{FocusCurve, LaserLine, LineProfile, Refusal};
 
 /// A laser line in a scene, prepared for a renderer.
 ///
-/// A plain struct of 28 scalars, seven rows of four as a GPU buffer wants them. Its fields are
-/// public: [`place`](LineLight::place) checks its arguments, whoever writes the fields keeps them
-/// meaningful. All lengths share one unit, metres unless the caller uses another throughout.
+/// A plain struct of 28 scalars in seven rows of four, the layout of a GPU buffer. Its fields are
+/// public: [`place`](LineLight::place) checks its arguments, and a caller who writes the fields is
+/// responsible for their values. All lengths share one unit, metres unless the caller uses another
+/// throughout.
 ///
 /// With the local coordinates `(x, y, z) = (e · (p − origin))`, `Z = z + apex_offset`, the slope
 /// `u = x / Z` and the slant distance `r = √(x² + Z²)` from the virtual apex:
@@ -22,10 +23,10 @@ use crate::{FocusCurve, LaserLine, LineProfile, Refusal};
 ///
 /// The waist lies at `r = y.z0`, or at `r = y.z0 √(1 + u²)` if `focus_on_plane` is 1.
 ///
-/// The density along the fan is given in the variable `v` that `variable` says: uniform on [−flat,
-/// flat], convolved with a normal density of standard deviation `sigma` (the normal alone if `flat`
-/// is 0, a top hat if `sigma` is 0), and divided by `mass`, its fraction inside `|θ| < π/2`. Per
-/// slope it is `g = g_v(v) dv/du`.
+/// The density along the fan is given in the variable `v` that `variable` selects: uniform on
+/// [−flat, flat], convolved with a normal density of standard deviation `sigma` (the normal alone
+/// if `flat` is 0, a top hat if `sigma` is 0), and divided by `mass`, its fraction inside `|θ| <
+/// π/2`. Per slope it is `g = g_v(v) dv/du`.
 ///
 /// | `variable` | v | dv/du |
 /// |---|---|---|
@@ -121,8 +122,8 @@ impl LineLight {
     ///
     /// Returns an error if the placement's origin is not finite or beyond 1e30 m, if `power` does
     /// not lie between 0 and 1e100 W, if the placement's axes are not finite, have no length, or
-    /// are parallel, or if the profile of the line is tabulated: a
-    /// [`TabulatedLineLight`](crate::TabulatedLineLight) places that.
+    /// are parallel, or if the profile of the line is tabulated: such a line needs a
+    /// [`TabulatedLineLight`](crate::TabulatedLineLight).
     pub fn place(line: &LaserLine, placement: &Placement, power: f64) -> Result<Self, Refusal> {
         match line.profile() {
             LineProfile::Tabulated(_) => Err(Refusal::new(
@@ -134,7 +135,7 @@ impl LineLight {
         }
     }
 
-    /// Places a line whatever its profile.
+    /// Places a line with any profile.
     pub(super) fn prepare(
         line: &LaserLine,
         placement: &Placement,

@@ -1,4 +1,4 @@
-//! Laws that tell one light from another. The module is private, which seals the trait `Emitter`.
+//! Laws by which the lights differ. The module is private, which seals the trait `Emitter`.
 #![expect(unnameable_types, reason = "the trait is sealed")]
 
 use tem00_numerics::vectorised;
@@ -14,7 +14,7 @@ pub trait PhaseSpace {
 
     /// Returns the energy flow, with an irradiance of 0 outside the cut-off.
     ///
-    /// One path for all points, so that a loop over points fills the vector units.
+    /// All points take the same code path, so that a loop over points fills the vector units.
     fn flow(&self, local: [f64; 3]) -> Flow;
 
     /// Draws a slope from the conditional density at a point.
@@ -32,7 +32,7 @@ pub trait PhaseSpace {
     /// Returns how far the light reaches up to the distance `l`.
     fn reach(&self, l: f64) -> Reach;
 
-    /// Returns a bound of the part of the power, within the cut-off, that reaches a box.
+    /// Returns a bound of the fraction of the power, within the cut-off, that reaches a box.
     fn fraction_bound(&self, target: &LocalBox) -> f64;
 
     /// Answers a query at many points.
@@ -43,7 +43,8 @@ pub trait PhaseSpace {
         );
     }
 
-    /// Returns the energy flow, with an irradiance of 0 where the point is behind the aperture too.
+    /// Returns the energy flow, with an irradiance of 0 outside the cut-off and behind the
+    /// aperture.
     #[inline(always)]
     fn flow_in_front(&self, local: [f64; 3]) -> Flow {
         let flow = self.flow(local);
@@ -53,7 +54,7 @@ pub trait PhaseSpace {
         }
     }
 
-    /// Returns the energy flow, unless the point is not lit.
+    /// Returns the energy flow, or `None` if the point is not lit.
     fn lit_flow(&self, local: [f64; 3]) -> Option<Flow> {
         Some(self.flow_in_front(local)).filter(|flow| flow.irradiance > 0.0)
     }
@@ -90,7 +91,7 @@ pub(super) fn irradiance_at(light: &(impl PhaseSpace + ?Sized), p: [f64; 3]) -> 
     light.flow_in_front(local).irradiance
 }
 
-/// The next event at a point; with all but the point 0 where no light arrives.
+/// The next event at a point. Where no light arrives, all its fields other than the point are 0.
 ///
 /// Single calls and batches share it, and so agree to the last bit.
 #[inline(always)]
@@ -119,7 +120,8 @@ pub enum Batch<'a> {
 impl Batch<'_> {
     /// Answers the query for one light.
     ///
-    /// The loops are inlined into whatever [`vectorised`] compiles for the processor at hand.
+    /// The loops are inlined into the function that [`vectorised`] compiles for the processor in
+    /// use.
     #[inline(always)]
     pub(super) fn over(self, light: &(impl PhaseSpace + ?Sized)) {
         match self {

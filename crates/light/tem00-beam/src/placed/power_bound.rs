@@ -1,4 +1,4 @@
-//! Bounds of the part of the power that reaches a box, in double precision.
+//! Bounds of the fraction of the power that reaches a box, in double precision.
 
 use core::f64::consts::FRAC_2_PI;
 
@@ -19,14 +19,15 @@ pub struct LocalBox {
 }
 
 impl LocalBox {
-    /// Encloses the part of a box of the world that lies in front of the aperture, if there is any.
+    /// Encloses the part of a world box that lies in front of the aperture; `None` if there is
+    /// none.
     pub(super) fn around(frame: &Frame, min: [f64; 3], max: [f64; 3]) -> Option<Self> {
         let along = |axis: [f64; 3]| {
             let mut range = [0.0; 2];
             for i in 0..3 {
                 let (e, origin) = (axis[i], frame.origin[i]);
                 let [a, b] = [min[i], max[i]].map(|end| e * (end - origin));
-                // Differences of coordinates are good to the rounding of the larger.
+                // A difference of coordinates is accurate to the rounding error of the larger one.
                 let slack = 4.0 * f64::EPSILON * (a.abs() + b.abs() + (e * origin).abs());
                 range[0] += a.min(b) - slack;
                 range[1] += a.max(b) + slack;
@@ -42,12 +43,12 @@ impl LocalBox {
 }
 
 /// Returns a bound of the probability that a ray is in the range `x` somewhere at the distances
-/// `dz` from its waist, along one axis; 0 if that is beyond the cut-off, in beam radii.
+/// `dz` from its waist, along one axis; 0 if `x` is beyond the cut-off, in beam radii.
 ///
-/// In units of its deviation `w/2` a ray is at `u cos δ + v sin δ`, with independent standard
-/// normal u and v and the Gouy phase δ, taken from the middle of its range ±Δ. With `x` in these
-/// units, widened to the largest that it is over `dz`, it follows from
-/// `x₀ ≤ u cos δ + v sin δ ≤ x₁` that
+/// In units of its standard deviation `w/2` a ray is at `u cos δ + v sin δ`, with independent
+/// standard normal u and v and the Gouy phase δ, taken from the middle of its range ±Δ. With `x` in
+/// these units, widened to its largest extent over `dz`, the inequality `x₀ ≤ u cos δ + v sin δ ≤
+/// x₁` implies that
 ///
 /// ```text
 /// x₀' − |v| tan Δ ≤ u ≤ x₁' + |v| tan Δ     where x' = x / cos Δ if that widens the range, else x

@@ -6,17 +6,17 @@ use super::slope::only_if;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NextEvent {
-    /// Point of the aperture plane that the light seems to come from.
+    /// Point of the aperture plane from which the light appears to come.
     pub point: [f64; 3],
     /// Distance to `point`, in metres.
     pub distance: f64,
     /// Unit vector towards the light, against the mean energy flow.
     pub wi: [f64; 3],
-    /// Irradiance of a surface square to `wi`, in W/m².
+    /// Irradiance of a surface perpendicular to `wi`, in W/m².
     pub e_perp: f64,
 }
 
-/// Output slices for the next events at many points: one for each number.
+/// Output slices for the next events at many points: one slice for each number.
 ///
 /// The point of the aperture plane is left out: it is `p + distance · wi`.
 #[derive(Debug)]
@@ -25,7 +25,7 @@ pub struct NextEventSlices<'a> {
     pub wi: [&'a mut [f64]; 3],
     /// Distances to the aperture plane along `wi`, in metres.
     pub distance: &'a mut [f64],
-    /// Irradiances of a surface square to `wi`, in W/m²; 0 where no light arrives.
+    /// Irradiances of a surface perpendicular to `wi`, in W/m²; 0 where no light arrives.
     pub e_perp: &'a mut [f64],
 }
 
@@ -75,7 +75,8 @@ pub struct ApertureHit {
 pub struct RaySample {
     /// Point of the aperture plane.
     pub origin: [f64; 3],
-    /// Power the ray stands for, in watts: that of the light, to be divided by the number of rays.
+    /// Power of the light, in watts. Divided by the number of rays, it is the power that the ray
+    /// carries.
     pub flux: f64,
     /// Unit vector along the ray.
     pub direction: [f64; 3],
@@ -91,25 +92,24 @@ pub struct RaySample {
 /// position · direction_given_position = direction · position_given_direction
 /// ```
 ///
-/// Positions are those on the aperture plane. Bidirectional methods want the left side, whose
-/// factors are those of the first and of the second vertex of a path; the right side is what a ray
-/// is drawn from.
+/// Positions lie on the aperture plane. Bidirectional methods need the left side, whose factors
+/// belong to the first and the second vertex of a path; rays are drawn from the right side.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayPdf {
-    /// Density of the position, whatever the direction, per m² of the aperture plane.
+    /// Marginal density of the position over all directions, per m² of the aperture plane.
     pub position: f64,
     /// Density of the direction at this position, per steradian.
     pub direction_given_position: f64,
-    /// Density of the direction, wherever the ray starts, per steradian.
+    /// Marginal density of the direction over all starting points, per steradian.
     pub direction: f64,
     /// Density of the position among the rays of this direction, per m² of the aperture plane.
     pub position_given_direction: f64,
 }
 
 impl RayPdf {
-    /// Returns the factors that begin with the position, the second of them 0 where the first is:
-    /// far from the light, where the closed forms meet infinities.
+    /// Returns the factorisation that begins with the position. The second factor is 0 where the
+    /// first one is: far from the light, where the closed forms overflow.
     pub(super) fn from_position(position: f64, direction: impl FnOnce() -> f64) -> Self {
         let met = position > 0.0;
         Self {

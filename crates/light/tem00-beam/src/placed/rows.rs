@@ -15,7 +15,7 @@ pub(super) fn first_three([x, y, z, _]: [f64; 4]) -> [f64; 3] {
     [x, y, z]
 }
 
-/// Returns the power, if no light concentrates it so far that an irradiance overflows.
+/// Returns the power if no light can concentrate it so much that an irradiance overflows.
 pub(super) fn checked_power(power: f64) -> Result<f64, Refusal> {
     check::range("power", power, [0.0, 1e100], "W")
 }

@@ -1,4 +1,4 @@
-//! Rays as slopes against the axis of a light.
+//! Rays as slopes relative to the axis of a light.
 
 /// Returns `√(1 + s²)`, the secant of the angle of a slope: the length of the ray per distance
 /// along the axis.
@@ -14,8 +14,9 @@ pub(super) fn direction(slope: [f64; 2]) -> [f64; 3] {
     [slope[0] * cos, slope[1] * cos, cos]
 }
 
-/// Returns the slope of a direction, unless it runs against the axis, or at right angles to it: up
-/// to this cosine the cube of the secant, in the densities, is within the range of `f32`.
+/// Returns the slope of a direction, or `None` if it runs against the axis or perpendicular to it.
+/// Down to the limiting cosine, the cube of the secant in the densities is within the range of
+/// `f32`.
 pub(super) fn slope_of(direction: [f64; 3]) -> Option<[f64; 2]> {
     let [x, y, z] = direction;
     (z > (1e-12)).then(|| [x / z, y / z])
@@ -33,7 +34,7 @@ pub(super) fn towards_light([x, y, z]: [f64; 3]) -> [f64; 3] {
     [-x, -y, -z]
 }
 
-/// Returns a number if `condition` holds, and 0 if not.
+/// Returns the number if `condition` holds, and 0 otherwise.
 #[inline(always)]
 pub(super) fn only_if(condition: bool, x: f64) -> f64 {
     if condition { x } else { 0.0 }

@@ -16,9 +16,10 @@ use crate::{AstigmaticBeam, GaussianBeam, LocatedBeam, Refusal};
 
 /// A Gaussian beam in a scene, circular or elliptic, prepared for a renderer.
 ///
-/// A plain struct of 24 scalars, six rows of four as a GPU buffer wants them. Its fields are
-/// public: [`place`](SpotLight::place) checks its arguments, whoever writes the fields keeps them
-/// meaningful. All lengths share one unit, metres unless the caller uses another throughout.
+/// A plain struct of 24 scalars in six rows of four, the layout of a GPU buffer. Its fields are
+/// public: [`place`](SpotLight::place) checks its arguments, and a caller who writes the fields is
+/// responsible for their values. All lengths share one unit, metres unless the caller uses another
+/// throughout.
 ///
 /// With the local coordinates `(x, y, z) = (e · (p − origin))`:
 ///

@@ -5,13 +5,13 @@ use super::line::LineLight;
 use crate::profile::AngularTable;
 use crate::{AngularKnot, LaserLine, LineProfile, Refusal};
 
-/// A laser line in a scene whose power along the fan is a table.
+/// A laser line in a scene whose power along the fan is tabulated.
 ///
 /// A [`LineLight`] (its `variable` is 3, its `flat` and `sigma` are 0) and the table, borrowed from
-/// an [`AngularProfile`](crate::AngularProfile) or from wherever the renderer keeps the knots. The
-/// power per angle `f(θ)` is linear between neighbouring knots and 0 outside them; per slope it is
-/// `g(u) = f / (1 + u²)`. All else is as for the `LineLight`, but that the cut-off acts across the
-/// fan only.
+/// an [`AngularProfile`](crate::AngularProfile) or from other storage of the renderer. The power
+/// per angle `f(θ)` is linear between neighbouring knots and 0 outside them; per slope it is
+/// `g(u) = f / (1 + u²)`. Everything else is as for the `LineLight`, except that the cut-off acts
+/// across the fan only.
 ///
 /// Fewer than two knots give no light.
 ///
@@ -45,7 +45,7 @@ use crate::{AngularKnot, LaserLine, LineProfile, Refusal};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TabulatedLineLight<'a> {
-    /// The line but for its profile.
+    /// The line without its profile.
     pub line: LineLight,
     /// The profile, by ascending angle.
     pub knots: &'a [AngularKnot],
@@ -57,7 +57,8 @@ impl<'a> TabulatedLineLight<'a> {
     ///
     /// # Errors
     ///
-    /// As [`LineLight::place`], but an error if the profile of the line is not tabulated.
+    /// Returns the errors of [`LineLight::place`], except that the profile of the line must be
+    /// tabulated.
     pub fn place(line: &'a LaserLine, placement: &Placement, power: f64) -> Result<Self, Refusal> {
         match line.profile() {
             LineProfile::Tabulated(profile) => Ok(Self {

@@ -10,17 +10,17 @@ use crate::normal::{HALF_SPACING, interior, normal_between, normal_density};
 /// The smallest accepted distance between two angles, in radians: finer than any measurement.
 const MIN_SPACING: f64 = 1e-12;
 
-/// The part of the power between two knots that no drawn angle comes closer to either than.
+/// The smallest fraction of an interval's power between a drawn angle and either knot.
 const MIN_PART: f64 = 1e-12;
 
-/// The deviations beyond which a normal distribution has no part that `f64` would notice.
+/// The number of standard deviations beyond which a normal distribution is negligible in `f64`.
 const NORMAL_REACH: f64 = 9.0;
 
-/// The power of a laser line per fan angle, from a table: a data sheet, or a measurement.
+/// The power of a laser line per fan angle, from the table of a data sheet or of a measurement.
 ///
-/// Between the angles of the table the power per angle is linear, outside them there is none. Its
-/// integral is normalised to 1, so that the table may be in any unit; its integral and the inverse
-/// of that are in closed form.
+/// The power per angle is linear between the angles of the table and 0 outside them. Its integral
+/// is normalised to 1, so that the table may be in any unit; the cumulative power and its inverse
+/// have closed forms.
 ///
 /// A clone shares the table.
 ///
@@ -62,9 +62,9 @@ impl AngularProfile {
     ///
     /// # Errors
     ///
-    /// Returns an error if the two are not of equal length or shorter than 2, if an angle is not in
-    /// (−π/2, π/2) or less than 1e−12 rad above the one before, if a power is negative or not
-    /// finite, or if all of them are 0.
+    /// Returns an error if the two slices differ in length or are shorter than 2, if an angle is
+    /// not in (−π/2, π/2) or less than 1e−12 rad above the previous angle, if a power is negative
+    /// or not finite, or if all powers are 0.
     ///
     /// # Examples
     ///
@@ -109,7 +109,7 @@ impl AngularProfile {
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new).
+    /// Returns the errors of [`new`](Self::new).
     pub fn from_pairs(pairs: &[(f64, f64)]) -> Result<Self, Refusal> {
         let (angles, powers): (Vec<_>, Vec<_>) = pairs.iter().copied().unzip();
         Self::new(&angles, &powers)
@@ -176,7 +176,7 @@ impl<'a> AngularTable<'a> {
         }
     }
 
-    /// Returns the density per radian at an angle that a normal deviate has been added to.
+    /// Returns the density per radian after a normal deviate has been added to the angle.
     fn spread_at(self, angle: f64, sigma: f64) -> f64 {
         let reach = NORMAL_REACH * sigma;
         let near = self.0.partition_point(|knot| knot.angle < angle - reach);
@@ -228,7 +228,7 @@ impl Interval {
         (self.start.angle..=self.end.angle).contains(&angle)
     }
 
-    /// Returns the part of the interval that lies below an angle, from 0 to 1.
+    /// Returns the fraction of the interval that lies below an angle, from 0 to 1.
     fn part_below(&self, angle: f64) -> f64 {
         let part = (angle - self.start.angle) / (self.end.angle - self.start.angle);
         part.clamp(0.0, 1.0)
@@ -239,9 +239,8 @@ impl Interval {
         self.start.density + part * (self.end.density - self.start.density)
     }
 
-    /// Returns the density at an angle to which a normal deviate of the density φ has been added,
-    /// as far as the interval is its source. In units of `sigma` from the angle, the density is α +
-    /// m t:
+    /// Returns the contribution of the interval to the density after a normal deviate of density φ
+    /// has been added to the angle. In units of `sigma` from the angle, the density is α + m t:
     ///
     /// ```text
     /// ∫ (α + m t) φ(t) dt = α (Φ(b) − Φ(a)) − m (φ(b) − φ(a))     from a to b
@@ -253,7 +252,7 @@ impl Interval {
         alpha * normal_between(a, b) - m * (normal_density(b, 1.0) - normal_density(a, 1.0))
     }
 
-    /// The density is linear, so its mean up to an angle is that of its ends.
+    /// The density is linear, so its mean up to an angle is the mean of its end values.
     fn cumulative_at(&self, angle: f64) -> f64 {
         let part = self.part_below(angle);
         let mean = 0.5 * (self.start.density + self.density_at(angle));
@@ -263,16 +262,16 @@ impl Interval {
     /// Returns the angle below which the fraction `p` of all power lies.
     ///
     /// With the densities a and b at the ends, the fraction q of the power of the interval lies in
-    /// its part t, where `2 a t + (b − a) t² = q (a + b)`. The root in the form without
-    /// cancellation is `t = q (a + b) / (a + √((1 − q) a² + q b²))`.
+    /// its part t, where `2 a t + (b − a) t² = q (a + b)`. The root, in the form without
+    /// cancellation, is `t = q (a + b) / (a + √((1 − q) a² + q b²))`.
     fn angle_at(&self, p: f64) -> f64 {
         let power = self.end.cumulative - self.start.cumulative;
-        // Off the knots, where the density may be 0.
+        // Keep off the knots, where the density may be 0.
         let q = ((p - self.start.cumulative) / power).clamp(MIN_PART, 1.0 - MIN_PART);
         let scale = self.start.density.max(self.end.density);
         let [a, b] = [self.start.density, self.end.density].map(|density| density / scale);
         let t = q * (a + b) / (a + ((1.0 - q) * a * a + q * b * b).sqrt());
-        // Without power there is no fraction of it: 0 / 0.
+        // An interval without power gives 0 / 0, which is NaN.
         let t = if t <= 1.0 { t } else { 1.0 };
         self.start.angle + t * (self.end.angle - self.start.angle)
     }
@@ -291,7 +290,7 @@ impl SlopeProfile for AngularTable<'_> {
         self.spread_at(u.atan(), sigma)
     }
 
-    /// The table itself says where the light ends.
+    /// The table itself ends the light.
     fn reaches(&self, _: f64, _: f64) -> bool {
         true
     }

@@ -6,12 +6,12 @@ use core::f64::consts::{FRAC_PI_2, SQRT_2};
 use crate::normal::{interior, normal_density, standard_normal};
 use crate::placed::secant;
 
-/// The slope of the angle next to π/2 in double precision: no ray of a fan is steeper.
+/// The tangent of the angle next to π/2 in double precision: no ray of a fan is steeper.
 const STEEPEST: f64 = 1.633_123_935_319_537e16;
 
 /// The power along a fan, as a density normalised to 1.
 ///
-/// Its argument is the slope `u = tan θ`, at most [`STEEPEST`] in size.
+/// Its argument is the slope `u = tan θ`, at most [`STEEPEST`] in magnitude.
 pub trait SlopeProfile {
     /// Returns the density per unit slope, `g(u)`; 0 or not finite beyond the steepest slope.
     fn per_slope(&self, u: f64) -> f64;
@@ -47,7 +47,7 @@ pub(crate) enum Variable {
 }
 
 impl Variable {
-    /// Returns the number by which a placed light names the variable.
+    /// Returns the number that identifies the variable in a placed light.
     pub(crate) const fn code(self) -> f64 {
         match self {
             Self::Tan => 0.0,
@@ -94,18 +94,19 @@ impl Variable {
     }
 }
 
-/// A uniform density on [−flat, flat], convolved with a normal one of standard deviation sigma, in
-/// a variable of the fan angle.
+/// A uniform density on [−flat, flat], convolved with a normal density of standard deviation sigma,
+/// in a variable of the fan angle.
 ///
-/// All line profiles but the tabulated one are of this kind: `flat = 0` is a Gaussian, `sigma = 0`
-/// a top hat.
+/// All line profiles except the tabulated one are of this kind: `flat = 0` is a Gaussian, `sigma =
+/// 0` a top hat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlopeDensity {
     /// The number of the variable; see [`Variable`].
     pub(crate) variable: f64,
     pub(crate) flat: f64,
     pub(crate) sigma: f64,
-    /// The part of the density inside the range of the variable, by which it is divided.
+    /// The fraction of the density inside the range of the variable, by which the density is
+    /// divided.
     pub(crate) mass: f64,
 }
 
@@ -193,7 +194,7 @@ impl SlopeProfile for SlopeDensity {
         match (a < 0.0, b < 0.0) {
             (true, true) => density.tail(b) - density.tail(a),
             (true, false) => 1.0 - density.tail(a) - density.tail(-b),
-            // The upper tail keeps its digits where 1 minus it has none.
+            // The upper tail keeps its digits where 1 minus the tail loses them.
             (false, _) => density.tail(-a) - density.tail(-b),
         }
     }
@@ -237,7 +238,7 @@ impl SlopeDensity {
         (inner - outer) / (4.0 * self.flat)
     }
 
-    /// The part of the power at slopes below `u`, for u ≤ 0.
+    /// The fraction of the power at slopes below `u`, for u ≤ 0.
     fn tail(&self, u: f64) -> f64 {
         let v = self.variable().at(u);
         let below = if self.flat <= 0.0 {
@@ -280,7 +281,7 @@ impl SlopeDensity {
         if p < 0.5 { v } else { -v }
     }
 
-    /// The part of the uniform density with its roll-off that lies below `v`, for v ≤ 0.
+    /// The fraction of the uniform density with its roll-off that lies below `v`, for v ≤ 0.
     fn rolled_off_tail(&self, v: f64) -> f64 {
         // H(t) = ∫ Φ dt = t Φ(t) + φ(t)
         let integral = |t: f64| 0.5 * t * libm::erfc(-t / SQRT_2) + normal_density(t, 1.0);

@@ -6,9 +6,9 @@ use crate::RadialDistortion;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Distortion {
     k: RadialDistortion,
-    /// The radius, before distortion, from which on the image would fold back; may be infinite.
+    /// The radius, before distortion, beyond which the image would fold back; may be infinite.
     limit: f64,
-    /// The distorted radius there.
+    /// The distorted radius at `limit`.
     reach: f64,
 }
 
@@ -41,7 +41,8 @@ impl Distortion {
         (squared < self.limit * self.limit).then(|| tangent * factor(self.k, squared))
     }
 
-    /// Returns the tangent whose image is given; of an image beyond reach, the last that has one.
+    /// Returns the tangent that has the given image; for an image beyond reach, the outermost
+    /// tangent.
     pub(super) fn undistorted(&self, image: DVec2) -> DVec2 {
         let radius = image.length();
         if self.is_none() || radius == 0.0 {
@@ -63,7 +64,7 @@ impl Distortion {
         DMat2::from_diagonal(DVec2::splat(factor(self.k, s))) + 2.0 * slope * outer
     }
 
-    /// Newton's iteration, kept inside a bracket that halves wherever a step leaves it.
+    /// Newton's iteration, kept inside a bracket that is halved whenever a step leaves it.
     fn undistorted_radius(&self, image: f64) -> f64 {
         if image >= self.reach {
             return self.limit;
@@ -175,7 +176,8 @@ mod tests {
             let limit = distortion.limit;
             for step in 0..1000 {
                 let (r, next) = (f64::from(step) * 1e-3, f64::from(step + 1) * 1e-3);
-                // Near the turning point the last steps gain 1e−6 of it, more than rounding.
+                // Near the turning point the last steps change the radius by 1e−6, more than
+                // rounding.
                 assert!(
                     image(limit * r) < image(limit * next),
                     "{k1}, {k2}, {k3}: {r}"

@@ -4,7 +4,7 @@ use tem00_numerics::{circle_point_at_eighth, vectorised};
 use super::Camera;
 use crate::Ray;
 
-/// The number of rays that are formed together.
+/// The number of rays that are computed together.
 const LANES: usize = 64;
 
 /// A ray from a point of the lens into the scene.
@@ -12,7 +12,7 @@ const LANES: usize = 64;
 pub struct CameraRay {
     /// The ray; it starts on the lens.
     pub ray: Ray,
-    /// The factor on the radiance that comes along the ray; its mean over the lens is 1.
+    /// The factor on the radiance that arrives along the ray; its mean over the lens is 1.
     pub weight: f64,
     /// The solid angle that one pixel sees along the ray, from where it starts, in steradian.
     pub solid_angle: f64,
@@ -34,8 +34,8 @@ impl Camera {
     /// Returns a ray that arrives at the image point `pixel` through a point of the lens.
     ///
     /// `lens` is a pair of numbers in [0, 1); uniform ones give points that are uniform over the
-    /// pupil. All rays of an image point meet where it is in focus. Without depth of field every
-    /// ray is the one through the centre of the lens.
+    /// pupil. All rays of an image point meet at the point in focus. Without depth of field every
+    /// ray goes through the centre of the lens.
     ///
     /// The mean of radiance times weight, over the lens and the pixel, is the value of the pixel.
     /// All weights are 1: the pupil counts by area, and the cosines that vary a little over it
@@ -123,8 +123,8 @@ impl Camera {
         solid_angles.copy_from_slice(&angles[..solid_angles.len()]);
     }
 
-    /// Returns the ray of an image point with this chief ray, as long as to the image point, where
-    /// the lens distorts by the derivative `stretch`.
+    /// Returns the ray of an image point with the chief ray `chief`, whose length reaches to the
+    /// image point. The derivative of the distortion there is `stretch`.
     #[inline(always)]
     fn ray_through(&self, chief: DVec3, stretch: DMat2, lens: [f64; 2]) -> CameraRay {
         let on_lens = if self.description.depth_of_field {
@@ -132,8 +132,8 @@ impl Camera {
         } else {
             DVec2::ZERO
         };
-        // (P − ℓ) s / Z, with the point P in focus at the depth Z: 1/Z = 1/f − 1/s. It does not
-        // mind a focus at infinity or beyond.
+        // (P − ℓ) s / Z, with the point P in focus at the depth Z: 1/Z = 1/f − 1/s. The form also
+        // holds for a focus at infinity or beyond.
         let beyond_focus = chief.z / self.description.focal_length - 1.0;
         let direction = self.world(chief - (beyond_focus * on_lens).extend(0.0));
         let scale = direction.length_recip();
@@ -156,7 +156,7 @@ impl Camera {
     ///
     /// A path that brings the flux Φ to `point` and scatters it with f |cos θ| towards the point of
     /// the lens adds Φ f |cos θ| times the importance to the value of the pixel that contains the
-    /// image point. Whether the way to the lens is free is left to the caller.
+    /// image point. The caller checks whether the path to the lens is unoccluded.
     ///
     /// ```text
     /// importance = 1 / (Ω_ℓ r²)      Ω_ℓ: solid angle per pixel seen from the point ℓ of the lens,
@@ -198,8 +198,8 @@ impl Camera {
         })
     }
 
-    /// Returns the tangent of the chief ray, and its image, whose image point is reached by the
-    /// point ℓ of the lens when its untilted sensor is reached along `aim`.
+    /// Returns the tangent of the chief ray, and its image, for the image point that the point ℓ of
+    /// the lens reaches when the ray meets an untilted sensor along `aim`.
     ///
     /// ```text
     /// t = aim − ℓ (w·T(t))      T: distortion, w: slope of the sensor
@@ -213,7 +213,7 @@ impl Camera {
             let tangent = aim - sigma * on_lens;
             let image = self.distortion.distorted(tangent)?;
             let error = sigma - slope.dot(image);
-            // What is left moves the tangent by a few roundings.
+            // The remaining error moves the tangent by a few rounding errors.
             if error.abs() * on_lens.length() <= 1e-15 * (1.0 + aim.length()) {
                 return Some((tangent, image));
             }

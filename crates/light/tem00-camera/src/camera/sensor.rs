@@ -4,8 +4,8 @@ use crate::CameraDescription;
 
 /// The sensor in the axes of the camera: right, up and along the view, from the centre of the lens.
 ///
-/// It stands *before* the lens, turned over by a point reflection, so that the image is upright and
-/// each image point lies where its chief ray passes.
+/// It is placed *before* the lens by a point reflection, so that the image is upright and each
+/// image point lies on its chief ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sensor {
     /// To the right and to the top of the image, of unit length.
@@ -43,7 +43,8 @@ impl Sensor {
         offset.x * self.right - offset.y * self.up + self.distance * DVec3::Z
     }
 
-    /// Returns by how much the position moves per pixel to the right and per pixel down, in metres.
+    /// Returns the displacements of the position per pixel to the right and per pixel down, in
+    /// metres.
     pub(super) fn steps(&self) -> [DVec3; 2] {
         [self.pitch * self.right, -self.pitch * self.up]
     }
@@ -56,7 +57,7 @@ impl Sensor {
         Some(self.axis_point + pixel / self.pitch).filter(|pixel| pixel.is_finite())
     }
 
-    /// Returns how far along the axis the sensor lies in the direction of a tangent, in metres.
+    /// Returns the depth of the sensor along the axis in the direction of a tangent, in metres.
     pub(super) fn depth(&self, tangent: DVec2) -> Option<f64> {
         let depth = self.distance / (1.0 + self.distance * self.slope().dot(tangent));
         (depth > 0.0 && depth.is_finite()).then_some(depth)
@@ -72,7 +73,7 @@ impl Sensor {
         self.normal.truncate() / (self.distance * self.normal.z)
     }
 
-    /// Returns the area of tangents that one pixel covers where the sensor has this depth.
+    /// Returns the area in tangents that one pixel covers where the sensor has the given depth.
     ///
     /// ```text
     /// d²t = pitch² d_PI cos τ / s³

@@ -14,18 +14,18 @@ use crate::{
 #[derive(Clone, Debug)]
 pub(super) struct Table {
     grid: Grid,
-    /// At the nodes of the panels of displacements, at those of phases.
+    /// Values at the nodes of the displacement panels, then at the nodes of the phase panels.
     values: Vec<Vec<f64>>,
 }
 
-/// The longest correlation length in speckles over which lags are summed. Of a longer one the loss
-/// is of first order in its reciprocal: it acts as this one does with phases that lose as much.
+/// The longest correlation length in speckles over which lags are summed. For a longer one the loss
+/// is of first order in its reciprocal: it acts as this length does with phases of equal loss.
 const LONGEST: f64 = 32.0;
 
-/// Correlation lengths in speckles beyond which nothing is lost.
+/// Correlation lengths in speckles beyond which the loss is negligible.
 const ENDLESS: f64 = 1e6;
 
-/// The width of the excess, in speckles, below which it is left out: 2e−8 of it is left.
+/// The width of the excess, in speckles, below which it is neglected: a fraction of 2e−8 remains.
 const NARROWEST: f64 = 1e-4;
 
 /// The excess of one phase, over lags.
@@ -33,7 +33,7 @@ struct Row {
     /// The width in speckles.
     width: f64,
     of_lags: Vec<f64>,
-    /// Correlation for uncorrelated heights, and the part of it in the sum over lags.
+    /// Correlation for uncorrelated heights, and its part in the sum over lags.
     dense: f64,
 }
 
@@ -57,7 +57,7 @@ impl Table {
         Self { grid, values }
     }
 
-    /// The number of Bessel functions that a table of a relief sums, and of its cells.
+    /// The number of Bessel functions that the table of a relief sums, and the number of its cells.
     #[cfg(test)]
     pub(super) fn size(&self) -> (usize, usize) {
         let mut lags = 0;
@@ -121,30 +121,30 @@ fn over_phases(rows: &[Row], lags: &[[f64; 3]], kernel: LagKernel, shift: f64) -
 }
 
 /// Returns `Λ(a)/√π = ∫ (1 − exp(−a (1 − e^{−u²}))) du/u² / √π`, the loss of light of squared
-/// phases a over a long correlation length ℓ in units of `4 √π/(π² ℓ)`, to 0.4 %: right to third
-/// order in a, and for large ones.
+/// phases a over a long correlation length ℓ in units of `4 √π/(π² ℓ)`, to 0.4 %. It is correct to
+/// third order in a, and for large a.
 fn loss(exponent: f64) -> f64 {
     exponent * slope(exponent)
 }
 
 fn slope(exponent: f64) -> f64 {
     const P: f64 = 0.2274;
-    // 4 − 2√2 of the second order is lost between both.
+    // The second order loses 4 − 2√2 between both.
     const Q: f64 = P + 0.5858;
     ((1.0 + P * exponent) / (1.0 + (Q + P * exponent) * exponent)).sqrt()
 }
 
-/// Returns the squared phase that loses as much.
+/// Returns the squared phase whose loss is `wanted`.
 fn exponent_of_loss(wanted: f64) -> f64 {
     let mut exponent = wanted + wanted * wanted;
-    // The slope falls as the root at most: each step halves the error.
+    // The slope falls no faster than the inverse square root: each step halves the error.
     for _ in 0..60 {
         exponent = wanted / slope(exponent);
     }
     exponent
 }
 
-/// Breaks of phases: even ones where the excess rises, doubling ones where it falls by powers.
+/// Breaks of phases: evenly spaced where the excess rises, doubling where it falls as a power.
 fn phases(length: f64) -> Vec<f64> {
     let last = length / NARROWEST;
     let mut breaks = vec![0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0];
@@ -154,8 +154,8 @@ fn phases(length: f64) -> Vec<f64> {
     breaks
 }
 
-/// Breaks of displacements: finer about 0 and 1, where the kernels have a cusp and an end, as far
-/// as the heights leave it sharp.
+/// Breaks of displacements: finer near 0 and 1, where the kernels have a cusp and an end, down to
+/// the sharpness that the heights leave.
 fn shifts(longest: f64) -> Vec<f64> {
     let finest = (TAU * longest.max(1.0)).recip();
     let steps = || core::iter::successors(Some(finest), |step| Some(2.0 * step));
@@ -173,8 +173,8 @@ fn shifts(longest: f64) -> Vec<f64> {
     breaks
 }
 
-/// Visits lags on panels that are as short as displacements and widths ask for that meet there: an
-/// excess of the width w ends at 6w, and has frequencies up to 1 + 2/w.
+/// Visits lags on panels that are short enough for the displacements and widths that occur there:
+/// an excess of width w ends at 6w and has frequencies up to 1 + 2/w.
 fn for_each_lag(end: f64, mut visit: impl FnMut(f64, f64)) {
     let mut from = 0.0;
     let mut to = NARROWEST;

@@ -1,17 +1,17 @@
 //! The law of speckle motion as source text for kernels.
 //!
-//! A kernel on a GPU cannot call this crate: it evaluates the law itself. Whole frames, with the
-//! rows of camera, laser and motion, are looked up by `tem00_factor` of the crate `tem00-shading`,
-//! which calls these functions.
+//! A kernel on a GPU cannot call this crate and evaluates the law itself. For whole frames, with
+//! the rows of camera, laser and motion, `tem00_factor` of the crate `tem00-shading` calls these
+//! functions.
 
 /// Motion and correlation of speckle between two states in WGSL: functions and structs without
 /// bindings.
 ///
-/// Its first comment says how to call them and how exact they are.
+/// Its first comment states how to call the functions and how exact they are.
 ///
 /// # Examples
 ///
-/// Put the functions before a shader of your own:
+/// The functions precede a shader of your own:
 ///
 /// ```
 /// use tem00_decorrelation::closed_form::WGSL;

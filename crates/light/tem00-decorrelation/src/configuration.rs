@@ -11,7 +11,7 @@ pub struct ConfigurationData {
     pub wavelength: f64,
     /// Position of the surface point, in metres.
     pub point: DVec3,
-    /// Normal of the surface there, of any length and to either side.
+    /// Normal of the surface at the point, of any length and to either side.
     pub normal: DVec3,
     /// The light on the surface.
     pub illumination: Illumination,
@@ -21,16 +21,17 @@ pub struct ConfigurationData {
     pub pupil: DVec3,
 }
 
-/// A point of a rough surface, its light and its camera, all in the world: one state of a scene.
+/// State of a scene: a point of a rough surface, its light and its camera, all in world
+/// coordinates.
 ///
-/// Two states say what happens to the speckle in between: one is made with [`new`](Self::new), the
-/// other from it, by moving the bodies or by changing the light. The surface point is the same bit
-/// of matter in both.
+/// Two states determine the change of the speckle between them. The first is created with
+/// [`new`](Self::new), the second from the first, by moving the bodies or by changing the light.
+/// Both states describe the same material point.
 ///
 /// # Examples
 ///
 /// A surface seen and lit along its normal from 0.3 m tilts by 0.3 mrad. The reflected light turns
-/// by twice that, and the speckle moves by 180 µm across the pupil:
+/// by twice this angle, and the speckle moves by 180 µm across the pupil:
 ///
 /// ```
 /// use tem00_decorrelation::{
@@ -74,8 +75,8 @@ impl Configuration {
     /// # Errors
     ///
     /// Returns an error if the wavelength is not positive and finite, if the normal is zero or not
-    /// finite, if the point does not lie in front of the camera, or if the light comes from no
-    /// direction there, as in a focus.
+    /// finite, if the point does not lie in front of the camera, or if the light has no direction
+    /// there, as in a focus.
     pub fn new(data: ConfigurationData) -> Result<Self, Refusal> {
         let normal = unit("normal", data.normal)?;
         let (n1, n2) = normal.any_orthonormal_pair();
@@ -96,20 +97,21 @@ impl Configuration {
     ///
     /// # Errors
     ///
-    /// Returns an error if the point no longer lies in front of the camera, or if the light comes
-    /// from no direction there. The speckle is then decorrelated, if there is any.
+    /// Returns an error if the point no longer lies in front of the camera, or if the light has no
+    /// direction there. The speckle, if any, is then decorrelated.
     pub fn moved(&self, motions: &RigidMotions) -> Result<Self, Refusal> {
         self.moved_into(motions, self.illumination.moved(&motions.source))
     }
 
-    /// Returns the state after surface and camera have moved, in other light as it is then.
+    /// Returns the state after surface and camera have moved, lit by other light, which is given as
+    /// it is after the motion.
     ///
-    /// The motion of the source does not count.
+    /// The motion of the source is ignored.
     ///
     /// # Errors
     ///
-    /// Returns an error if the point no longer lies in front of the camera, or if that light comes
-    /// from no direction there.
+    /// Returns an error if the point no longer lies in front of the camera, or if the new light has
+    /// no direction there.
     pub fn moved_into(
         &self,
         motions: &RigidMotions,
@@ -134,7 +136,7 @@ impl Configuration {
     ///
     /// # Errors
     ///
-    /// Returns an error if that light comes from no direction at the point.
+    /// Returns an error if the new light has no direction at the point.
     pub fn with_illumination(self, illumination: Illumination) -> Result<Self, Refusal> {
         Self {
             illumination,

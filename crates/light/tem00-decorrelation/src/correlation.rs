@@ -10,15 +10,16 @@ pub use joint::CorrelationLaw;
 
 use tem00_numerics::{disc_overlap, sinc_pi_squared};
 
-/// Returns the intensity correlation left when the speckle slides across a circular pupil.
+/// Returns the intensity correlation that remains after the speckle has moved across a circular
+/// pupil.
 ///
 /// ```text
 /// γ = chat²(s),    chat(s) = (2/π) (acos s − s √(1 − s²))
 /// ```
 ///
 /// `shift` is the length s of the pupil displacement in units of the pupil diameter. The part of
-/// the pupil that sees the same field as before is the overlap of two discs; from s = 1 on there is
-/// none. The function is even.
+/// the pupil that receives the same field as before is the overlap of two discs, which vanishes
+/// from s = 1 on. The function is even.
 ///
 /// # Examples
 ///
@@ -40,7 +41,8 @@ pub fn pupil_overlap_correlation(shift: f64) -> f64 {
     overlap * overlap
 }
 
-/// Returns the intensity correlation left when the surface moves along the optical axis.
+/// Returns the intensity correlation that remains after the surface has moved along the optical
+/// axis.
 ///
 /// ```text
 /// γ = sinc²(π x),    x = d_z / (8 λ (L/D)²),    sinc(x) = sin(x) / x
@@ -48,12 +50,12 @@ pub fn pupil_overlap_correlation(shift: f64) -> f64 {
 ///
 /// `shift` is the displacement x in units of
 /// [`axial_decorrelation_length`](crate::ImagingGeometry::axial_decorrelation_length), where the
-/// correlation first vanishes. Beyond, it revives: to 4.72 % at x = 1.43, and to less each time
-/// after. The amplitude sinc(π x) changes its sign at every zero; its square, returned here, does
-/// not. The function is even.
+/// correlation first vanishes. Beyond it the correlation revives: to 4.72 % at x = 1.43, and to
+/// less at each later maximum. The amplitude sinc(π x) changes its sign at every zero; its square,
+/// returned here, does not. The function is even.
 ///
-/// In the notation of the original x = `a_O`/2. Bergmann et al. 2016 take the pattern for
-/// decorrelated at `a_O` = 1, where 40.5 % are left.
+/// In the notation of the original x = `a_O`/2. Bergmann et al. 2016 consider the pattern
+/// decorrelated at `a_O` = 1, where 40.5 % remain.
 ///
 /// # Examples
 ///

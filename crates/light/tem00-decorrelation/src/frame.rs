@@ -2,7 +2,7 @@ use glam::{DMat3, DVec3};
 
 use crate::{GRAZING_COSINE, Refusal};
 
-/// Axes and rotations that are accepted.
+/// Condition on axes and rotations, as messages state it.
 pub(crate) const ORTHONORMAL: &str = "right-handed and orthonormal within 1e-6";
 
 /// The orientation of a camera: three right-handed orthonormal axes in world coordinates.
@@ -35,7 +35,8 @@ pub struct CameraFrame {
 impl CameraFrame {
     /// Creates a frame from a rotation matrix with the columns b1, b2 and b3.
     ///
-    /// The axes are made orthonormal to rounding, so that matrices in single precision do.
+    /// The axes are made orthonormal to rounding, so that matrices in single precision are
+    /// accepted.
     ///
     /// # Errors
     ///
@@ -105,7 +106,7 @@ impl CameraFrame {
     }
 }
 
-/// Returns the rotation next to a matrix whose columns are right-handed orthonormal axes within
+/// Returns the rotation closest to a matrix whose columns are right-handed orthonormal axes within
 /// 10⁻⁶.
 pub(crate) fn orthonormal(axes: DMat3) -> Option<DMat3> {
     const TOLERANCE: f64 = 1e-6;
@@ -128,7 +129,7 @@ fn from_right(x_axis: DVec3, z_axis: DVec3) -> DMat3 {
 
 /// The line from a surface point to the centre of the pupil, in the frame of the camera.
 ///
-/// It need not follow the optical axis: away from the middle of the image it does not.
+/// It follows the optical axis only at the middle of the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineOfSight {
     camera: CameraFrame,

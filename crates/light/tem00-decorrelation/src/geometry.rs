@@ -6,7 +6,7 @@ use crate::{
     lens::{check_f_number, check_longer, check_magnification},
 };
 
-/// A camera focused on a surface: a lens, its pupils and the sensor behind it.
+/// Imaging geometry of a camera focused on a surface: a lens, its pupils and the sensor behind it.
 ///
 /// ```text
 ///   surface       entrance pupil D   exit pupil m_p D      sensor
@@ -25,7 +25,7 @@ use crate::{
 /// The speckle size `h` is the period of the finest intensity fringes that the pupil lets through.
 /// The intensity correlation first vanishes at 1.22 h and its full width at half maximum is 1.03 h.
 ///
-/// | what is known of the camera | constructor |
+/// | known parameters of the camera | constructor |
 /// |---|---|
 /// | focal length, f-number, distance to the surface | [`from_lens`](Self::from_lens) |
 /// | the same with the magnification or with separate pupils | [`from_thick_lens`](Self::from_thick_lens) |
@@ -127,20 +127,20 @@ impl ImagingGeometry {
         .checked()
     }
 
-    /// Creates the geometry of a lens of many elements from its focal length, f-number and pupil
-    /// magnification, and from where it is in focus.
+    /// Creates the geometry of a lens of many elements from its focal length, f-number, pupil
+    /// magnification and focus.
     ///
     /// # Errors
     ///
     /// Returns an error if a length, the magnification or the pupil magnification is not positive
     /// and finite, if the f-number is below 0.5, if the surface lies so near that no real image
-    /// forms or that the pupil is wider than twice its distance, or if the pupil is smaller than
-    /// the wavelength.
+    /// forms or that the pupil is wider than twice the surface distance, or if the pupil is smaller
+    /// than the wavelength.
     ///
     /// # Examples
     ///
     /// A 50 mm lens at f/4 images at half size. As the exit pupil is smaller than the entrance
-    /// pupil, the light that arrives is that of f/6.5 and not of f/6:
+    /// pupil, the working f-number is 6.5 and not 6:
     ///
     /// ```
     /// use tem00_decorrelation::{Focus, ImagingGeometry, ThickLensData};
@@ -197,7 +197,7 @@ impl ImagingGeometry {
     /// # Errors
     ///
     /// Returns an error if a length is not positive and finite, if the pupil is wider than twice
-    /// its distance to surface or sensor, or if it is smaller than the wavelength.
+    /// its distance to surface or sensor, or if the pupil is smaller than the wavelength.
     ///
     /// # Examples
     ///
@@ -262,7 +262,7 @@ impl ImagingGeometry {
             "the wavelength",
             self.wavelength,
         )?;
-        // Half the reciprocal is a numerical aperture, which no lens in air has above one.
+        // Half the reciprocal is a numerical aperture, which does not exceed one for a lens in air.
         let distance = self.surface_to_pupil.min(self.principal_distance);
         if distance < 0.5 * diameter {
             let distance = Shown(distance);
@@ -283,7 +283,7 @@ impl ImagingGeometry {
         self.focal_length
     }
 
-    /// Returns the f-number `F = f / D`, that of focus at infinity.
+    /// Returns the f-number `F = f / D`, for focus at infinity.
     pub const fn f_number(&self) -> f64 {
         self.focal_length / self.pupil_diameter
     }
@@ -305,8 +305,8 @@ impl ImagingGeometry {
 
     /// Returns the principal distance `c = m L`, in metres.
     ///
-    /// It takes the tangent of a viewing angle to a length on the sensor: the image of a point at
-    /// the depth Z is c/Z times as large as the point, in focus or not. Photogrammetry knows it as
+    /// It converts the tangent of a viewing angle to a length on the sensor: the image of an object
+    /// at the depth Z is c/Z times as large as the object, in focus or not. Photogrammetry calls it
     /// the camera constant.
     pub const fn principal_distance(&self) -> f64 {
         self.principal_distance
@@ -375,16 +375,17 @@ impl ImagingGeometry {
         8.0 * self.wavelength() * aperture_ratio * aperture_ratio
     }
 
-    /// Returns the depth of focus of the speckle at the surface, in metres: how far the surface may
-    /// move either way along the axis before only `(2/π)²` = 40.5 % of the pattern are left.
+    /// Returns the depth of focus of the speckle at the surface, in metres: the displacement of the
+    /// surface along the axis, in either direction, after which the correlation is `(2/π)²` = 40.5
+    /// %.
     ///
     /// ```text
     /// 4 λ (L / D)²
     /// ```
     ///
-    /// There the edge of the pupil is half a wave out of phase with its centre. It is half the
-    /// [axial decorrelation length](Self::axial_decorrelation_length). At a quarter of that length,
-    /// Rayleigh's criterion, 81 % are left.
+    /// At this displacement the edge of the pupil is half a wave out of phase with its centre. The
+    /// depth of focus is half the [axial decorrelation length](Self::axial_decorrelation_length).
+    /// At a quarter of this length, Rayleigh's criterion, the correlation is 81 %.
     ///
     /// # Examples
     ///
@@ -411,15 +412,15 @@ impl ImagingGeometry {
         0.5 * self.axial_decorrelation_length()
     }
 
-    /// Returns the depth of focus of the speckle at the sensor, in metres: how far the sensor may
-    /// move either way before 40.5 % of the pattern are left.
+    /// Returns the depth of focus of the speckle at the sensor, in metres: the displacement of the
+    /// sensor, in either direction, after which the correlation is 40.5 %.
     ///
     /// ```text
     /// 4 λ F_w²
     /// ```
     ///
-    /// At half its height the correlation along the axis is `7.09 λ F_w²` long, and 1.03 times the
-    /// [`speckle_size`](Self::speckle_size) wide across it.
+    /// The full width at half maximum of the correlation is `7.09 λ F_w²` along the axis and 1.03
+    /// times the [`speckle_size`](Self::speckle_size) across it.
     pub fn sensor_depth_of_focus(&self) -> f64 {
         4.0 * self.wavelength() * self.working_f_number().powi(2)
     }
@@ -427,27 +428,26 @@ impl ImagingGeometry {
     /// Returns the defocus `W = 1/Z − 1/L` of a point at `depth` Z, in metres, before the entrance
     /// pupil, in 1/m.
     ///
-    /// It is positive before the surface in focus and negative behind. The path of the light
-    /// through the pupil point p is `W p²/2` longer than to a point in focus.
+    /// It is positive before the surface in focus and negative behind it. The path of the light
+    /// through the pupil point p is longer by `W p²/2` than the path to a point in focus.
     pub fn defocus_at(&self, depth: f64) -> f64 {
         depth.recip() - self.surface_to_pupil.recip()
     }
 
-    /// Returns the coordinate in a speckle pattern, in pattern samples, that belongs to a pixel of
-    /// the image.
+    /// Returns the coordinate in a speckle pattern, in pattern samples, of a pixel of the image.
     ///
     /// ```text
     /// c = (h_p / h_I) (t_x, −t_y) − (h_p / h) a_I
     /// ```
     ///
-    /// `pixel` is the position t in pixels, x to the right and y *down* as rows count, from any
-    /// origin. `image_displacement` is the motion `a_I` of the speckle since the reference state to
-    /// the right and *up*, in metres, as [`SpeckleMotion`](crate::SpeckleMotion) has it: the
-    /// pattern moves across the image *by* `a_I`. `pattern_speckle_size` is `h_p`, the speckle size
-    /// of the pattern in samples. The result is that of a look-up, to the right and up, and not
-    /// wrapped to the period of the pattern.
+    /// `pixel` is the position t in pixels, x to the right and y *down* in the direction of the
+    /// rows, from any origin. `image_displacement` is the motion `a_I` of the speckle since the
+    /// reference state to the right and *up*, in metres, as [`SpeckleMotion`](crate::SpeckleMotion)
+    /// has it: the pattern moves across the image *by* `a_I`. `pattern_speckle_size` is `h_p`, the
+    /// speckle size of the pattern in samples. The result is the look-up coordinate, to the right
+    /// and up, and not wrapped to the period of the pattern.
     ///
-    /// Bergmann et al. 2016, §6.3, prints a plus sign, by which the pattern runs backwards.
+    /// Bergmann et al. 2016, §6.3, prints a plus sign, with which the pattern would move backwards.
     pub fn pattern_coordinate(
         &self,
         pixel: DVec2,

@@ -5,8 +5,8 @@ use crate::{
     vector::{finite, unit},
 };
 
-/// A light source in the world, as far as the speckle it makes is concerned: from where it lights
-/// each point.
+/// A light source in world coordinates, as far as its speckle is concerned: the direction from
+/// which it lights each point.
 ///
 /// # Examples
 ///
@@ -64,9 +64,9 @@ impl Illumination {
 
     /// Creates light from its wavefront at a position, in metres.
     ///
-    /// Around that position the wave is followed by [`Wavefront::direction_from`], within the
-    /// limits stated there. Take a position near the surface point, and describe a beam anew where
-    /// the surface has moved too far through it.
+    /// Around this position [`Wavefront::direction_from`] extrapolates the wave, within the limits
+    /// stated there. Choose a position near the surface point, and describe a beam anew if the
+    /// surface has moved too far through it.
     ///
     /// # Errors
     ///
@@ -138,7 +138,7 @@ mod tests {
             for point in [DVec3::ZERO, DVec3::new(0.05, -0.08, 0.02)] {
                 let before = source.direction_from(point).unwrap();
                 let after = source.moved(&motion).direction_from(motion.point(point));
-                // Who moves with the light sees it as before.
+                // An observer who moves with the light sees it unchanged.
                 let difference = (after.unwrap() - motion.direction(before)).length();
                 assert!(difference < 1e-14, "{source:?} at {point}: {difference:e}");
             }

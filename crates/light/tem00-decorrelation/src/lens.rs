@@ -2,8 +2,8 @@ use tem00_numerics::{Shown, check};
 
 use crate::Refusal;
 
-/// A thin lens at a known distance from the surface, from which an
-/// [`ImagingGeometry`](crate::ImagingGeometry) is made.
+/// Parameters of a thin lens at a known distance from the surface, for an
+/// [`ImagingGeometry`](crate::ImagingGeometry).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LensData {
     /// Vacuum wavelength `λ` of the light, in metres.
@@ -18,9 +18,9 @@ pub struct LensData {
     pub pixel_pitch: f64,
 }
 
-/// A lens of many elements, from which an [`ImagingGeometry`](crate::ImagingGeometry) is made.
+/// Parameters of a lens of many elements, for an [`ImagingGeometry`](crate::ImagingGeometry).
 ///
-/// Its pupils lie away from its principal planes, and differ in size:
+/// The pupils of the lens lie away from its principal planes and differ in size:
 ///
 /// ```text
 /// m   = f / (s − f)            magnification, s from the surface to the front principal plane
@@ -30,18 +30,18 @@ pub struct LensData {
 /// d   = f (m + m_p)            exit pupil to sensor
 /// ```
 ///
-/// They follow from Newton's form of the lens equation. A magnification M, negative for an inverted
-/// image, is that of an object at the distance −f/M before the front focus, with its image −M f
-/// behind the rear focus: the surface with M = −m, and the entrance pupil, whose image is the exit
-/// pupil, with M = `m_p`.
+/// The relations follow from Newton's form of the lens equation. An object imaged with the
+/// magnification M, negative for an inverted image, lies at the distance −f/M before the front
+/// focus, and its image at −M f behind the rear focus. The surface has M = −m, and the entrance
+/// pupil, whose image is the exit pupil, has M = `m_p`.
 ///
 /// `s` and `L` differ by `f (1/m_p − 1)`, the distance from the front principal plane to the
 /// entrance pupil towards the image. A retrofocus lens has `m_p` above 1, a telephoto lens below.
 ///
 /// # Validity
 ///
-/// A lens in air. A lens telecentric on the side of the surface has its entrance pupil at infinity
-/// and is not covered.
+/// The lens is in air. A lens telecentric on the side of the surface has its entrance pupil at
+/// infinity and is not covered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThickLensData {
     /// Vacuum wavelength `λ` of the light, in metres.
@@ -50,7 +50,8 @@ pub struct ThickLensData {
     pub focal_length: f64,
     /// F-number `F = f / D` as engraved on the lens, for focus at infinity.
     pub f_number: f64,
-    /// Pupil magnification `m_p`, the diameter of the exit pupil over that of the entrance pupil.
+    /// Pupil magnification `m_p`, the diameter of the exit pupil divided by the diameter of the
+    /// entrance pupil.
     pub pupil_magnification: f64,
     /// Position of the surface in focus.
     pub focus: Focus,
@@ -62,13 +63,13 @@ pub struct ThickLensData {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Focus {
-    /// At the distance that is imaged with this magnification `m`, counted positive.
+    /// The distance that is imaged with this magnification `m`, counted positive.
     Magnification(f64),
-    /// At this distance `s` from the front principal plane, in metres: the object distance of the
-    /// lens equation.
+    /// Distance `s` from the front principal plane, in metres: the object distance of the lens
+    /// equation.
     SurfaceToPrincipalPlane(f64),
-    /// At this distance `L` from the entrance pupil, in metres: the centre of perspective, from
-    /// which a renderer sees the scene.
+    /// Distance `L` from the entrance pupil, in metres. The entrance pupil is the centre of
+    /// perspective, from which a renderer sees the scene.
     SurfaceToPupil(f64),
 }
 
@@ -88,16 +89,17 @@ impl Focus {
                 (f / (surface_to_pupil - minimum), surface_to_pupil)
             }
         };
-        // Finite numbers near the ends of their range have a sum or quotient that is not.
+        // Sums and quotients of finite numbers near the ends of their range may overflow.
         check_magnification(m, &[m, surface_to_pupil])?;
         Ok((m, surface_to_pupil))
     }
 }
 
-/// The distances and the pupil of a camera as such, from which an
-/// [`ImagingGeometry`](crate::ImagingGeometry) is made.
+/// Distances and pupil of a camera, given directly, for an
+/// [`ImagingGeometry`](crate::ImagingGeometry).
 ///
-/// They are those of Bergmann et al. 2016. Entrance and exit pupil are one, at the lens.
+/// These are the parameters of Bergmann et al. 2016. Entrance and exit pupil coincide with the
+/// lens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PupilDistances {
     /// Vacuum wavelength `λ` of the light, in metres.

@@ -7,7 +7,7 @@
 //!   scene towards the camera.
 //! - Directions lead *away from the surface*: to the pupil, to the light source.
 //! - A wavefront has a *curvature* 1/R, positive where the wave diverges; zero is a plane wave.
-//! - `correlation` is always that of intensity: 1 for the same pattern, 0 for a new one.
+//! - `correlation` is always the correlation of intensity: 1 for the same pattern, 0 for a new one.
 //!
 //! # Main types
 //!
@@ -22,21 +22,22 @@
 //! | What does my kernel on a GPU compute? | [`closed_form`] |
 //! | Where do I look in the pattern? | [`ImagingGeometry::pattern_coordinate`] |
 //!
-//! There is one law of motion, between any two states of a surface point. A translation is a motion
+//! One law of motion holds between any two states of a surface point. A translation is a motion
 //! whose rotation is the identity: [`RigidMotion::along`].
 //!
 //! # Scope and non-goals
 //!
-//! A circular pupil free of aberrations, fully developed speckle, and a lit patch much wider than a
-//! resolution cell and much smaller than its distances to pupil and source. Beyond that:
+//! The laws assume a circular pupil free of aberrations, fully developed speckle, and a lit patch
+//! much wider than a resolution cell and much smaller than its distances to pupil and source.
+//! Further limits:
 //!
-//! - *Large turns and changes of the light* also stretch the field across the pupil. Displacements
-//!   are those of the pupil centre; the correlation leaves the stretch out.
-//! - *Another wavelength or direction of illumination* sees the heights of the surface in another
-//!   phase. That loss depends on the roughness and not on the geometry, and is not part of any
-//!   correlation here: see [`Configuration::height_phase_change`].
-//! - *Spots or lines thinner than a speckle* have no pattern that moves; a wave-optical simulation
-//!   does.
+//! - *Large rotations and changes of the light* also stretch the field across the pupil.
+//!   Displacements are given at the pupil centre; the correlation neglects the stretch.
+//! - *Another wavelength or direction of illumination* changes the phases of the surface heights.
+//!   The resulting loss depends on the roughness and not on the geometry, and is not part of any
+//!   correlation of this crate: see [`Configuration::height_phase_change`].
+//! - *Spots or lines thinner than a speckle* have no pattern that moves; they need a wave-optical
+//!   simulation.
 //! - Not covered: surfaces that deform, volume scattering, lenses telecentric towards the surface,
 //!   annular and other pupils.
 //!
@@ -80,6 +81,6 @@ pub use wavefront::Wavefront;
 
 /// The smallest cosine between two directions that still counts as different from zero, `2⁻²⁶`.
 ///
-/// It is the square root of the rounding unit: below it, the rounding of a cosine is a larger
-/// fraction of the cosine than the cosine is of one.
+/// It is the square root of the rounding unit: below it, the relative rounding error of a cosine is
+/// larger than the cosine itself.
 const GRAZING_COSINE: f64 = 1.0 / 67_108_864.0;

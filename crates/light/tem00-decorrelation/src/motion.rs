@@ -6,7 +6,8 @@ use crate::{
     Configuration, CorrelationLaw, GRAZING_COSINE, ImagingGeometry, rigid_change::leaving,
 };
 
-/// Change of the speckle at one surface point between two states, however far apart.
+/// Change of the speckle at one surface point between two states, which may be arbitrarily far
+/// apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SpeckleMotion {
@@ -18,9 +19,10 @@ pub struct SpeckleMotion {
     /// Additional motion of the speckle of a point out of focus, along b1 and b2, in metres on the
     /// sensor.
     ///
-    /// A ray through the pupil point p meets the sensor `C W p` beside the image of the point, with
-    /// the defocus W. The speckle field that has moved across the pupil is found that much farther
-    /// in the image. Zero for a point in focus, and where the pattern is decorrelated.
+    /// A ray through the pupil point p meets the sensor at the distance `C W p` from the image of
+    /// the point, with the defocus W. A speckle field that has moved across the pupil is displaced
+    /// in the image by this distance. The displacement is zero for a point in focus, and where the
+    /// pattern is decorrelated.
     pub defocus_displacement: DVec2,
     /// Motion of the speckle field across the pupil, along b1 and b2, in metres, or `None` where
     /// the pattern is decorrelated for [`Configuration::pupil_point_after`].
@@ -28,37 +30,38 @@ pub struct SpeckleMotion {
     /// Motion of the surface towards the camera along the optical axis, in metres.
     pub axial_displacement: f64,
     /// Correlation γ of the intensity with the old pattern, in [0, 1], where the pattern is looked
-    /// up at the [`speckle_displacement`](Self::speckle_displacement): that of
+    /// up at the [`speckle_displacement`](Self::speckle_displacement), by
     /// [`CorrelationLaw::AtPeak`].
     pub correlation: f64,
 }
 
 /// The law of speckle motion.
 impl Configuration {
-    /// Returns the point of the pupil after a change where the speckle field is what it was at
-    /// `pupil_point` before, both along b1 and b2 of the camera as it stands, in metres from the
-    /// centre of the pupil.
+    /// Returns the point of the pupil to which the speckle field at `pupil_point` has moved after a
+    /// change. Both points are along b1 and b2 of the camera in its respective state, in metres
+    /// from the centre of the pupil.
     ///
     /// The light of all scatterers of the surface arrives there with the same phase differences as
-    /// before. To first order in the distance between scatterers that is
+    /// before. To first order in the distance between scatterers this condition is
     ///
     /// ```text
     /// (R T)ᵀ (l_S' + l') / λ'  =  Tᵀ (l_S + l) / λ
     /// ```
     ///
     /// with the tangents T of the surface, its rotation R, and the unit vectors `l_S` to the source
-    /// and l to the pupil point. The law fixes the part of l' along the surface; its length fixes
-    /// the rest. The line along l' meets the pupil at the point in question.
+    /// and l to the pupil point. The law fixes the component of l' along the surface; its unit
+    /// length fixes the rest. The line along l' meets the pupil at the wanted point.
     ///
     /// # Validity
     ///
-    /// No motion is too large. The law holds at the point itself, for a lit patch that is small
-    /// beside its distances to source and pupil. It says nothing of what is lost: see
-    /// [`SpeckleMotion::between`] and [`height_phase_change`](Self::height_phase_change).
+    /// Motions may be arbitrarily large. The law holds at the point itself, for a lit patch that is
+    /// small compared with its distances to source and pupil. It does not give the loss of
+    /// correlation: see [`SpeckleMotion::between`] and
+    /// [`height_phase_change`](Self::height_phase_change).
     ///
     /// Returns `None` where there is no such point and the pattern counts as decorrelated: the
-    /// surface is seen edge-on, it is lit from its other side, or the light that kept its phases
-    /// leaves away from the pupil plane or, being longer than the pattern, not at all.
+    /// surface is seen edge-on, it is lit from its other side, or the light that would keep its
+    /// phases leaves away from the pupil plane or, at too long a wavelength, not at all.
     ///
     /// # Examples
     ///
@@ -89,29 +92,29 @@ impl Configuration {
     /// # References
     ///
     /// - I. Yamaguchi, *Fringe formations in deformation and vibration measurements using laser
-    ///   light*, 1985. The limit of small motions.
+    ///   light*, 1985. It treats the limit of small motions.
     pub fn pupil_point_after(&self, after: &Self, pupil_point: DVec2) -> Option<DVec2> {
         let direction = self.direction_to(pupil_point)?;
         after.pupil_point_along(self.direction_after(after, direction)?)
     }
 
-    /// Returns by how much a change alters the phase that a scatterer gains with its height above
-    /// the surface, for the light to the centre of the pupil, in radians per metre of height.
+    /// Returns the change of the phase that a scatterer gains per height above the surface, for the
+    /// light to the centre of the pupil, in radians per metre of height.
     ///
     /// ```text
     /// Δq = 2π [n'·(l_S' + l') / λ' − n·(l_S + l) / λ]
     /// ```
     ///
-    /// l' is the direction to [the point](Self::pupil_point_after) that the field at the centre has
-    /// moved to. Where that motion has been followed, the heights of the surface are all that still
-    /// tells the patterns apart, and the loss is that of roughness and not of geometry. Heights
-    /// with a normal distribution of the standard deviation σ leave
+    /// l' is the direction to [the point](Self::pupil_point_after) to which the field at the centre
+    /// has moved. Once a look-up follows this motion, the patterns differ only because of the
+    /// heights of the surface: the loss is due to roughness, not geometry. Normally distributed
+    /// heights with the standard deviation σ leave the factor
     ///
     /// ```text
     /// γ = exp(−σ² Δq²)
     /// ```
     ///
-    /// in the intensity, to be multiplied with the correlation of the geometry. It is mostly felt
+    /// in the intensity, to be multiplied by the correlation of the geometry. It matters mostly
     /// under a change of wavelength or of the direction of illumination; translations and small
     /// rotations change q in second order.
     ///
@@ -147,7 +150,7 @@ impl Configuration {
     ///
     /// # References
     ///
-    /// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007. Speckle in light of several
+    /// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007. It treats speckle in light of several
     ///   wavelengths.
     pub fn height_phase_change(&self, after: &Self) -> Option<f64> {
         let direction = self.sight.direction();
@@ -165,7 +168,7 @@ impl Configuration {
         (self.pupil - self.point + offset).try_normalize()
     }
 
-    /// The direction in which the field leaves after the change that left in `direction` before.
+    /// The direction after the change of the field that left in `direction` before.
     fn direction_after(&self, after: &Self, direction: DVec3) -> Option<DVec3> {
         let side = self.normal().dot(direction);
         let turned =
@@ -177,7 +180,7 @@ impl Configuration {
         (rest > 0.0 && side.abs() > GRAZING_COSINE && lit_side >= 0.0).then_some(leaves)
     }
 
-    /// The point of the pupil that a line from the surface point meets.
+    /// The point at which a line from the surface point meets the pupil plane.
     fn pupil_point_along(&self, direction: DVec3) -> Option<DVec2> {
         let camera = self.sight.camera();
         let cosine = direction.dot(camera.towards_camera());
@@ -209,24 +212,24 @@ impl SpeckleMotion {
     /// left      γ of |A| / D and of (W'/λ' − W/λ) D²/8, at the peak
     /// ```
     ///
-    /// `geometry` is that of the camera in both states. Its wavelength does not count here, those
-    /// of the states do.
+    /// `geometry` is the imaging geometry of the camera in both states. Its wavelength is ignored;
+    /// the wavelengths of the states are used.
     ///
     /// # Validity
     ///
     /// The image displacement and the pupil displacement are exact for the centre of the pupil. The
-    /// correlation takes the field to move across the pupil as a whole. After a large change it
-    /// also stretches; the error is about the difference of
-    /// [`pupil_point_after`](Configuration::pupil_point_after) across the pupil beyond the motion
-    /// of its centre, over the pupil diameter.
+    /// correlation assumes that the field moves across the pupil as a whole. After a large change
+    /// the field also stretches; the error is about the variation of
+    /// [`pupil_point_after`](Configuration::pupil_point_after) over the pupil, relative to the
+    /// motion of the centre, divided by the pupil diameter.
     ///
-    /// What a *rough surface* loses under another wavelength or direction of illumination is not
-    /// geometric and not included: see
+    /// The loss of correlation of a *rough surface* under another wavelength or direction of
+    /// illumination is not geometric and not included: see
     /// [`height_phase_change`](Configuration::height_phase_change).
     ///
     /// # Examples
     ///
-    /// A camera that turns by 1 mrad about its own pupil sees the picture move and the speckle with
+    /// If a camera turns by 1 mrad about its own pupil, the image moves and the speckle moves with
     /// it, unchanged:
     ///
     /// ```
@@ -289,8 +292,8 @@ impl SpeckleMotion {
 
     /// Returns the motion of the speckle pattern in the image, along b1 and b2, in metres on the
     /// sensor: the sum of [`image_displacement`](Self::image_displacement) and
-    /// [`defocus_displacement`](Self::defocus_displacement). There the correlation of both patterns
-    /// peaks.
+    /// [`defocus_displacement`](Self::defocus_displacement). At this displacement the correlation
+    /// of both patterns peaks.
     pub fn speckle_displacement(&self) -> DVec2 {
         self.image_displacement + self.defocus_displacement
     }

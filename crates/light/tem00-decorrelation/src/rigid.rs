@@ -33,7 +33,7 @@ pub struct RigidMotion {
 }
 
 impl RigidMotion {
-    /// The motion of a body that stands still.
+    /// The identity motion, of a body at rest.
     pub const IDENTITY: Self = Self {
         rotation: DMat3::IDENTITY,
         translation: DVec3::ZERO,
@@ -41,7 +41,8 @@ impl RigidMotion {
 
     /// Creates the motion `x' = R x + t` from a rotation matrix and a translation, in metres.
     ///
-    /// The matrix is made orthonormal to rounding, so that matrices in single precision do.
+    /// The matrix is made orthonormal to rounding, so that matrices in single precision are
+    /// accepted.
     ///
     /// # Errors
     ///
@@ -87,7 +88,7 @@ impl RigidMotion {
         }
     }
 
-    /// Returns the motion back.
+    /// Returns the inverse motion.
     #[must_use]
     pub fn inverse(&self) -> Self {
         let rotation = self.rotation.transpose();
@@ -107,13 +108,13 @@ impl RigidMotion {
         self.translation
     }
 
-    /// Returns where the motion takes a point, in metres.
+    /// Returns the position of a point after the motion, in metres.
     #[inline(always)]
     pub fn point(&self, point: DVec3) -> DVec3 {
         self.rotation * point + self.translation
     }
 
-    /// Returns where the motion turns a direction.
+    /// Returns a direction rotated by the motion.
     #[inline(always)]
     pub fn direction(&self, direction: DVec3) -> DVec3 {
         self.rotation * direction
@@ -128,7 +129,7 @@ impl Default for RigidMotion {
 
 /// Motions of surface, camera and light source since the reference state, each as a rigid body.
 ///
-/// Only differences count: if all three move as one, nothing changes.
+/// Only relative motions matter: if all three move as one, nothing changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RigidMotions {
     /// Motion of the surface.
@@ -171,7 +172,7 @@ mod tests {
         ) {
             let turn = RigidMotion::about(pivot, axis, angle).unwrap();
             let point = pivot + axis.normalize() * along;
-            // Rounding of lengths of a few metres.
+            // The tolerance covers the rounding of lengths of a few metres.
             prop_assert!((turn.point(point) - point).length() < 1e-14);
         }
 

@@ -2,17 +2,17 @@ use glam::{DVec2, DVec3};
 
 use crate::{CameraFrame, GRAZING_COSINE, Refusal, RigidMotion, RigidMotions, vector::finite};
 
-/// Surface and camera before and after a motion of both, for many points of the surface.
+/// A rigid motion of surface and camera, prepared for many points of the surface.
 ///
-/// It is the law of [`SpeckleMotion::between`](crate::SpeckleMotion::between) in light of one
-/// wavelength, without what depends on the lens: everything that the points share is worked out
-/// once, and [`at`](Self::at) needs no more than arithmetic, square roots and choices, so that a
-/// loop over points fills the vector units ([`tem00_numerics::vectorised`]).
+/// It evaluates the law of [`SpeckleMotion::between`](crate::SpeckleMotion::between) in light of
+/// one wavelength, without the part that depends on the lens. Quantities that all points share are
+/// computed once, and [`at`](Self::at) needs only arithmetic, square roots and selections, so that
+/// a loop over points fills the vector units ([`tem00_numerics::vectorised`]).
 ///
 /// # Examples
 ///
-/// A surface seen and lit along its normal slides by 0.1 mm. Its speckle moves over the pupil as
-/// far:
+/// A surface seen and lit along its normal slides by 0.1 mm. Its speckle moves across the pupil by
+/// the same distance:
 ///
 /// ```
 /// use tem00_decorrelation::{CameraFrame, ChangedPoint, DVec3, RigidChange, RigidMotion, RigidMotions};
@@ -51,20 +51,20 @@ struct Eye {
 /// A surface point after a change, with the light on it before and after.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChangedPoint {
-    /// Its position after the change, in metres.
+    /// Position of the point after the change, in metres.
     pub position: DVec3,
-    /// The unit normal of the surface there, to either side.
+    /// Unit normal of the surface at the point, to either side.
     pub normal: DVec3,
-    /// The unit vectors from the point to the source: from where it stood before, and from where it
-    /// is.
+    /// Unit vectors from the point to the source, from the position of the point before and after
+    /// the change.
     pub to_source: [DVec3; 2],
 }
 
 /// Change of the speckle at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointChange {
-    /// The displacement t' − t of its image along b1 and b2 of the camera, upright, in units of the
-    /// principal distance; infinite where one of the states does not see the point.
+    /// Displacement t' − t of the image of the point along b1 and b2 of the camera, upright, in
+    /// units of the principal distance; infinite if the point is invisible in one of the states.
     pub tangent_displacement: DVec2,
     /// The displacement of the speckle field over the pupil, in metres along b1 and b2; infinite
     /// where the pattern is decorrelated for
@@ -75,9 +75,9 @@ pub struct PointChange {
 }
 
 impl RigidChange {
-    /// Creates a change from the axes of the camera and the centre of its pupil before it, in
-    /// metres, and the motions of surface and camera. The motion of the source does not count: its
-    /// light comes with each point.
+    /// Creates a change from the axes of the camera and the centre of its pupil before the change,
+    /// in metres, and the motions of surface and camera. The motion of the source is ignored: the
+    /// light is given with each point.
     ///
     /// # Errors
     ///
@@ -95,20 +95,20 @@ impl RigidChange {
         })
     }
 
-    /// Returns where a point of the surface stood before the change, in metres.
+    /// Returns the position of a surface point before the change, in metres.
     #[inline(always)]
     pub fn origin(&self, position: DVec3) -> DVec3 {
         self.back.point(position)
     }
 
-    /// Returns how the surface has turned a direction.
+    /// Returns a direction rotated by the motion of the surface.
     #[inline(always)]
     pub fn turned(&self, direction: DVec3) -> DVec3 {
         self.surface.direction(direction)
     }
 
-    /// Returns what has become of the speckle at a point. Coordinates that are not finite give
-    /// infinite displacements.
+    /// Returns the change of the speckle at a point. Coordinates that are not finite give infinite
+    /// displacements.
     #[inline(always)]
     pub fn at(&self, point: &ChangedPoint) -> PointChange {
         let [before, after] = &self.eyes;
@@ -140,9 +140,9 @@ impl RigidChange {
     }
 }
 
-/// Returns the direction in which a field leaves whose part along the surface is that of `sum`, to
-/// the `side` of the normal that has this sign, and the square of its part along the normal: none
-/// leaves where that is not positive.
+/// Returns the direction in which a field leaves, and the square of its component along the normal;
+/// no field leaves if the square is not positive. The tangential component is the one of `sum`, and
+/// the normal component has the sign of `side`.
 #[inline(always)]
 pub(crate) fn leaving(normal: DVec3, sum: DVec3, side: f64) -> (DVec3, f64) {
     let tangential = sum - normal * normal.dot(sum);
@@ -166,7 +166,7 @@ struct Sight {
     to_pupil: DVec3,
     direction: DVec3,
     per_depth: f64,
-    /// Across the axis by depth: against the image, which is upright.
+    /// Offset across the axis divided by depth: opposite to the image, which is upright.
     tangents: DVec2,
     seen: bool,
 }
@@ -228,7 +228,8 @@ mod tests {
     }
 
     proptest! {
-        /// The law of two states is the oracle, which has waves and closed forms for its own.
+        /// The oracle is the law of two states, which is itself tested against waves and closed
+        /// forms.
         #[test]
         fn points_change_as_their_states_do(
             position in [-0.1..0.1, -0.1..0.1, -0.1..0.1].prop_map(DVec3::from_array),
@@ -271,7 +272,8 @@ mod tests {
             let [from, to] = found.per_depth.map(f64::recip);
             prop_assert!((from - to - law.axial_displacement).abs() < 1e-13);
             match law.pupil_displacement {
-                // Near grazing the square root of what is left takes its rounding to 1e-8.
+                // Near grazing incidence the square root of a small remainder amplifies its
+                // rounding to 1e-8.
                 Some(pupil) => prop_assert!(
                     close(found.pupil_displacement, pupil, 1.0) || pupil.length() > 10.0,
                     "{found:?}, not {pupil}"

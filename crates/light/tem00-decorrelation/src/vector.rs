@@ -13,7 +13,7 @@ pub(crate) fn finite(parameter: &'static str, vector: DVec3) -> Result<DVec3, Re
     }
 }
 
-/// Returns a direction of length 1, if the vector has one.
+/// Returns the unit vector along a vector, if the vector has a direction.
 pub(crate) fn unit(parameter: &'static str, vector: DVec3) -> Result<DVec3, Refusal> {
     let refused = || Refusal::new(parameter, vector.to_array(), "finite and not zero");
     vector.try_normalize().ok_or_else(refused)

@@ -3,7 +3,7 @@ use tem00_numerics::check;
 
 use crate::{GRAZING_COSINE, Refusal, vector::unit};
 
-/// The light that reaches a surface point: where it comes from and how its wavefront is curved.
+/// Wavefront of the light that reaches a surface point: its direction and its curvature.
 ///
 /// The wavefront is described to second order, by the unit vector `l_S` from the surface to the
 /// source and the symmetric curvature tensor `K`, in 1/m, with `K l_S = 0`. Moving by `a` through
@@ -16,14 +16,14 @@ use crate::{GRAZING_COSINE, Refusal, vector::unit};
 /// ```
 ///
 /// Curvatures are positive where the wave diverges, zero for a plane wave and at the waist of a
-/// beam, and negative where the wave converges. They are those of the *wavefront*: for a Gaussian
-/// beam 1/R(z), not the reciprocal distance to the emitter.
+/// beam, and negative where the wave converges. They are curvatures of the *wavefront*: 1/R(z) for
+/// a Gaussian beam, not the reciprocal distance to the emitter.
 ///
 /// # Off the axis of a beam
 ///
-/// A beam with its curvatures `κ_x` and `κ_y` at the distance z lights a point x, y beside its axis
-/// from the direction `−(x κ_x, y κ_y, 1)`, in coordinates with z along the beam. That is the
-/// direction to give to the constructors. To take that of the axis instead is wrong by the angle x
+/// A beam with the curvatures `κ_x` and `κ_y` at the distance z lights a point at the offsets x, y
+/// from its axis from the direction `−(x κ_x, y κ_y, 1)`, in coordinates with z along the beam.
+/// Give this direction to the constructors. The direction of the axis would be wrong by the angle x
 /// κ, which is at most the divergence of a spot and half the angle of a fan.
 ///
 /// # Examples
@@ -39,10 +39,10 @@ use crate::{GRAZING_COSINE, Refusal, vector::unit};
 /// # Ok::<(), tem00_decorrelation::Refusal>(())
 /// ```
 ///
-/// A helium–neon laser with a waist of 100 µm, that is a Rayleigh range of 49.65 mm. Seen from 200
-/// mm, a motion a of the surface moves the speckle across the pupil by (1 + d/R) a: by three times
-/// the motion 50 mm behind the waist, by as much as the motion at the waist, and the other way 80
-/// mm before it:
+/// A helium–neon laser with a waist of 100 µm has a Rayleigh range of 49.65 mm. Seen from 200 mm, a
+/// motion a of the surface moves the speckle across the pupil by (1 + d/R) a: by three times the
+/// motion 50 mm behind the waist, by the motion itself at the waist, and in the opposite direction
+/// 80 mm before it:
 ///
 /// ```
 /// use tem00_decorrelation::{
@@ -107,7 +107,8 @@ impl Wavefront {
     /// Creates an astigmatic wave from the direction to its source, of any length, a principal
     /// axis, and the curvatures 1/R along and across that axis, in 1/m.
     ///
-    /// The axis may have any length; only its part across the direction to the source counts.
+    /// The axis may have any length; only its component perpendicular to the direction to the
+    /// source is used.
     ///
     /// # Errors
     ///
@@ -139,14 +140,14 @@ impl Wavefront {
     }
 
     /// Creates a wave from the direction to its source, of any length, and its curvature tensor K,
-    /// in 1/m, as it comes from the second derivatives of a measured or computed phase.
+    /// in 1/m, as obtained from the second derivatives of a measured or computed phase.
     ///
     /// ```text
     /// K = ∂²φ/∂x∂x / k
     /// ```
     ///
-    /// The phase φ grows with the path of the light, and k is 2π/λ. Only the part of K across the
-    /// direction to the source counts.
+    /// The phase φ grows with the path of the light, and k is 2π/λ. Only the part of K
+    /// perpendicular to the direction to the source is used.
     ///
     /// # Errors
     ///
@@ -170,25 +171,26 @@ impl Wavefront {
         })
     }
 
-    /// Creates a wave from the direction to its source, of any length, and from how that direction
-    /// turns along a surface, as a renderer has it from its ray differentials: after mirrors and
-    /// lenses, too.
+    /// Creates a wave from the direction to its source, of any length, and the derivatives of this
+    /// direction along a surface, as a renderer obtains them from its ray differentials, also after
+    /// mirrors and lenses.
     ///
     /// ```text
     /// K t = −∂l_S/∂t
     /// ```
     ///
-    /// `dp` are the differentials of the surface point by two parameters, in metres, `∂p/∂u` and
-    /// `∂p/∂v`, and `dl` those of the unit vector to the source by the same two. At a mirror of the
-    /// normal n they follow from `∂n/∂u` and `∂n/∂v` and from the direction d in which the light
-    /// arrives: that of the reflected light is d − 2 n (n·d), and `l_S` leads against it. Only the
-    /// symmetric part across the direction counts; the rays of one wave have no other.
+    /// `dp` are the derivatives of the surface point with respect to two parameters, in metres,
+    /// `∂p/∂u` and `∂p/∂v`, and `dl` the derivatives of the unit vector to the source with respect
+    /// to the same parameters. At a mirror with the normal n they follow from `∂n/∂u` and `∂n/∂v`
+    /// and from the direction d in which the light arrives: the reflected light has the direction d
+    /// − 2 n (n·d), and `l_S` points against it. Only the symmetric part perpendicular to the
+    /// direction is used; the rays of one wave have no other part.
     ///
     /// # Errors
     ///
     /// Returns an error if the direction is zero or not finite, if differentials are not finite, or
-    /// if the light sees those of the point along one line, within 2⁻²⁶: in a grazing light, or
-    /// where a parametrisation is singular.
+    /// if the derivatives of the point are collinear as seen along the light, within 2⁻²⁶: at
+    /// grazing incidence, or where a parametrisation is singular.
     ///
     /// # Examples
     ///
@@ -212,7 +214,7 @@ impl Wavefront {
         let [u, v] = dp.map(|t| t - direction * direction.dot(t));
         let area = direction.dot(u.cross(v));
         let [du, dv] = [v.cross(direction) / area, direction.cross(u) / area];
-        // Not a number fails.
+        // NaN fails every comparison.
         if !(area.abs() > GRAZING_COSINE * dp[0].length() * dp[1].length()
             && du.is_finite()
             && dv.is_finite())
@@ -232,9 +234,8 @@ impl Wavefront {
         Self::from_tensor(direction, (curvature + curvature.transpose()) * 0.5)
     }
 
-    /// Returns the unit vector to the source as it is seen at the distance `offset`, in metres,
-    /// from the point that the wave is described for, or `None` in a focus, where there is no
-    /// direction.
+    /// Returns the unit vector to the source at the displacement `offset`, in metres, from the
+    /// point for which the wave is described, or `None` in a focus, where there is no direction.
     ///
     /// ```text
     /// l_S' ∝ l_S − K (I − ζ K)⁻¹ a,    ζ = l_S·a
@@ -242,14 +243,14 @@ impl Wavefront {
     ///
     /// # Validity
     ///
-    /// Rays are straight, so that a spherical and a cylindrical wave are followed exactly, however
-    /// far. Other waves change their curvatures from point to point: there the error is about the
-    /// square of the offset in units of the radii or, in a Gaussian beam, of the Rayleigh range.
-    /// Past that, describe the wave anew.
+    /// Rays are straight, so that spherical and cylindrical waves are extrapolated exactly at any
+    /// distance. The curvatures of other waves change from point to point: for them the error is
+    /// about the square of the offset in units of the radii or, in a Gaussian beam, of the Rayleigh
+    /// range. At larger offsets, describe the wave anew.
     ///
     /// # Examples
     ///
-    /// A point source at 0.3 m, from where it is seen 0.4 m to the side:
+    /// The direction to a point source at 0.3 m, from a point 0.4 m to the side:
     ///
     /// ```
     /// use tem00_decorrelation::{DVec3, Wavefront};

@@ -25,7 +25,7 @@ pub const fn to_c64(z: Complex<f32>) -> Complex<f64> {
 
 /// Returns the whole part of a number that is known to be an index or a count.
 ///
-/// Numbers below 1, and NaN, give 0, and those above [`usize::MAX`] that.
+/// Numbers below 1 and NaN give 0, and numbers above [`usize::MAX`] give `usize::MAX`.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -38,15 +38,15 @@ pub const fn to_usize(x: f64) -> usize {
 
 /// Returns the whole part of a number that is known to be an integer far below 2⁶³, towards zero.
 ///
-/// NaN gives 0, and numbers out of range the nearer end.
+/// NaN gives 0, and numbers out of range give the nearer end.
 #[expect(clippy::cast_possible_truncation, reason = "saturates, as documented")]
 #[inline]
 pub const fn to_i64(x: f64) -> i64 {
     x as i64
 }
 
-/// Returns a count or an index as a signed number; [`i64::MAX`] for the larger ones, which no
-/// memory holds.
+/// Returns a count or an index as a signed number; [`i64::MAX`] for larger counts, which no memory
+/// can hold.
 #[expect(clippy::cast_possible_wrap, reason = "larger numbers are left out")]
 #[inline]
 pub const fn to_signed(n: usize) -> i64 {
@@ -63,7 +63,7 @@ mod tests {
 
     #[test]
     fn single_precision_is_rounded_to_nearest() {
-        // 1 + 2⁻²⁴ lies midway and goes to the even one.
+        // 1 + 2⁻²⁴ lies midway and rounds to even.
         assert_eq!(to_f32(1.0 + 2.0_f64.powi(-24)).to_bits(), 1.0_f32.to_bits());
         let above = 1.0 + 1.5 * 2.0_f64.powi(-24);
         assert_eq!(to_f32(above).to_bits(), 1.0_f32.next_up().to_bits());

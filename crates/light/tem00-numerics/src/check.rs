@@ -8,7 +8,7 @@ use crate::{Refusal, RefusedValue, Shown};
 ///
 /// # Errors
 ///
-/// Returns the refusal if not.
+/// Returns the refusal of the argument if `holds` is false.
 pub fn that(
     holds: bool,
     parameter: &'static str,
@@ -27,7 +27,7 @@ pub fn that(
 ///
 /// # Errors
 ///
-/// Returns its refusal if not.
+/// Returns the refusal of the argument otherwise.
 pub fn finite(parameter: &'static str, x: f64, unit: &'static str) -> Result<f64, Refusal> {
     that(x.is_finite(), parameter, x, unit, "finite").map(|()| x)
 }
@@ -36,7 +36,7 @@ pub fn finite(parameter: &'static str, x: f64, unit: &'static str) -> Result<f64
 ///
 /// # Errors
 ///
-/// Returns its refusal if not.
+/// Returns the refusal of the argument otherwise.
 pub fn positive(parameter: &'static str, x: f64, unit: &'static str) -> Result<f64, Refusal> {
     let holds = x > 0.0 && x.is_finite();
     that(holds, parameter, x, unit, "positive and finite").map(|()| x)
@@ -46,7 +46,7 @@ pub fn positive(parameter: &'static str, x: f64, unit: &'static str) -> Result<f
 ///
 /// # Errors
 ///
-/// Returns its refusal if not.
+/// Returns the refusal of the argument otherwise.
 pub fn not_negative(parameter: &'static str, x: f64, unit: &'static str) -> Result<f64, Refusal> {
     let holds = x >= 0.0 && x.is_finite();
     that(holds, parameter, x, unit, "finite and not negative").map(|()| x)
@@ -56,7 +56,7 @@ pub fn not_negative(parameter: &'static str, x: f64, unit: &'static str) -> Resu
 ///
 /// # Errors
 ///
-/// Returns its refusal if not.
+/// Returns the refusal of the argument otherwise.
 pub fn range(
     parameter: &'static str,
     x: f64,
@@ -76,7 +76,7 @@ pub fn range(
 ///
 /// # Errors
 ///
-/// Returns its refusal if not.
+/// Returns the refusal of the argument otherwise.
 pub fn length(parameter: &'static str, x: f64) -> Result<f64, Refusal> {
     range(parameter, x, [1e-30, 1e30], "m")
 }
@@ -85,12 +85,12 @@ pub fn length(parameter: &'static str, x: f64) -> Result<f64, Refusal> {
 ///
 /// # Errors
 ///
-/// Returns its refusal if not.
+/// Returns the refusal of the argument otherwise.
 pub fn coordinate(parameter: &'static str, x: f64) -> Result<f64, Refusal> {
     range(parameter, x, [-1e30, 1e30], "m")
 }
 
-/// Checks every entry of a list, and says which is refused.
+/// Checks every entry of a list.
 ///
 /// # Errors
 ///

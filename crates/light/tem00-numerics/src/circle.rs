@@ -1,7 +1,7 @@
-//! Points of the unit circle, from fractions of a turn.
+//! Points of the unit circle at fractions of a turn.
 //!
-//! Angles that are drawn are known as fractions of a turn, for which sine and cosine need no
-//! reduction of their argument: a third of the time of general ones.
+//! Random angles are drawn as fractions of a turn, for which sine and cosine need no argument
+//! reduction and take a third of the time of the general functions.
 
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
@@ -9,7 +9,7 @@ use core::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 ///
 /// Both coordinates err by less than 3e−16.
 pub fn circle_point_at_turn(turn: f64) -> [f64; 2] {
-    // The number of the nearest quarter is exact, and so is the rest.
+    // The number of the nearest quarter and the remainder are exact.
     let quarters = 4.0 * turn;
     #[expect(
         clippy::cast_possible_truncation,
@@ -18,7 +18,8 @@ pub fn circle_point_at_turn(turn: f64) -> [f64; 2] {
     )]
     let nearest = (quarters + 0.5) as u32;
     let [x, y] = at_small_angle(FRAC_PI_2 * (quarters - f64::from(nearest)));
-    // Turning by a quarter is exact, too; processors guess badly which one it will be.
+    // Turning by a quarter is exact, too. A table avoids a branch, which processors predict badly
+    // here.
     let [cos, sin] = QUARTERS[nearest as usize % 4];
     [cos * x - sin * y, sin * x + cos * y]
 }
@@ -34,7 +35,7 @@ pub fn circle_point_at_eighth(fraction: f64) -> [f64; 2] {
     at_small_angle(FRAC_PI_4 * fraction)
 }
 
-/// Taylor's series of cosine and sine: up to π/4 what is left out is below 5e−17.
+/// Taylor series of cosine and sine: up to π/4 the remainder is below 5e−17.
 #[inline(always)]
 fn at_small_angle(angle: f64) -> [f64; 2] {
     const fn inverse_factorial(n: u32) -> f64 {
@@ -81,7 +82,7 @@ mod tests {
         for index in 0..=100_000 {
             let turn = f64::from(index) / 100_000.0;
             let (sin, cos) = libm::sincos(core::f64::consts::TAU * turn);
-            // The angle of the general functions errs by a rounding of a number up to 2π, 4.4e−16.
+            // The argument of the general functions is rounded: up to 4.4e−16 for numbers up to 2π.
             let [x, y] = circle_point_at_turn(turn);
             assert!(
                 (x - cos).abs() <= 8e-16 && (y - sin).abs() <= 8e-16,
@@ -96,7 +97,7 @@ mod tests {
             let fraction = f64::from(index) / 10_000.0;
             let (sin, cos) = libm::sincos(FRAC_PI_4 * fraction);
             let [x, y] = circle_point_at_eighth(fraction);
-            // Two roundings of numbers up to 1, and that of the general functions.
+            // Two roundings of numbers up to 1, and the rounding of the general functions.
             assert!(
                 (x - cos).abs() <= 4e-16 && (y - sin).abs() <= 4e-16,
                 "{fraction}"

@@ -13,38 +13,40 @@ use axis::Axis;
 use blocks::{COLUMNS, PANEL, aligned, fill_columns, gather_rows, spread_columns, stride};
 use chunks::for_each_chunk;
 
-/// A two-dimensional Fourier transform of a small aperture in a larger array of zeros.
+/// Two-dimensional Fourier transform of a small aperture in a larger array of zeros.
 ///
 /// ```text
 /// X(kx, ky) = Σ x(m, n) exp(−2πi (m kx / width + n ky / height))
 /// ```
 ///
-/// Planned once, for one size, and reused for any number of arrays.
+/// A transform is planned once, for one size, and reused for any number of arrays.
 ///
 /// # Normalization
 ///
-/// None: the transform of a single 1 has the magnitude 1 everywhere, and by Parseval the mean of
-/// `|X|²` is the sum of `|x|²`.
+/// The transform is not normalised: the transform of a single 1 has the magnitude 1 everywhere, and
+/// by Parseval the mean of `|X|²` is the sum of `|x|²`.
 ///
 /// # Output order
 ///
-/// Zero frequency at `(0, 0)`, then increasing frequencies; negative ones in the second half. The
-/// aperture's `(0, 0)` is the array's `(0, 0)`; an aperture elsewhere differs by a phase factor.
+/// The zero frequency is at `(0, 0)`, followed by increasing frequencies; negative frequencies are
+/// in the second half. The aperture's `(0, 0)` is the array's `(0, 0)`; an aperture elsewhere
+/// differs by a phase factor.
 ///
 /// # Cost
 ///
-/// Nothing that is zero by construction is transformed: with an aperture of `w × h` in an array of
-/// `W × H` there are `w` transforms of length H and `H` of length W, each made of short ones no
-/// longer than the aperture needs. Any size works; products of small primes are fastest, and powers
-/// of two most of all. The array never exists as a whole: the memory is `8 w H` bytes and a few
-/// dozen lines for each thread, reused with [`forward_into`](Self::forward_into), and the output.
-/// Nor need the aperture: [`forward_from`](Self::forward_from) takes it piece by piece.
+/// Values that are zero by construction are not transformed: with an aperture of `w × h` in an
+/// array of `W × H` there are `w` transforms of length H and `H` of length W, each made of short
+/// transforms no longer than the aperture needs. Any size works; products of small primes are fast,
+/// and powers of two are fastest. The array never exists as a whole: the memory is `8 w H` bytes
+/// and a few dozen lines for each thread, reused with [`forward_into`](Self::forward_into), plus
+/// the output. The aperture need not exist as a whole either: [`forward_from`](Self::forward_from)
+/// takes it piece by piece.
 ///
 /// # Threads
 ///
 /// With the feature `parallel` the work is shared by the threads of the current rayon pool. The
-/// result is the same bits for any number of them, and without the feature. Where many transforms
-/// are shared out among the threads, let each do its own: [`on_one_thread`](Self::on_one_thread).
+/// result has the same bits for any number of threads, and without the feature. To run many
+/// transforms in parallel, let each thread do its own: [`on_one_thread`](Self::on_one_thread).
 ///
 /// # Examples
 ///
@@ -69,17 +71,17 @@ pub struct Fft2 {
     threads: bool,
 }
 
-/// Output rows finished together in the second pass: it reads that many cache lines in a row.
+/// Output rows finished together in the second pass, which reads this many consecutive cache lines.
 const ROWS: usize = 16;
 
 /// Working memory of a transform, kept between calls of [`Fft2::forward_into`].
 ///
-/// It fits any transform and grows to the largest.
+/// It fits any transform and grows to the size of the largest.
 #[derive(Clone, Debug, Default)]
 pub struct Fft2Scratch {
-    /// For each block of [`COLUMNS`] columns its spectrum: `[block][ky][column]`.
+    /// Spectra of the blocks of [`COLUMNS`] columns: `[block][ky][column]`.
     blocks: Vec<Complex<f32>>,
-    /// For each thread that has helped, what it needs to transform lines.
+    /// Scratch memory for each thread that has transformed lines.
     workers: Vec<Worker>,
 }
 
@@ -132,10 +134,10 @@ impl Fft2 {
         })
     }
 
-    /// Returns the same transform, done by the calling thread alone.
+    /// Returns the same transform, executed by the calling thread alone.
     ///
-    /// Of many transforms at once, each thread does its own: that takes one working memory per
-    /// thread, which stays in the thread's cache.
+    /// With many transforms at once, each thread does its own: it needs one working memory, which
+    /// stays in its cache.
     #[must_use]
     pub const fn on_one_thread(mut self) -> Self {
         self.threads = false;
@@ -160,7 +162,8 @@ impl Fft2 {
         output
     }
 
-    /// Like [`forward`](Self::forward), into an array and with working memory that already exist.
+    /// Transforms `aperture` like [`forward`](Self::forward), but into an existing array and with
+    /// existing working memory.
     ///
     /// # Panics
     ///
@@ -182,12 +185,12 @@ impl Fft2 {
         self.forward_from(copy, output, scratch, finish);
     }
 
-    /// Like [`forward_into`](Self::forward_into), of an aperture that is made on the way and never
-    /// exists as a whole.
+    /// Transforms like [`forward_into`](Self::forward_into) an aperture that is generated piece by
+    /// piece and never exists as a whole.
     ///
-    /// `fill(columns, y, values)` writes what these columns hold in row y. It covers each position
-    /// of the aperture once, in any order and by any thread, in pieces of up to 64 values that
-    /// begin at a multiple of 8.
+    /// `fill(columns, y, values)` writes the values of these columns in row y. It covers each
+    /// position of the aperture once, in any order and by any thread, in pieces of up to 64 values
+    /// that begin at a multiple of 8.
     ///
     /// # Examples
     ///
@@ -256,7 +259,7 @@ impl Fft2 {
         );
     }
 
-    /// Columns that one thread transforms in a go: few enough that all threads have some.
+    /// Columns that one thread transforms together: few enough that all threads get some.
     fn panel_width(&self) -> usize {
         let share = self.row.aperture() / (2 * chunks::thread_count(self.threads));
         share.clamp(1, PANEL).next_multiple_of(COLUMNS)
@@ -286,7 +289,7 @@ impl Fft2 {
         }
     }
 
-    /// Second pass: a few whole rows, and what the caller makes of them.
+    /// Second pass: a few whole rows and the caller's `finish`.
     #[inline(always)]
     fn finish_rows<O>(
         &self,
@@ -314,7 +317,7 @@ impl Fft2 {
     }
 }
 
-/// Writes `finish(x, X(x))` in order of x from a spectrum that lies in `parts` parts.
+/// Writes `finish(x, X(x))` in order of x from a spectrum that is stored in `parts` parts.
 #[inline(always)]
 fn interleave<O>(
     spectrum: &[Complex<f32>],
@@ -351,7 +354,7 @@ struct Worker {
 struct Lines<'a> {
     /// Lines of the aperture, one [`stride`] apart.
     inputs: &'a mut [Complex<f32>],
-    /// Their spectra, one [`stride`] apart as well.
+    /// Spectra of the lines, one [`stride`] apart as well.
     spectra: &'a mut [Complex<f32>],
     scratch: &'a mut [Complex<f32>],
 }

@@ -4,7 +4,7 @@ use crate::{Refusal, check};
 ///
 /// # Errors
 ///
-/// Returns an error if a weight is negative or not finite, or if none is positive.
+/// Returns an error if a weight is negative or not finite, or if no weight is positive.
 ///
 /// # Examples
 ///

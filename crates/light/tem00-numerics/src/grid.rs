@@ -80,12 +80,12 @@ impl<T> Grid<T> {
         &self.values
     }
 
-    /// Returns all values in row-major order, to be changed.
+    /// Returns all values in row-major order, mutably.
     pub fn values_mut(&mut self) -> &mut [T] {
         &mut self.values
     }
 
-    /// Returns the values in row-major order, without the grid.
+    /// Converts the grid into its values in row-major order.
     pub fn into_values(self) -> Vec<T> {
         self.values
     }
@@ -95,8 +95,8 @@ impl<T> Grid<T> {
         self.values.chunks_exact(self.width)
     }
 
-    /// Calls `each(y, row)` for every row, by all threads of the current rayon pool where the
-    /// feature `parallel` allows it.
+    /// Calls `each(y, row)` for every row; with the feature `parallel`, by all threads of the
+    /// current rayon pool.
     ///
     /// # Examples
     ///
@@ -133,12 +133,12 @@ impl<T> Grid<T> {
         &self.values[y * self.width..(y + 1) * self.width]
     }
 
-    /// Returns the value at `(x mod width, y mod height)`: the grid repeats without end.
+    /// Returns the value at `(x mod width, y mod height)`: the grid repeats periodically.
     pub fn wrapped(&self, x: i64, y: i64) -> &T {
         &self[(wrap_index(x, self.width), wrap_index(y, self.height))]
     }
 
-    /// Returns a grid of the same shape whose values are `map` of this one's.
+    /// Returns a grid of the same shape whose values are `map` of the values of this grid.
     pub fn map<U>(&self, map: impl FnMut(&T) -> U) -> Grid<U> {
         Grid {
             width: self.width,
@@ -197,7 +197,7 @@ pub enum GridError {
         width: usize,
         /// The requested number of rows.
         height: usize,
-        /// The number of values that were given.
+        /// The number of given values.
         length: usize,
     },
 }
@@ -225,7 +225,7 @@ impl error::Error for GridError {}
 /// Returns the cell `⌊x⌋ mod period` and the fraction `x − ⌊x⌋` of a coordinate on a periodic grid.
 ///
 /// The fraction lies in [0, 1) and the period is exactly `period`. The reduction is done in `f64`:
-/// in `f32` a coordinate of 10⁷ would already have lost its fraction.
+/// in `f32` a coordinate of 10⁷ has already lost its fraction.
 ///
 /// # Panics
 ///
@@ -258,7 +258,7 @@ pub fn wrap_coordinate(x: f64, period: usize) -> (usize, f64) {
     (cell.min(period - 1), (x - floor).min(ALMOST_ONE))
 }
 
-/// Below 2⁶³ every whole `f64` is an `i64`, whose remainder is several times quicker.
+/// Below 2⁶³ every integral `f64` fits an `i64`, whose remainder is several times faster.
 const WHOLE_I64: f64 = (1_u64 << 63) as f64;
 
 /// The largest `f64` below one.
@@ -323,7 +323,7 @@ mod tests {
             let (cell, fraction) = wrap_coordinate(x, period);
             prop_assert!(cell < period && (0.0..1.0).contains(&fraction), "{cell} + {fraction}");
             let turns = (x - (cell as f64 + fraction)) / period as f64;
-            // x carries 12 digits before the point: 1e12 · 2⁻⁵³ ≈ 1.1e−4 of absolute rounding.
+            // x has 12 digits before the point: 1e12 · 2⁻⁵³ ≈ 1.1e−4 of absolute rounding.
             prop_assert!((turns - turns.round()).abs() < 2.5e-4, "{turns} turns");
         }
     }

@@ -12,15 +12,15 @@ const MAX_STEPS: usize = 300;
 const FIRST_DAMPING: f64 = 1e-3;
 const MIN_DAMPING: f64 = 1e-10;
 
-/// Steps that are damped more than this are nothing but rounding: the minimum is found, …
+/// Damping above which a step is only rounding: the search has reached the minimum.
 const MAX_DAMPING: f64 = 1e12;
 
-/// … as it is after so many steps in a row that neither lowered the sum of squares by more than its
-/// rounding nor halved the gain to be had, …
+/// Number of consecutive steps after which the search ends if none of them lowered the sum of
+/// squares by more than its rounding or halved the remaining gain.
 const MAX_IDLE_STEPS: u32 = 16;
 
-/// … and where no more than this fraction of the first sum of squares is left: the residuals are
-/// those of rounding.
+/// Fraction of the first sum of squares at which the search ends: the remaining residuals are
+/// rounding errors.
 const NOTHING_LEFT: f64 = 1e-28;
 
 /// The fraction of the sum of squares below which no gain is worth a step: the parameters would
@@ -28,14 +28,16 @@ const NOTHING_LEFT: f64 = 1e-28;
 const NEGLIGIBLE_GAIN: f64 = 1e-22;
 
 /// The relative change of the sum of squares that its rounding hides: the sum is flat near its
-/// minimum, and there a step is judged by the gain that it leaves.
+/// minimum, where a step is judged by the remaining gain.
 const ROUNDING: f64 = 1e-12;
 
-/// The smallest pivot of the normal matrix, scaled to a unit diagonal, that is no rounding error.
+/// The smallest pivot of the normal matrix, scaled to a unit diagonal, that exceeds rounding
+/// errors.
 const MIN_PIVOT: f64 = 1e-13;
 
 /// The normal equations at one state: with the residuals `r` and the matrix `J` of their
-/// derivatives by the parameters, the matrix `JᵀJ`, the vector `Jᵀr` and the sum `rᵀr`.
+/// derivatives with respect to the parameters, the matrix `JᵀJ`, the vector `Jᵀr` and the sum
+/// `rᵀr`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NormalEquations {
     /// Row by row, up to the diagonal.
@@ -44,7 +46,7 @@ pub struct NormalEquations {
     sum_of_squares: f64,
 }
 
-/// The state of least squares.
+/// Result of a search: the state with the least sum of squares.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Minimum<S> {
     /// The state.
@@ -55,12 +57,12 @@ pub struct Minimum<S> {
     pub covariance: Vec<Vec<f64>>,
 }
 
-/// Reasons why no minimum was found.
+/// Reasons for which no minimum was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LeastSquaresError {
-    /// The residuals leave a direction of the state open.
+    /// The residuals do not determine a direction of the state.
     Undetermined,
-    /// The search did not come to an end, or the start is not possible.
+    /// The search did not converge, or the start is not a valid state.
     NotConverged,
 }
 
@@ -78,15 +80,15 @@ impl error::Error for LeastSquaresError {}
 /// Finds the state of least squares near `start`.
 ///
 /// `stepped` changes a state by a step, one number per parameter: a state need not be a vector
-/// itself, as a rotation is none. `equations` returns the normal equations of all residuals, or
-/// `None` for a state that is not possible. The search ends where a full step would move the
-/// parameters by less than 1e−10 of their standard errors, or where rounding hides any gain: of
-/// residuals without noise, or whose derivatives are differences.
+/// itself, for example a rotation. `equations` returns the normal equations of all residuals, or
+/// `None` for an invalid state. The search ends where a full step would move the parameters by less
+/// than 1e−10 of their standard errors, or where rounding hides any gain, as with noise-free
+/// residuals or finite-difference derivatives.
 ///
 /// # Errors
 ///
-/// Returns an error if the start is not possible, if the search does not end, or if the residuals
-/// leave a direction of the state open.
+/// Returns an error if the start is invalid, if the search does not converge, or if the residuals
+/// do not determine a direction of the state.
 ///
 /// # Examples
 ///
@@ -151,7 +153,7 @@ pub fn minimise<S>(
 }
 
 impl NormalEquations {
-    /// Returns the equations of a number of parameters, without residuals.
+    /// Creates the equations of a number of parameters, without residuals.
     pub fn new(parameters: usize) -> Self {
         Self {
             rows: (1..=parameters).map(|length| vec![0.0; length]).collect(),
@@ -160,7 +162,7 @@ impl NormalEquations {
         }
     }
 
-    /// Adds a residual with its derivatives by the parameters.
+    /// Adds a residual with its derivatives with respect to the parameters.
     pub fn add(&mut self, residual: f64, slopes: &[f64]) {
         for (row, slope) in self.rows.iter_mut().zip(slopes) {
             for (element, other) in row.iter_mut().zip(slopes) {
@@ -180,8 +182,8 @@ impl NormalEquations {
         Some(step)
     }
 
-    /// Returns by how much a full step would lower the sum of squares if the residuals were linear;
-    /// NaN without such a step.
+    /// Returns the decrease of the sum of squares by a full step if the residuals were linear; NaN
+    /// without such a step.
     fn gain(&self) -> f64 {
         self.step(0.0).map_or(f64::NAN, |step| {
             let gains = step.iter().zip(&self.gradient);
@@ -219,7 +221,7 @@ struct Factor {
 }
 
 impl Factor {
-    /// Returns nothing if the matrix is singular, or not finite.
+    /// Returns `None` if the matrix is singular or not finite.
     fn new(rows: &[Vec<f64>], damping: f64) -> Option<Self> {
         let diagonal = rows.iter().filter_map(|row| row.last());
         let scale: Vec<f64> = diagonal.map(|element| 1.0 / element.sqrt()).collect();

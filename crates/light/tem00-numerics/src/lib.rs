@@ -8,8 +8,9 @@
 //!
 //! # Scope and non-goals
 //!
-//! Only what more than one crate above needs and no library has. This is no array library: there is
-//! no slicing, no broadcasting and no linear algebra beyond a Cholesky factor.
+//! The crate holds only functions that several other crates need and no library has. It is not an
+//! array library: there is no slicing, no broadcasting and no linear algebra beyond a Cholesky
+//! factor.
 
 pub mod cast;
 pub mod check;

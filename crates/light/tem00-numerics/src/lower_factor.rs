@@ -1,13 +1,13 @@
 /// Returns the rows, up to the diagonal, of the lower triangular L with L Lᵀ = R (Cholesky), or the
-/// first row with which R is not positive semi-definite.
+/// index of the first row at which R is not positive semi-definite.
 ///
 /// The matrix is scaled to a diagonal of about 1, and given by its rows, of which only the part up
-/// to the diagonal counts. A pivot up to `rounding` is taken as 0, and its column is left out: in a
+/// to the diagonal is used. A pivot up to `rounding` counts as 0, and its column is left out: in a
 /// semi-definite matrix the elements of that column are at most the root of `rounding`.
 ///
 /// # Errors
 ///
-/// Returns the index of the row that contradicts those above it.
+/// Returns the index of the row that contradicts the rows above it.
 ///
 /// # Examples
 ///
@@ -40,7 +40,7 @@ pub fn lower_factor(rows: &[Vec<f64>], rounding: f64) -> Result<Vec<Vec<f64>>, u
     Ok(factor)
 }
 
-/// Returns the sum of the products as far as both lists go.
+/// Returns the sum of the products over the length of the shorter list.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
@@ -51,7 +51,7 @@ mod tests {
 
     #[test]
     fn the_square_of_the_factor_is_the_matrix() {
-        // The third variable is the sum of the others: singular.
+        // The third variable is the sum of the others, so the matrix is singular.
         let (c, s) = (0.3, (2.0_f64 + 2.0 * 0.3).sqrt().recip());
         let rows = [
             vec![1.0],

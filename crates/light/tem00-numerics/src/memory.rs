@@ -1,12 +1,12 @@
 use core::{error, fmt, num::NonZero};
 use std::{fs, thread};
 
-/// Not as much memory can be had as is needed.
+/// Less memory is available than is needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MemoryError {
-    /// The bytes that are needed.
+    /// Number of bytes needed.
     pub needed: u64,
-    /// The bytes that are available.
+    /// Number of bytes available.
     pub available: u64,
 }
 
@@ -23,11 +23,12 @@ impl fmt::Display for MemoryError {
 
 impl error::Error for MemoryError {}
 
-/// Checks that so many bytes are available, where the system says what is (Linux).
+/// Checks that `needed` bytes are available. Always passes where the system does not report its
+/// memory (all systems but Linux).
 ///
 /// # Errors
 ///
-/// Returns an error if they are not.
+/// Returns an error if fewer bytes are available.
 pub fn check_memory(needed: u64) -> Result<(), MemoryError> {
     check_against(needed, available_memory())
 }
@@ -39,11 +40,12 @@ fn check_against(needed: u64, available: Option<u64>) -> Result<(), MemoryError>
     }
 }
 
-/// Returns the bytes that the system can give without swapping and that the limits of the process
-/// (`ulimit -v`) allow, where it says so (Linux).
+/// Returns the number of bytes that the system can provide without swapping and that the limits of
+/// the process (`ulimit -v`) allow; `None` where the system does not report it (all systems but
+/// Linux).
 ///
-/// Many systems grant any memory that is asked for and end the program when it is used, so whoever
-/// is about to use much asks first. A container may have less than its system.
+/// Many systems grant any request for memory and end the program when it uses the memory, so a
+/// caller should ask before a large allocation. A container may have less memory than its system.
 pub fn available_memory() -> Option<u64> {
     let read = |path| fs::read_to_string(path).ok();
     let system = read("/proc/meminfo").and_then(|text| bytes_of(&text, "MemAvailable:"));
@@ -54,28 +56,30 @@ pub fn available_memory() -> Option<u64> {
     [system, process].into_iter().flatten().min()
 }
 
-/// The bytes that a line of `text` states in kibibytes after `name`.
+/// The number of bytes that a line of `text` states in kibibytes after `name`.
 fn bytes_of(text: &str, name: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     let kibibytes = line.trim().strip_suffix("kB")?.trim_end();
     kibibytes.parse::<u64>().ok()?.checked_mul(1024)
 }
 
-/// The bytes of addresses that a process may take by a Linux system's description of its limits.
+/// The size of the address space, in bytes, that a Linux system's description of limits allows a
+/// process.
 fn address_space_limit(limits: &str) -> Option<u64> {
     let mut lines = limits.lines();
     let line = lines.find_map(|line| line.strip_prefix("Max address space"))?;
     line.split_whitespace().next()?.parse().ok()
 }
 
-/// The addresses that the C library of Linux systems sets aside for the small allocations of a
-/// thread.
+/// The address space, in bytes, that the C library of Linux systems reserves for the small
+/// allocations of a thread.
 const ARENA: u64 = 64 << 20;
 
-/// Memory kept for all that is too small to be checked.
+/// Memory, in bytes, reserved for allocations too small to be checked.
 const SMALL: u64 = 16 << 20;
 
-/// Memory that a limit leaves beside what `threads` set aside, as many of them as can.
+/// Memory, in bytes, that a limit leaves after the reservations of `threads`, of as many threads as
+/// can reserve.
 fn left(limit: u64, taken: u64, threads: u64) -> u64 {
     let free = limit.saturating_sub(taken);
     let shared = free - threads.min(free / ARENA) * ARENA;
@@ -116,7 +120,7 @@ mod tests {
         assert_eq!(address_space_limit(""), None);
         assert_eq!(left(400 << 20, 100 << 20, 3), 92 << 20);
         assert_eq!(left(200 << 20, 100 << 20, 3), 20 << 20);
-        // What a thread can set aside is gone, even where all that is small needs it.
+        // A thread's possible reservation is subtracted, even where the small allocations need it.
         assert_eq!(left(170 << 20, 100 << 20, 3), 0);
         assert_eq!(left(163 << 20, 100 << 20, 3), 47 << 20);
         assert_eq!(left(800, 900, 3), 0);

@@ -1,5 +1,5 @@
-/// Returns the number below which a standard normal variate lies with the probability `p` in (0,
-/// 1), to 16 digits.
+/// Returns the quantile of the standard normal distribution, below which a variate lies with the
+/// probability `p` in (0, 1), to 16 digits.
 ///
 /// # References
 ///
@@ -27,8 +27,8 @@ pub fn normal_quantile(p: f64) -> f64 {
     magnitude.copysign(q)
 }
 
-/// Evaluates a polynomial with ascending coefficients by Estrin's rule: in pairs, which do not wait
-/// for one another.
+/// Evaluates a polynomial with ascending coefficients by Estrin's scheme: in pairs, which are
+/// independent of each other.
 fn polynomial(c: &[f64; 8], x: f64) -> f64 {
     let (x2, x4) = (x * x, x * x * (x * x));
     let low = (c[0] + c[1] * x) + (c[2] + c[3] * x) * x2;

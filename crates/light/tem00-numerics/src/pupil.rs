@@ -1,8 +1,10 @@
-//! Functions of circular pupils from arithmetic and square roots, but for [`jinc`] and [`sinc`].
+//! Functions of circular pupils, computed from arithmetic and square roots, except for [`jinc`] and
+//! [`sinc`].
 //!
-//! No branch that a select cannot replace, no table look-up and no library, so that a loop over
-//! them fills the vector units; no fused multiplication, so that their bits are the same on every
-//! platform. Single calls and batches share them, and so agree to the last bit.
+//! They have no branch that a select cannot replace, no table look-up and no library call, so that
+//! a loop over them fills the vector units, and no fused multiplication, so that their bits are the
+//! same on every platform. Single calls and batches share the functions and therefore agree to the
+//! last bit.
 //!
 //! The polynomials interpolate at Chebyshev nodes over the interval in question, mapped to [−1, 1].
 
@@ -39,8 +41,8 @@ pub fn disc_overlap(shift: f64) -> f64 {
 /// Returns the shift ρ in [0, 1], in units of the diameter, at which [`disc_overlap`] is `overlap`,
 /// within 1e−15.
 ///
-/// An overlap of 1 or more needs no shift and one of 0 or less, or NaN, is reached at ρ = 1, so
-/// that values with rounding noise at either end are mapped to the end.
+/// An overlap of 1 or more gives ρ = 0, and an overlap of 0 or less, or NaN, gives ρ = 1, so that
+/// values with rounding noise at either end are mapped to the end.
 #[inline(always)]
 pub fn disc_overlap_inverse(overlap: f64) -> f64 {
     let r = 0.5 * circular_path_overlap_inverse(overlap);
@@ -81,7 +83,7 @@ pub fn circular_path_overlap_inverse(overlap: f64) -> f64 {
 
 /// Returns `jinc(x) = 2 J₁(x) / x`, which is 1 at x = 0.
 ///
-/// The amplitude of the Airy pattern of a circular pupil; its first zero lies at x = 3.8317.
+/// It is the amplitude of the Airy pattern of a circular pupil; its first zero lies at x = 3.8317.
 pub fn jinc(x: f64) -> f64 {
     if x.abs() < 1e-4 {
         // 1 − x²/8 + x⁴/192: the last term is below 1e−18.
@@ -120,7 +122,7 @@ pub fn sinc_pi_squared(x: f64) -> f64 {
 
 /// Returns the x in [0, π] at which [`sinc`] is `value`, on the branch before the first zero.
 ///
-/// A value of 1 or more is reached at x = 0 and one of 0 or less at x = π.
+/// A value of 1 or more gives x = 0, and a value of 0 or less gives x = π.
 pub fn sinc_inverse(value: f64) -> f64 {
     if value >= 1.0 {
         return 0.0;

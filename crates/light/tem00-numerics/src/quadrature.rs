@@ -1,4 +1,4 @@
-//! Quadrature in one dimension.
+//! One-dimensional quadrature.
 //!
 //! | rule | for |
 //! |---|---|
@@ -15,7 +15,7 @@ const RULE: [(f64, f64); 16] = gauss_legendre();
 /// are at most `longest` wide; 0 where `end ≤ start`.
 ///
 /// On one panel polynomials up to degree 31 are exact, and a cosine of one period to 10⁻¹⁵. The
-/// number of panels, `(end − start) / longest`, must be one that a loop can take.
+/// number of panels, `(end − start) / longest`, must be small enough for a loop.
 ///
 /// # Examples
 ///
@@ -31,8 +31,8 @@ pub fn integrate(f: impl Fn(f64) -> f64, [start, end]: [f64; 2], longest: f64) -
     sum
 }
 
-/// Calls `visit` with the nodes and weights of the rule of [`integrate`], for integrals that share
-/// them.
+/// Calls `visit` with the nodes and weights of the rule of [`integrate`], for several integrals
+/// over the same nodes.
 pub fn for_each_node([start, end]: [f64; 2], longest: f64, mut visit: impl FnMut(f64, f64)) {
     if end <= start {
         return;
@@ -103,7 +103,7 @@ const fn node_and_weight(index: usize, points: usize) -> (f64, f64) {
     let mut x = cosine(PI * (index as f64 + 0.75) / (points as f64 + 0.5));
     let mut slope = 1.0;
     let mut step = 0;
-    // The start is good to two digits, which each step doubles.
+    // The starting value is correct to two digits, and each step doubles the number of digits.
     while step < 6 {
         let (value, derivative) = legendre(x, points);
         slope = derivative;
@@ -154,7 +154,8 @@ mod tests {
             assert_relative(area, exact, 1e-14);
         }
         let missed = integrate(|x| x.powi(32), [-1.0, 1.0], 2.0) * 16.5;
-        // P₁₆² is x³² less what the rule takes for it: 2¹⁶ · 16!³ · … = 4e−10 of the area.
+        // The error for x³² equals the error for P₁₆², which the rule takes as 0: 2¹⁶ · 16!³ · … =
+        // 4e−10 of the area.
         assert!((1e-11..1e-7).contains(&(1.0 - missed)), "{missed}");
     }
 

@@ -23,7 +23,7 @@ pub struct Refusal {
     pub index: Option<usize>,
     /// The unit of the value, empty for a plain number.
     pub unit: &'static str,
-    /// The allowed values, to be read behind "must be".
+    /// The allowed values, worded to follow "must be".
     pub allowed: Cow<'static, str>,
 }
 
@@ -69,7 +69,8 @@ impl Refusal {
         }
     }
 
-    /// Returns the refusal with the name that the caller's own caller knows.
+    /// Returns the refusal with another name of the argument, the one that the caller's own caller
+    /// knows.
     #[must_use]
     pub fn named(self, parameter: &'static str) -> Self {
         Self { parameter, ..self }

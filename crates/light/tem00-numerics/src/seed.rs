@@ -5,16 +5,16 @@
 pub enum Purpose {
     /// The speckle of a laser of a scene, by its number.
     Laser,
-    /// The speckle of a body that moves by itself, from the seed of the laser; body 0 has that
-    /// seed.
+    /// The speckle of a body that moves by itself, from the seed of the laser; body 0 has the seed
+    /// of the laser.
     Body,
-    /// The noise of a sensor in a frame, or another draw that each frame has anew.
+    /// The noise of a sensor in a frame, or another quantity drawn anew for each frame.
     Frame,
-    /// Member of a sum of patterns; pattern 0 has the seed of the sum.
+    /// A pattern in a sum of patterns; pattern 0 has the seed of the sum.
     Pattern,
 }
 
-/// Returns the seed of number `index` for a purpose.
+/// Returns the seed with the number `index` for a purpose.
 ///
 /// Lasers, bodies and frames take steps of a Weyl sequence, which keep the seeds of small indices
 /// far apart from each other. Patterns are scattered over all seeds, so that the second pattern of
@@ -22,7 +22,7 @@ pub enum Purpose {
 ///
 /// # Examples
 ///
-/// Two lasers of a scene have speckle of their own:
+/// Two lasers of a scene have independent speckle:
 ///
 /// ```
 /// use tem00_numerics::seed::{Purpose, derived};
@@ -42,8 +42,8 @@ pub const fn derived(seed: u64, purpose: Purpose, index: u64) -> u64 {
     }
 }
 
-/// Spreads neighbouring numbers over all: the output function of `SplitMix64` (Steele, Lea and
-/// Flood 2014).
+/// Spreads neighbouring numbers over the whole range: the output function of `SplitMix64` (Steele,
+/// Lea and Flood 2014).
 #[inline]
 pub const fn scattered(number: u64) -> u64 {
     let mut bits = number.wrapping_add(GOLDEN);

@@ -1,7 +1,7 @@
 use core::fmt;
 
-/// A number as messages show it: as it is read back, with an exponent where it would have many
-/// zeros.
+/// A number formatted for messages: the shortest form that parses back, with an exponent below 1e-4
+/// and from 1e7.
 ///
 /// # Examples
 ///

@@ -1,8 +1,8 @@
 /// Runs a loop with the widest vector instructions of the processor, found at run time.
 ///
-/// No step of it is contracted or reordered, so its bits do not depend on their width. What the
-/// loop calls takes part if it is inlined. Without the feature `simd` the loop runs with the
-/// instructions that every processor of the target has.
+/// No operation is contracted or reordered, so the bits of the result do not depend on the vector
+/// width. Functions that the loop calls are vectorised if they are inlined. Without the feature
+/// `simd` the loop runs with the instructions that every processor of the target has.
 ///
 /// # Examples
 ///
@@ -22,7 +22,7 @@ pub fn vectorised(body: impl FnOnce()) {
 }
 
 /// Runs a loop with the vector instructions that every processor of the target has. With the
-/// feature `simd` these are the widest of the processor at hand.
+/// feature `simd` it uses the widest instructions of the processor in use.
 #[cfg(not(feature = "simd"))]
 #[inline(always)]
 pub fn vectorised(body: impl FnOnce()) {

@@ -7,20 +7,19 @@ use super::pupil_overlap_correlation;
 /// Coefficients along each axis.
 const TERMS: usize = 12;
 
-/// Axial shifts below this one take at most β²/4 = π² x² = 1e-13 of the correlation.
+/// Axial shifts below this one reduce the correlation by at most β²/4 = π² x² = 1e-13.
 const NO_AXIAL_SHIFT: f64 = 1e-7;
 
-/// The factor by which an axial displacement reduces the correlation at the peak, beside a
-/// displacement of the pupil, as coefficients of the products of powers of 2 s − 1, row by row, and
-/// of 2 x² − 1.
+/// Coefficients of the factor by which an axial displacement reduces the correlation at the peak,
+/// in addition to a displacement of the pupil: a polynomial in 2 s − 1, row by row, and 2 x² − 1.
 ///
 /// ```text
 /// γ(s, x) / γ(s, 0)       s from 0 to 1 pupil diameter, x from 0 to 1 decorrelation length
 /// ```
 ///
-/// It is analytic in s and x², so that the polynomial through 12 × 12 points of Chebyshev meets the
-/// integral of [`CorrelationLaw::AtPeak`](crate::CorrelationLaw::AtPeak) within 1e−5: only
-/// arithmetic, which several points at a time share in vector units.
+/// The factor is analytic in s and x², so that the polynomial through 12 × 12 Chebyshev points
+/// reproduces the integral of [`CorrelationLaw::AtPeak`](crate::CorrelationLaw::AtPeak) within
+/// 1e−5. Its arithmetic runs on several points at a time in vector units.
 #[rustfmt::skip]
 const COEFFICIENTS: [[f64; TERMS]; TERMS] = [
     [
@@ -85,18 +84,19 @@ const COEFFICIENTS: [[f64; TERMS]; TERMS] = [
     ],
 ];
 
-/// Replaces the first `count` shifts across the pupil, in its diameters, by those that leave alone
-/// the correlation which they leave together with shifts along the axis, in axial decorrelation
-/// lengths.
+/// Replaces the first `count` shifts across the pupil, in pupil diameters, by equivalent shifts:
+/// alone, each leaves the correlation that the original shift leaves together with a shift along
+/// the axis, in axial decorrelation lengths.
 ///
 /// ```text
 /// chat²(s') = γ(s, x)       the law at the peak, CorrelationLaw::AtPeak
 /// ```
 ///
-/// Shifts beyond one diameter keep growing, which tells the speckle of two later states apart:
-/// exactly so for motion across the line of sight; along it, beyond the first zero of the
-/// correlation, by the unit of that zero, without the revival of 4.7 % behind it. Infinite shifts
-/// across the pupil stay infinite. The shifts up to the next multiple of 8 may be replaced as well.
+/// Shifts beyond one diameter keep growing, so that two later states can be distinguished. They are
+/// exact for motion across the line of sight. For motion along it, beyond the first zero of the
+/// correlation, they are in units of this zero and omit the revival of 4.7 % beyond it. Infinite
+/// shifts across the pupil stay infinite. The shifts up to the next multiple of 8 may be replaced
+/// as well.
 ///
 /// # Examples
 ///
@@ -110,7 +110,7 @@ const COEFFICIENTS: [[f64; TERMS]; TERMS] = [
 /// let left = pupil_overlap_correlation(shift[0]);
 /// assert!((left - CorrelationLaw::AtPeak.correlation(0.25, 0.5)).abs() < 1e-5);
 /// ```
-#[inline(always)] // They are read and written where they lie.
+#[inline(always)] // The arrays are read and written in place.
 pub fn add_axial_shifts<const N: usize>(
     count: usize,
     pupil_shifts: &mut [f64; N],
@@ -121,7 +121,7 @@ pub fn add_axial_shifts<const N: usize>(
     if axial_shifts[..count].iter().all(is_lateral) {
         return;
     }
-    // Whole vectors are faster than the rest of one.
+    // Whole vectors are faster than a partial one.
     let count = count.next_multiple_of(8).min(N);
     let mut kept = [0.0; N];
     vectorised(
@@ -136,8 +136,8 @@ pub fn add_axial_shifts<const N: usize>(
     );
 }
 
-/// The shift whose overlap leaves as much as a shift across the pupil and one along the axis, which
-/// has `kept` a part of what the first has left.
+/// The shift whose overlap leaves the same correlation as a shift across the pupil and a shift
+/// along the axis; the axial shift multiplies the correlation by `kept`.
 #[inline(always)]
 fn equivalent_shift(lateral: f64, axial: f64, kept: f64) -> f64 {
     let equivalent = disc_overlap_inverse((pupil_overlap_correlation(lateral) * kept).sqrt());
@@ -150,8 +150,8 @@ fn equivalent_shift(lateral: f64, axial: f64, kept: f64) -> f64 {
     }
 }
 
-/// Writes the factors for the first `count` shifts of the pupil and along the axis, each counted up
-/// to 1.
+/// Writes the factors for the first `count` shifts across the pupil and along the axis, each
+/// clamped to 1.
 #[inline(always)]
 fn write_factors<const N: usize>(
     count: usize,

@@ -11,18 +11,19 @@ use crate::Refusal;
 /// s = chat⁻¹(√γ)
 /// ```
 ///
-/// It places any kind of decorrelation on a stack whose pupil moves along a straight line. The
-/// result runs from 0 for γ = 1 to 1 for γ = 0.
+/// It maps any kind of decorrelation to a position in a stack whose pupil moves along a straight
+/// line. The result ranges from 0 for γ = 1 to 1 for γ = 0.
 ///
 /// # Errors
 ///
-/// Returns an error unless γ is in [0, 1]. A measured correlation can lie outside by its noise:
-/// clamp it first.
+/// Returns an error unless γ is in [0, 1]. A measured correlation can lie outside of this interval
+/// because of noise: clamp it first.
 ///
 /// # Examples
 ///
-/// In collimated light the speckle moves across the pupil as far as the surface does. How far may
-/// a surface move in its plane before a camera with a pupil of 3.125 mm loses half the correlation?
+/// In collimated light the speckle moves across the pupil as far as the surface does. How far may a
+/// surface move in its plane before a camera with a pupil of 3.125 mm loses half of the
+/// correlation?
 ///
 /// ```
 /// use tem00_decorrelation::{equivalent_pupil_shift, pupil_overlap_correlation};
@@ -49,7 +50,7 @@ pub fn equivalent_pupil_shift(correlation: f64) -> Result<f64, Refusal> {
 /// x = sinc⁻¹(√γ) / π
 /// ```
 ///
-/// The result runs from 0 for γ = 1 to 1 for γ = 0. Beyond x = 1 the correlation revives to 4.7 %
+/// The result ranges from 0 for γ = 1 to 1 for γ = 0. Beyond x = 1 the correlation revives to 4.7 %
 /// and falls again.
 ///
 /// # Errors

@@ -4,7 +4,7 @@ use tem00_numerics::{quadrature::for_each_node, sinc};
 
 use super::{axial_correlation, pupil_overlap_correlation};
 
-/// Law of the correlation after a pupil displacement and an axial displacement together.
+/// Law of the correlation after a combined pupil displacement and axial displacement.
 ///
 /// Defocus moves a displaced pattern. Relative to the image of the surface it shifts by
 ///
@@ -13,32 +13,32 @@ use super::{axial_correlation, pupil_overlap_correlation};
 /// ```
 ///
 /// with the pupil displacement s in pupil diameters, the axial displacement x in axial
-/// decorrelation lengths and the speckle size h: against the pupil displacement where the surface
-/// has come nearer, along it where it has gone away. Whether that shift is followed decides what is
-/// left: [`SpeckleMotion`](crate::SpeckleMotion) follows it, to [`AtPeak`](Self::AtPeak); who looks
-/// the pattern up at the projected displacement of the surface point has
-/// [`AtImageDisplacement`](Self::AtImageDisplacement). Without defocus, or without pupil
+/// decorrelation lengths and the speckle size h: The shift is against the pupil displacement if the
+/// surface has approached, and along it if the surface has receded. The remaining correlation
+/// depends on whether the look-up follows this shift: [`SpeckleMotion`](crate::SpeckleMotion)
+/// follows it, to [`AtPeak`](Self::AtPeak); a look-up at the projected displacement of the surface
+/// point has [`AtImageDisplacement`](Self::AtImageDisplacement). Without defocus, or without pupil
 /// displacement, both are [`pupil_overlap_correlation`] times [`axial_correlation`].
 ///
-/// Both integrals run over the lens ℓ that two discs of radius 1, with centres at ±s, share:
+/// Both integrals run over the overlap ℓ of two discs of radius 1 with centres at ±s:
 ///
 /// ```text
 /// γ = |μ|²,   μ = (1/π) ∫_ℓ exp(iβ |p − c|²) d²p,   β = 2π x
 /// ```
 ///
-/// By the theorem of Stokes they are line integrals along its two arcs, of a smooth function:
+/// By Stokes' theorem they are line integrals of a smooth function along its two arcs:
 ///
 /// ```text
 /// μ = (1/π) Σ_k ∫₀^acos(s) (1 − k cos t) E(β (1 + k² − 2k cos t)) dt,   E(z) = (exp(iz) − 1)/(iz)
 /// ```
 ///
-/// with k = s for both arcs if c is the middle of the lens, k = 0 and 2s if it is the centre of a
-/// disc.
+/// with k = s for both arcs if c is the middle of the overlap, and k = 0 and 2s if c is the centre
+/// of a disc.
 ///
 /// # Validity
 ///
-/// A circular pupil without aberrations. The sign of μ, negative in the first revival of a pattern
-/// out of focus, is lost in γ.
+/// The pupil is circular and free of aberrations. The sign of μ, negative in the first revival of a
+/// pattern out of focus, is lost in γ.
 ///
 /// # Examples
 ///
@@ -58,9 +58,9 @@ use super::{axial_correlation, pupil_overlap_correlation};
 /// - S. Bergmann et al. 2016, §6.4.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CorrelationLaw {
-    /// The correlation at Δr from the displacement of the projected point, where it is largest as
-    /// long as it is large: around the first zero the field of correlation breaks up, and there is
-    /// no one peak to follow.
+    /// The correlation at Δr from the displacement of the projected point. It is the largest
+    /// correlation as long as the correlation is large: around the first zero the peak breaks up,
+    /// and there is no single peak to follow.
     ///
     /// It is also the correlation at the displacement of the projected point itself if the focus
     /// lies midway, so that reference and moved state are out of focus by ∓x/2.
@@ -76,11 +76,11 @@ impl CorrelationLaw {
     /// Returns the intensity correlation γ in [0, 1] left after a displacement across the pupil, in
     /// pupil diameters, and along the axis, in axial decorrelation lengths.
     ///
-    /// It is even in both. The integrals are exact to 1e−8. From an axial displacement of 3e−5
-    /// lengths up to one of 3200 they are found by Gauss–Legendre quadrature: in half a microsecond
-    /// to one at first, and in a time proportional to the displacement beyond a few lengths. The
-    /// product of the laws of either displacement is returned for less, where it is as exact, and
-    /// farther out, where all are below 4/β² = 1e−8.
+    /// It is even in both. The integrals are exact to 1e−8. From axial displacements of 3e−5 up to
+    /// 3200 lengths they are computed by Gauss–Legendre quadrature, in half a microsecond to one at
+    /// small displacements and in a time proportional to the displacement beyond a few lengths.
+    /// Outside of this range the product of the laws of both displacements is returned: it is
+    /// equally exact at smaller displacements, and at larger ones all values are below 4/β² = 1e−8.
     pub fn correlation(self, pupil_shift: f64, axial_shift: f64) -> f64 {
         let (s, x) = (pupil_shift.abs(), axial_shift.abs());
         // NaN counts as decorrelated in the product.
@@ -103,19 +103,20 @@ impl CorrelationLaw {
     }
 }
 
-/// Up to here the product is exact to 1e−8, too: the phase of the defocus lies between 0 and β over
-/// the pupil, so that its variance over any part of it, which is what γ loses, is at most β²/4.
+/// Axial displacement up to which the product is exact to 1e−8, too: the phase of the defocus lies
+/// between 0 and β over the pupil, so that its variance over any part of the pupil, which is the
+/// loss of γ, is at most β²/4.
 const SMALLEST_AXIAL_SHIFT: f64 = 3e-5;
 
-/// From here on γ ≤ (2/β)² < 1e−8: |E(z)| ≤ 2/z, and the arcs are seen from c under 2π at most.
+/// Axial displacement from which γ ≤ (2/β)² < 1e−8: |E(z)| ≤ 2/z, and the arcs are seen from c
+/// under 2π at most.
 const LARGEST_AXIAL_SHIFT: f64 = 3_200.0;
 
-/// Returns the part of μ, as [re, im], from the arc whose own centre lies `k` from that of the
-/// defocus.
+/// Returns the part of μ, as [re, im], from the arc whose own centre lies `k` from the centre of
+/// the defocus.
 fn arc(s: f64, beta: f64, k: f64) -> [f64; 2] {
     let end = s.acos();
-    // The phase changes along the arc at most at the rate of its end or, short of it, a right
-    // angle.
+    // The phase changes fastest at the end of the arc, which spans at most a right angle.
     let longest = PHASE_PER_PANEL / (beta * 2.0 * k * end.sin());
     let mut total = [0.0; 2];
     for_each_node([0.0, end], longest, |t, weight| {

@@ -16,9 +16,9 @@ use rustfft::{Fft, FftPlanner};
 /// y_s(n) = x(n) exp(−2πi n s / length) + x(n + D) exp(−2πi (n + D) s / length)
 /// ```
 ///
-/// so that no zero is ever transformed. D is the smallest divisor of `length` that holds 8/9 of the
-/// aperture; the samples beyond it are folded back. A disc of the even diameter Q/2 needs that, as
-/// it spans Q/2 + 1 lattice points.
+/// so that no zero is ever transformed. D is the smallest divisor of `length` that is at least 8/9
+/// of the aperture; the samples beyond D are folded back. A disc of the even diameter Q/2 needs the
+/// folding, as it spans Q/2 + 1 lattice points.
 #[derive(Clone)]
 pub(super) struct Axis {
     aperture: usize,
@@ -52,7 +52,8 @@ impl Axis {
         self.aperture
     }
 
-    /// The number of remainders s that the frequencies of [`transform`](Self::transform) come in.
+    /// The number of remainders s, the parts into which [`transform`](Self::transform) splits the
+    /// frequencies.
     pub(super) const fn parts(&self) -> usize {
         self.parts
     }
@@ -63,8 +64,8 @@ impl Axis {
         short.get_inplace_scratch_len().max(outside)
     }
 
-    /// Transforms the line `input`; `X(parts · j + s)` comes to lie at `output[s · D + j]`. Nothing
-    /// is left of `input`.
+    /// Transforms the line `input`; `X(parts · j + s)` is written to `output[s · D + j]`. The
+    /// contents of `input` are destroyed.
     #[inline(always)]
     pub(super) fn transform(
         &self,
@@ -95,7 +96,8 @@ impl Axis {
     }
 }
 
-/// Writes `y_s` into `part`: the values times their twiddles, what is beyond the part folded back.
+/// Writes `y_s` into `part`: the values times their twiddles, with values beyond the part folded
+/// back.
 #[inline(always)]
 fn turn(
     head: &[Complex<f32>],

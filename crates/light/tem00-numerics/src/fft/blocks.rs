@@ -1,4 +1,4 @@
-//! Moves of values between rows and columns, in blocks as wide as a line of the cache.
+//! Moves of values between rows and columns, in blocks as wide as a cache line.
 //!
 //! Between the two passes the spectra of [`COLUMNS`] neighbouring columns lie together,
 //! `[block][ky][column]`, so that both passes read and write whole cache lines.
@@ -7,35 +7,35 @@ use core::{array, ops::Range};
 
 use num_complex::Complex;
 
-/// Columns in a block: 64 bytes, a line of the cache.
+/// Columns in a block: 64 bytes, a cache line.
 pub(super) const COLUMNS: usize = 8;
 
-/// The most columns that are filled together.
+/// The largest number of columns that are filled together.
 pub(super) const PANEL: usize = 64;
 
-/// Rows of each part of a spectrum that are spread together.
+/// The number of rows of each part of a spectrum that are spread together.
 const TILE: usize = 32;
 
-/// The way from one line of `length` values to the next: whole lines of the cache.
+/// Distance from one line of `length` values to the next, in whole cache lines.
 ///
-/// Lines a multiple of 4 KiB apart would share one set of the nearest cache.
+/// Lines at a multiple of 4 KiB would share one set of the first-level cache.
 pub(super) const fn stride(length: usize) -> usize {
     length.next_multiple_of(COLUMNS) + COLUMNS
 }
 
-/// Returns `length` values that begin with a line of the cache. They hold anything.
+/// Returns `length` values that begin at a cache line. Their contents are arbitrary.
 pub(super) fn aligned(values: &mut Vec<Complex<f32>>, length: usize) -> &mut [Complex<f32>] {
     let needed = length + COLUMNS;
     if values.len() < needed {
         values.resize(needed, Complex::new(0.0, 0.0));
     }
-    // Elsewhere than on a line everything works as well, only slower.
+    // Without this alignment everything works as well, only slower.
     let skipped = values.as_ptr().align_offset(64).min(COLUMNS);
     &mut values[skipped..skipped + length]
 }
 
-/// Writes columns of an aperture into lines one [`stride`] apart; `fill(columns, y, values)` makes
-/// what they hold in row y.
+/// Writes columns of an aperture into lines one [`stride`] apart; `fill(columns, y, values)`
+/// generates their values in row y.
 #[inline(always)]
 pub(super) fn fill_columns(
     columns: Range<usize>,
@@ -43,7 +43,7 @@ pub(super) fn fill_columns(
     fill: &impl Fn(Range<usize>, usize, &mut [Complex<f32>]),
     lines: &mut [Complex<f32>],
 ) {
-    // A few rows at a time stay in the nearest cache, and leave it as whole lines of it.
+    // A few rows at a time stay in the first-level cache, and leave it as whole cache lines.
     let mut rows = [[Complex::new(0.0, 0.0); PANEL]; COLUMNS];
     for y in (0..height).step_by(rows.len()) {
         for (y, row) in (y..height).zip(&mut rows) {
@@ -51,7 +51,7 @@ pub(super) fn fill_columns(
         }
         for (x, line) in lines.chunks_exact_mut(stride(height)).enumerate() {
             let line = &mut line[y..height];
-            // A copy of known length is no loop.
+            // A copy of known length compiles without a loop.
             if let Some(whole) = line.first_chunk_mut() {
                 *whole = rows.each_ref().map(|row| row[x]);
             } else {
@@ -71,7 +71,7 @@ pub(super) fn spread_columns(
     block: &mut [[Complex<f32>; COLUMNS]],
 ) {
     let (length, short) = (block.len(), block.len() / parts);
-    // A few rows at a time stay in the nearest cache until all parts have come.
+    // A few rows at a time stay in the first-level cache until all parts are written.
     for (start, rows) in (0..).step_by(TILE).zip(block.chunks_mut(TILE * parts)) {
         for s in 0..parts {
             let piece = |column: usize| &spectra[column * stride(length) + s * short + start..];
@@ -122,7 +122,7 @@ pub(super) fn gather_rows(
         let lines = lines.chunks_exact_mut(stride(width));
         for (values, line) in block[rows.clone()].iter().zip(lines) {
             let line = &mut line[start..];
-            // A copy of known length is no call.
+            // A copy of known length compiles without a call.
             if let Some(whole) = line.first_chunk_mut::<COLUMNS>() {
                 *whole = *values;
             } else {

@@ -1,12 +1,13 @@
-//! Work on the pieces of an array, by all threads where the feature `parallel` allows it.
+//! Work on the pieces of an array, by all threads with the feature `parallel`.
 
 #[cfg(feature = "parallel")]
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Calls `each(state, index, chunk)` for every piece of `chunk` values; the last may be shorter.
 ///
-/// Pieces never depend on each other. Whoever works on one takes a state from `states`, or a new
-/// one, and leaves it there for the next. Unless `threads`, the calling thread does it all.
+/// Pieces are independent of each other. Each piece takes a state from `states`, or a new one, and
+/// returns it afterwards for the next piece. Unless `threads` is set, the calling thread does all
+/// the work.
 pub(super) fn for_each_chunk<T: Send, S: Default + Send>(
     threads: bool,
     values: &mut [T],
@@ -46,7 +47,7 @@ pub(super) fn thread_count(threads: bool) -> usize {
     1
 }
 
-/// A list of states is whole between two calls, whatever became of a thread.
+/// The list of states is intact between two calls even if a thread has panicked.
 #[cfg(feature = "parallel")]
 fn lock<T>(states: &Mutex<T>) -> MutexGuard<'_, T> {
     states.lock().unwrap_or_else(PoisonError::into_inner)

@@ -154,8 +154,7 @@ impl ResolutionCell {
     /// A change δ of the direction to the source displaces the field across the pupil by w times
     /// the distance of the pupil, as a change of the wave number displaces it by κ v / k, and it
     /// changes the phases of heights. In the plane of incidence `|w| = |δ| cos θᵢ / cos θₒ`, across
-    /// it `|w| =
-    /// |δ|`.
+    /// it `|w| = |δ|`.
     ///
     /// # Validity
     ///

@@ -8,7 +8,7 @@ use crate::ComplexBeamParameter;
 pub(crate) mod elements;
 mod resonator;
 
-/// The ray matrix of a paraxial optical system, from an input plane to an output plane.
+/// Ray matrix of a paraxial optical system, from an input plane to an output plane.
 ///
 /// ```text
 /// x'  = A x + B s        x: height above the axis, in metres
@@ -19,8 +19,9 @@ mod resonator;
 ///
 /// The slope is not multiplied by the refractive index, so that the determinant is the ratio of the
 /// indices before and after the system; it is 1 if the system begins and ends in the same medium.
-/// Light travels along +z; behind a mirror the axis is unfolded, so that it still does. The
-/// constructors are the elements, [`then`](Self::then) joins them in the order of travel.
+/// Light travels along +z; behind a mirror the axis is unfolded, so that light still travels along
+/// +z. The constructors are the elements, and [`then`](Self::then) joins them in the order of
+/// travel.
 ///
 /// The same matrix carries a ray ([`transform_ray`](Self::transform_ray)), a complex beam parameter
 /// ([`transform_parameter`](Self::transform_parameter)) and a beam with its wavelength and M²
@@ -28,10 +29,10 @@ mod resonator;
 ///
 /// # Validity
 ///
-/// Paraxial: slopes are small, lenses have no aberrations and no aperture. The parameters of every
-/// element are limited (lengths to 1e30 m), so that a chain of three elements at their limits stays
-/// within the range of `f64`; a product beyond 1e308 overflows, and is an error as soon as it
-/// meets a beam.
+/// The matrix is paraxial: slopes are small, and lenses have no aberrations and no aperture. The
+/// parameters of every element are limited (lengths to 1e30 m), so that a chain of three elements
+/// at their limits stays within the range of `f64`; a product beyond 1e308 overflows, and gives an
+/// error as soon as it is applied to a beam.
 ///
 /// # Examples
 ///
@@ -62,7 +63,7 @@ pub struct AbcdMatrix {
     b: f64,
     c: f64,
     d: f64,
-    /// The product of the elements' own, since A D − B C would cancel.
+    /// The product of the determinants of the elements, since A D − B C would cancel.
     determinant: f64,
 }
 
@@ -70,7 +71,7 @@ impl AbcdMatrix {
     /// Creates the matrix with the rows (`a`, `b`) and (`c`, `d`), where `b` is in metres and `c`
     /// in m⁻¹.
     ///
-    /// Where the system is known by its elements, their own constructors give a more precise
+    /// If the elements of the system are known, their own constructors give a more precise
     /// determinant.
     ///
     /// # Errors
@@ -79,7 +80,8 @@ impl AbcdMatrix {
     /// number.
     pub fn new(a: f64, b: f64, c: f64, d: f64) -> Result<Self, Refusal> {
         check::each(&[a, b, c, d], |entry| check::finite("matrix", entry, ""))?;
-        // The first product is not rounded, the rounding of the second is put back (Kahan).
+        // The first product is not rounded, and the rounding error of the second is added back
+        // (Kahan).
         let product = b * c;
         let determinant = a.mul_add(d, -product) - b.mul_add(c, -product);
         check::positive("determinant", determinant, "")?;
@@ -92,8 +94,7 @@ impl AbcdMatrix {
         })
     }
 
-    /// Returns the system that lets light travel through this one first and `next` afterwards: the
-    /// matrix product `next · self`.
+    /// Returns the combination of this system followed by `next`: the matrix product `next · self`.
     ///
     /// # Examples
     ///
@@ -122,7 +123,7 @@ impl AbcdMatrix {
         self.a
     }
 
-    /// Returns the entry `B`, in metres; it is 0 where the output plane is an image of the input
+    /// Returns the entry `B`, in metres; it is 0 if the output plane is an image of the input
     /// plane, and A is then the magnification.
     pub const fn b(&self) -> f64 {
         self.b
@@ -178,7 +179,7 @@ impl AbcdMatrix {
         ]
     }
 
-    /// Returns the complex beam parameter in the output plane for that in the input plane.
+    /// Returns the complex beam parameter in the output plane for the parameter in the input plane.
     ///
     /// ```text
     /// z_R' = det · z_R / |C q + D|²
@@ -208,7 +209,7 @@ impl AbcdMatrix {
     /// λ'  = λ · det                  the wavelength in the medium behind the system
     /// ```
     ///
-    /// M² stays as it is.
+    /// M² does not change.
     ///
     /// # Errors
     ///

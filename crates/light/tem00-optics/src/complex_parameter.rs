@@ -11,16 +11,16 @@ use tem00_numerics::check;
 /// 1/q = 1/R − i M² λ / (π w²)     R: radius of the wavefront, w: beam radius
 /// ```
 ///
-/// It knows neither wavelength nor M²: with [`AbcdMatrix`](crate::AbcdMatrix) it answers where the
-/// beam is focused and how deep, and together with the *effective wavelength* `M² λ` also how wide
-/// it is. Both parts follow the convention exp(i (ω t − k z)) of the references, where the
-/// imaginary part of q is positive.
+/// It contains neither wavelength nor M². With [`AbcdMatrix`](crate::AbcdMatrix) it gives the
+/// position of the focus and the depth of focus, and together with the *effective wavelength*
+/// `M² λ` also the beam radius. Both parts follow the convention exp(i (ω t − k z)) of the
+/// references, where the imaginary part of q is positive.
 ///
 /// # Validity
 ///
-/// The paraxial limit cannot be checked without a wavelength; the conversion into a
-/// [`LocatedBeam`] does. The distance lies within ±1e30 m, the Rayleigh range between 1e−100 m and
-/// 1e100 m, so that no square of them leaves the range of `f64`.
+/// The paraxial limit cannot be checked without a wavelength; the conversion into a [`LocatedBeam`]
+/// checks it. The distance lies within ±1e30 m, the Rayleigh range between 1e−100 m and 1e100 m, so
+/// that their squares stay within the range of `f64`.
 ///
 /// # Examples
 ///
@@ -65,15 +65,16 @@ impl ComplexBeamParameter {
 
     /// Returns the complex beam parameter of a beam in its reference plane.
     pub const fn of(beam: &LocatedBeam) -> Self {
-        // In range: a paraxial waist w₀ has z_R ≥ 2 w₀ ≥ 2e−30 m, and z_R ≤ π 1e60 / 1e−30 m.
+        // The range is kept: a paraxial waist w₀ has z_R ≥ 2 w₀ ≥ 2e−30 m, and z_R ≤ π 1e60 / 1e−30
+        // m.
         Self {
             distance_from_waist: -beam.waist_distance(),
             rayleigh_range: beam.beam().rayleigh_range(),
         }
     }
 
-    /// Creates the parameter of a beam from what is seen of it in one plane: its radius, in metres,
-    /// its wavefront curvature `1/R`, in m⁻¹ and positive where it diverges, and its effective
+    /// Creates the parameter of a beam from its radius in one plane, in metres, its wavefront
+    /// curvature `1/R` there, in m⁻¹ and positive where the beam diverges, and its effective
     /// wavelength `M² λ`, in metres.
     ///
     /// ```text
@@ -83,8 +84,8 @@ impl ComplexBeamParameter {
     /// # Errors
     ///
     /// Returns an error if `radius` or `effective_wavelength` is not a length from 1e−30 m to
-    /// 1e30 m, if `curvature` is not finite or beyond 1e30 m⁻¹, or if the parameter that follows
-    /// is outside the range of [`new`](Self::new).
+    /// 1e30 m, if `curvature` is not finite or beyond 1e30 m⁻¹, or if the resulting parameter is
+    /// outside the range of [`new`](Self::new).
     ///
     /// # Examples
     ///
@@ -152,19 +153,19 @@ impl ComplexBeamParameter {
         Complex64::new(self.distance_from_waist, self.rayleigh_range)
     }
 
-    /// Returns the beam of this parameter, with the plane of the parameter as its reference plane.
+    /// Returns the beam with this parameter, whose reference plane is the plane of the parameter.
     ///
     /// ```text
     /// w₀ = √(M² λ z_R / π)
     /// ```
     ///
-    /// `wavelength` is that in the medium the beam travels in, in metres.
+    /// `wavelength` is the wavelength in the medium of propagation, in metres.
     ///
     /// # Errors
     ///
     /// Returns an error if `wavelength` is not a length from 1e−30 m to 1e30 m, if `m_squared` is
-    /// not a finite number of at least 1, or if the waist that follows is below the paraxial limit
-    /// or beyond 1e30 m.
+    /// not a finite number of at least 1, or if the resulting waist radius is below the paraxial
+    /// limit or exceeds 1e30 m.
     pub fn to_located_beam(&self, wavelength: f64, m_squared: f64) -> Result<LocatedBeam, Refusal> {
         check::that(
             m_squared >= 1.0 && m_squared.is_finite(),

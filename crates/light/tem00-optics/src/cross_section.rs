@@ -7,10 +7,10 @@ use tem00_numerics::{check, quadrature::integrate};
 
 use marginal::{Interval, power_beyond};
 
-/// Distance from the axis, in radii, beyond which nothing is left: exp(−2 · 7²) = 3e−43.
+/// Distance from the axis, in radii, beyond which the power is negligible: exp(−2 · 7²) = 3e−43.
 const REACH: f64 = 7.0;
 
-/// The irradiance of a Gaussian beam of 1 W over a plane across it.
+/// Irradiance of a Gaussian beam of 1 W over a plane across the beam.
 ///
 /// The principal axes of the distribution are x and y, its centre is the origin, and its radii to
 /// 1/e² on these axes are `w_x` and `w_y`:
@@ -19,13 +19,13 @@ const REACH: f64 = 7.0;
 /// E(x, y) / P = 2 / (π w_x w_y) · exp(−2 x² / w_x² − 2 y² / w_y²)
 /// ```
 ///
-/// A circular beam has two equal radii. Powers are fractions of the whole, from 0 to 1; an aperture
-/// of negative size holds nothing. They are right to 1e−12, and to about 1e−11 of themselves where
-/// they are smaller, however small, large or far the aperture is.
+/// A circular beam has two equal radii. Powers are fractions of the total power, from 0 to 1; an
+/// aperture of negative size passes no power. They are accurate to 1e−12, and small fractions to a
+/// relative error of about 1e−11, for apertures of any size and position.
 ///
 /// # Examples
 ///
-/// A beam of 1 mm radius through an iris of its own size, and past an edge:
+/// A beam of 1 mm radius passes an iris of the same size, and an edge:
 ///
 /// ```
 /// use tem00_optics::CrossSection;
@@ -63,8 +63,8 @@ impl CrossSection {
         self.radii
     }
 
-    /// Returns this cross-section with its axes exchanged, `[w_y, w_x]`: what a slit or a knife
-    /// edge across y would see along x.
+    /// Returns this cross-section with its axes exchanged, `[w_y, w_x]`, for a slit or a knife edge
+    /// across y.
     #[must_use]
     pub const fn transposed(&self) -> Self {
         let [w_x, w_y] = self.radii;
@@ -114,7 +114,7 @@ impl CrossSection {
 
     /// Returns the effective area `(∫E dA)² / ∫E² dA = π w_x w_y`, in m².
     ///
-    /// Twice the mean power density over it is the peak irradiance.
+    /// The peak irradiance is twice the power divided by this area.
     pub fn effective_area(&self) -> f64 {
         let [w_x, w_y] = self.radii;
         PI * w_x * w_y
@@ -134,14 +134,14 @@ impl CrossSection {
         if rho > REACH {
             return 1.0;
         }
-        // Chords across the wide axis, by the angle s of their ends from it.
+        // Chords across the wide axis, as a function of the angle s of their ends from it.
         let chord = |s: f64| {
             let (sin, cos) = s.sin_cos();
             let along = rho * cos;
             rho * sin * (-2.0 * along * along).exp() * libm::erf(SQRT_2 * rho_slim * sin)
         };
-        // Near the ends of the axis chords grow over the slim radius, and further on over the wide
-        // one.
+        // Near the ends of the axis chords grow on the scale of the small radius, farther away on
+        // the scale of the large one.
         let (mut start, mut step) = (0.0, rho_slim.recip().max(1e-18));
         let mut sum = 0.0;
         while start < FRAC_PI_2 {
@@ -156,7 +156,7 @@ impl CrossSection {
     /// `fraction` of the power.
     ///
     /// For a circular beam it is `w √(−ln(1 − fraction) / 2)`; for an elliptical one the root of
-    /// [`power_in_circle`](Self::power_in_circle), right to 1e−12 in the power.
+    /// [`power_in_circle`](Self::power_in_circle), accurate to 1e−12 in the power.
     ///
     /// # Errors
     ///
@@ -164,7 +164,8 @@ impl CrossSection {
     ///
     /// # Examples
     ///
-    /// An aperture of 3/2 of the beam radius passes 98.9 % of the power; 99 % take a little more:
+    /// An aperture of 3/2 of the beam radius passes 98.9 % of the power; 99 % need a slightly
+    /// larger one:
     ///
     /// ```
     /// use tem00_optics::CrossSection;
@@ -216,8 +217,8 @@ impl CrossSection {
         Interval::new(centre, 0.5 * width).power(self.radii[0])
     }
 
-    /// Returns the fraction of the power at x greater than `position`, in metres: what passes a
-    /// knife edge that covers everything below it.
+    /// Returns the fraction of the power at x greater than `position`, in metres, which passes a
+    /// knife edge that covers everything below `position`.
     ///
     /// ```text
     /// ½ erfc(√2 position / w_x)

@@ -2,16 +2,16 @@
 //!
 //! # Conventions
 //!
-//! Those of `tem00-beam`: SI units, radii to 1/e², light along +z of its own frame.
+//! The conventions of `tem00-beam` apply: SI units, radii to 1/e², light along +z of its own frame.
 //!
-//! - Systems: [`AbcdMatrix`] and [`ComplexBeamParameter`] hold for one axis; an elliptic beam takes
-//!   a matrix for each of its two, by [`through_axes`].
-//! - Widths and apertures: [`CrossSection`] holds for a beam that is known.
-//! - Measurements: [`CausticFit`] and [`KnifeEdgeFit`] find a beam from measured data.
+//! - Systems: [`AbcdMatrix`] and [`ComplexBeamParameter`] describe one axis; an elliptic beam takes
+//!   a matrix for each of its two axes, by [`through_axes`].
+//! - Widths and apertures: [`CrossSection`] describes a known beam.
+//! - Measurements: [`CausticFit`] and [`KnifeEdgeFit`] fit a beam to measured data.
 //!
 //! # Scope and non-goals
 //!
-//! Paraxial systems without aberrations.
+//! The crate covers paraxial systems without aberrations.
 
 mod abcd;
 mod complex_parameter;

@@ -1,4 +1,4 @@
-//! Beams behind systems.
+//! Beams behind optical systems.
 
 use tem00_beam::{AstigmaticBeam, GaussianBeam, LocatedBeam, Refusal};
 use tem00_numerics::check;
@@ -17,17 +17,17 @@ const DETERMINANT_TOLERANCE: f64 = 1e-9;
 /// w₀'/w₀ = 1 / √((1 − s/f)² + (z_R/f)²)              magnification
 /// ```
 ///
-/// The waist distance of the result is `s'`. Distances along the light are positive: s < 0 is a
-/// beam that would have its waist behind the lens, s' < 0 a virtual waist in front of it. With a
-/// vanishing Rayleigh range this is the lens equation of rays; a collimated beam (s = 0) is
-/// focused short of the focal point, at `f / (1 + (f/z_R)²)`. M² enters through the Rayleigh
-/// range alone.
+/// The waist distance of the result is `s'`. Distances along the light are positive: s < 0 means
+/// that the beam would have its waist behind the lens, s' < 0 is a virtual waist in front of it.
+/// For a vanishing Rayleigh range this is the lens equation of geometrical optics; a collimated
+/// beam (s = 0) is focused short of the focal point, at `f / (1 + (f/z_R)²)`. M² enters through the
+/// Rayleigh range alone.
 ///
 /// # Errors
 ///
 /// Returns an error if the magnitude of `focal_length` does not lie between 1e−30 m and 1e30 m,
-/// if the new waist is below the paraxial limit or beyond 1e30 m, or if it is farther than
-/// 1e30 m away.
+/// if the new waist is below the paraxial limit or beyond 1e30 m, or if it is farther away than
+/// 1e30 m.
 ///
 /// # Examples
 ///
@@ -55,12 +55,12 @@ pub fn through_lens(beam: &LocatedBeam, focal_length: f64) -> Result<LocatedBeam
 /// Returns the beam behind a system, seen from its output plane, for a beam in front of it,
 /// seen from its input plane, where the two matrices act along the principal axes of the beam.
 ///
-/// Spherical lenses are the same in both axes, cylinder lenses and tilted mirrors are not.
+/// Spherical lenses have the same matrix in both axes, cylinder lenses and tilted mirrors do not.
 ///
 /// # Errors
 ///
-/// Returns an error if the determinants of the matrices differ by more than 1e−9, or as
-/// [`AbcdMatrix::transform`] does for either axis.
+/// Returns an error if the determinants of the matrices differ by more than 1e−9, and the errors of
+/// [`AbcdMatrix::transform`] for either axis.
 ///
 /// # Examples
 ///
@@ -85,7 +85,7 @@ pub fn through_axes(
     check::that(holds, "determinant", [a, b], "", "equal in both axes")?;
     let x = systems[0].transform(&beam.axes()[0])?;
     let y = systems[1].transform(&beam.axes()[1])?;
-    // The wavelength of y is that of x but for rounding.
+    // The wavelength of y equals the wavelength of x except for rounding.
     let across = GaussianBeam::from_waist(x.beam().wavelength(), y.beam().waist_radius())?
         .with_m_squared(y.beam().m_squared())?;
     AstigmaticBeam::new(x, LocatedBeam::new(across, y.waist_distance())?)?
@@ -102,7 +102,7 @@ mod tests {
 
     use super::*;
 
-    /// A cylinder lens of glass in water, as its faces and the way between them.
+    /// A cylinder lens of glass in water, as its faces and the path between them.
     fn lens_of_glass(curvature: f64) -> AbcdMatrix {
         AbcdMatrix::curved_interface(1.333, 1.5168, curvature)
             .unwrap()
@@ -133,7 +133,7 @@ mod tests {
             for z in [-0.1, 0.0, 0.04, 0.3] {
                 let want = (m2 * RED * (q + z).norm_sqr() / (PI * q.im)).sqrt();
                 let got = behind.radii_at(z)[axis];
-                // A few roundings of the matrix and of q.
+                // The tolerance covers a few roundings of the matrix and of q.
                 assert_relative(got, want, 1e-12);
             }
         }

@@ -3,27 +3,27 @@ use core::{error, fmt};
 use tem00_numerics::Refusal;
 use tem00_speckle::SpeckleError;
 
-/// A reason why a laser, a motion or speckle is not possible.
+/// Reason for which a laser, a motion or a speckle prescription is refused.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ShadingError {
     /// An argument of the camera, the laser, a motion or the speckle is not allowed.
     Refused(Refusal),
-    /// Something is needed and there is none.
+    /// A required input is missing.
     Missing(&'static str),
     /// A frame has moved farther than the poses for which the speckle was prepared.
     BeyondPoses {
-        /// The shift of the pupil over the speckle in the frame, in its diameters.
+        /// The shift of the pupil over the speckle in the frame, in pupil diameters.
         shift: f64,
-        /// The largest one that the speckle holds on that side of the reference.
+        /// The largest shift that the speckle holds on the same side of the reference.
         held: f64,
     },
-    /// The speckle pattern is not possible.
+    /// The speckle pattern cannot be generated.
     Speckle(SpeckleError),
 }
 
 impl ShadingError {
-    /// Returns the name of the parameter whose value was rejected, where there is one.
+    /// Returns the name of the parameter whose value was rejected, if there is one.
     pub fn parameter(&self) -> Option<&'static str> {
         match self {
             Self::Refused(refusal) => Some(own_name(refusal.parameter)),
@@ -32,7 +32,7 @@ impl ShadingError {
     }
 }
 
-/// A laser has the names of the beam's parameters, but for those of a placement.
+/// A laser uses the parameter names of the beam, except those of a placement.
 fn own_name(name: &'static str) -> &'static str {
     match name {
         "origin" => "position",

@@ -11,14 +11,14 @@ use crate::{
     state::State,
 };
 
-/// The speckle of one body in one frame, which holds on to the patterns.
+/// The speckle of one body in one frame. It keeps the patterns alive.
 #[derive(Clone, Debug)]
 pub struct SpeckleFrame {
     pub(crate) speckle: Arc<Patterns>,
     pub(crate) state: State,
     pub(crate) side: f64,
     pub(crate) reach: f64,
-    /// The place of the body in the patterns, in samples.
+    /// The position of the body in the patterns, in samples.
     pub(crate) offset: DVec2,
 }
 
@@ -31,12 +31,12 @@ struct Positions {
     phase_per_height: [f64; BLOCK],
 }
 
-/// The light in which points are looked up.
+/// The light for which points are looked up.
 #[derive(Clone, Copy)]
 struct Light<'a> {
-    /// The quantile of its wave number in the laser's line.
+    /// The quantile of the wave number in the laser's line.
     wave: f64,
-    /// Wave that illuminates the point, if not straight from the laser.
+    /// Wave that illuminates the point, if the light does not come directly from the laser.
     lit_by: Option<&'a Illumination>,
 }
 
@@ -46,28 +46,28 @@ impl Light<'_> {
     }
 }
 
-/// The points of a pixel that stand for all of it in light with a linewidth, each in a wave number
-/// of its own.
+/// The number of points that sample a pixel in light with a linewidth, each with its own wave
+/// number.
 const POINTS: usize = 64;
 
 /// The largest error of the correlation of two frames in light with a linewidth.
 const MAX_ERROR: f64 = 0.05;
 
 impl SpeckleFrame {
-    /// Returns the factor by which speckle multiplies the radiance at a point, now, of a surface
-    /// with a unit normal.
+    /// Returns the factor by which speckle multiplies the radiance at a point of a surface in this
+    /// frame, given its unit normal.
     ///
-    /// It is 1 where the camera does not see the point: there is no pattern there. Where it sees
-    /// it, but the law has no value, as where the surface is seen edge-on, the speckle is new.
+    /// The factor is 1 where the camera does not see the point. Where the camera sees the point but
+    /// the law has no value, as for a surface seen edge-on, the speckle is new.
     pub fn factor(&self, point: DVec3, normal: DVec3) -> f64 {
         let mut factor = [1.0];
         self.factors(&[point], &[normal], &mut factor);
         factor[0]
     }
 
-    /// Returns the factor at a point that is lit otherwise than straight from the laser, as over
-    /// mirrors and lenses: [`Wavefront::from_differentials`](crate::Wavefront::from_differentials)
-    /// has the wave from rays that a host has traced. `light` is that of the reference state, and
+    /// Returns the factor at a point that the laser does not light directly, as over mirrors and
+    /// lenses: [`Wavefront::from_differentials`](crate::Wavefront::from_differentials) computes the
+    /// wave from rays that a host has traced. `light` is the light in the reference state, and
     /// moves with the laser.
     pub fn factor_under(&self, light: &Illumination, point: DVec3, normal: DVec3) -> f64 {
         let mut factor = [1.0];
@@ -76,7 +76,8 @@ impl SpeckleFrame {
     }
 
     /// Returns the factor at a point that a camera sample sees at an image point, in pixels with y
-    /// down: out of focus it lies beside the one where the centre of the lens sees it.
+    /// down. Out of focus this image point differs from the one at which the centre of the lens
+    /// sees the point.
     pub fn factor_at(&self, pixel: DVec2, point: DVec3, normal: DVec3) -> f64 {
         let seen = SeenPoint {
             pixel,
@@ -88,10 +89,10 @@ impl SpeckleFrame {
         factor[0]
     }
 
-    /// Writes the factors at many points, with their unit normals: the same bits as
+    /// Writes the factors at many points, with their unit normals; the bits are the same as from
     /// [`factor`](Self::factor) one by one.
     ///
-    /// Neighbours in the image, one after the other, are looked up fastest.
+    /// Look-ups are fastest if consecutive points are neighbours in the image.
     ///
     /// # Panics
     ///
@@ -102,8 +103,8 @@ impl SpeckleFrame {
         });
     }
 
-    /// Hands points where the camera sees them to `answer`, block by block, with the places of
-    /// their answers.
+    /// Passes points as the camera sees them to `answer`, block by block, with the slots for their
+    /// answers.
     fn in_blocks<T>(
         &self,
         points: &[DVec3],
@@ -131,17 +132,18 @@ impl SpeckleFrame {
     /// Returns the factor at a point in light of one wave number of the laser's line, the quantile
     /// `wave` between 0 and 1: for a renderer that draws a wave number for each of its samples.
     ///
-    /// [`factor`](Self::factor) is the mean over so many of them, at most 64, that contrasts are
-    /// within 1 %, at as much cost. In light of one wavelength both are the same.
+    /// [`factor`](Self::factor) averages over enough wave numbers, at most 64, to bring contrasts
+    /// within 1 %, and its cost grows with their number. In light of one wavelength both are the
+    /// same.
     pub fn factor_in_wave(&self, point: DVec3, normal: DVec3, wave: f64) -> f64 {
         let mut factor = [1.0];
         self.look_up_in(Light::of(wave), &[self.seen(point, normal)], &mut factor);
         factor[0]
     }
 
-    /// Returns the mean factor over the pixel about the image of a point: for a host with one
-    /// sample per pixel, whose speckle would have too much contrast at a point. In light with a
-    /// linewidth it is the mean of 64 points, each in a wave number of its own.
+    /// Returns the mean factor over the pixel about the image of a point, for a host with one
+    /// sample per pixel: the factor at a single point would have too much contrast. In light with a
+    /// linewidth it is the mean of 64 points, each with its own wave number.
     pub fn average(&self, point: DVec3, normal: DVec3) -> f64 {
         let Some(seen) = self.seen(point, normal) else {
             return 1.0;
@@ -161,7 +163,7 @@ impl SpeckleFrame {
         means.sum()
     }
 
-    /// The mean of points all over the pixel, in wave numbers all over the line.
+    /// The mean over points across the pixel, with wave numbers across the line.
     fn average_over_waves(&self, seen: &SeenPoint) -> f64 {
         let mut sum = 0.0;
         for index in 0..POINTS {
@@ -179,7 +181,7 @@ impl SpeckleFrame {
     }
 
     /// Returns the complex amplitude of the first pattern, of mean square 1, for a host that adds
-    /// fields: in light of the median wave number of the laser's line.
+    /// fields. The light has the median wave number of the laser's line.
     ///
     /// Returns `None` where the camera does not see the point.
     pub fn amplitude(&self, point: DVec3, normal: DVec3) -> Option<Complex<f64>> {
@@ -189,16 +191,16 @@ impl SpeckleFrame {
         Some(self.amplitude_of(part, &positions, 0))
     }
 
-    /// Returns what has become of the speckle at a point since the reference state, or `None` where
-    /// the law has no value.
+    /// Returns the change of the speckle at a point since the reference state, or `None` where the
+    /// law has no value.
     pub fn shift(&self, point: DVec3, normal: DVec3) -> Option<SpeckleShift> {
         let mut shift = [None];
         self.shifts(&[point], &[normal], &mut shift);
         shift[0]
     }
 
-    /// Writes what has become of the speckle at many points, `None` where the camera does not see
-    /// them or the law has no value: the same bits as [`shift`](Self::shift) one by one.
+    /// Writes the change of the speckle at many points, `None` where the camera does not see them
+    /// or the law has no value; the bits are the same as from [`shift`](Self::shift) one by one.
     ///
     /// # Panics
     ///
@@ -215,8 +217,8 @@ impl SpeckleFrame {
         });
     }
 
-    /// Returns on which side of the reference state the speckle is: 1, or −1 where the pupil has
-    /// moved over it the other way than in the frame in which it moves farthest.
+    /// Returns the side of the reference state on which the speckle is: 1, or −1 if the pupil has
+    /// moved over the speckle in the direction opposite to the frame with the largest motion.
     pub const fn side(&self) -> f64 {
         self.side
     }
@@ -292,8 +294,8 @@ impl SpeckleFrame {
         fields.sum()
     }
 
-    /// Finds where points are looked up in the stacks, which are alike; those out of sight
-    /// anywhere.
+    /// Finds the look-up positions of points, which are the same in all stacks; points out of sight
+    /// get an arbitrary position.
     fn positions(&self, light: Light<'_>, points: &[Option<SeenPoint>]) -> Positions {
         let mut positions = Positions {
             x: [0.0; BLOCK],
@@ -347,8 +349,8 @@ impl SpeckleFrame {
         positions
     }
 
-    /// Displaces a position by what a wave number of the line displaces the speckle, in slices that
-    /// stand along the axis of the bandwidth.
+    /// Displaces a position by the displacement of the speckle for a wave number of the line, in
+    /// slices along the axis of the bandwidth.
     fn displace(
         &self,
         positions: &mut Positions,

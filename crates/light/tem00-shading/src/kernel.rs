@@ -1,4 +1,4 @@
-//! The call of a hit for kernels on a graphics card.
+//! The speckle factor at a hit, for kernels on a graphics card.
 
 use std::sync::Arc;
 
@@ -13,9 +13,9 @@ use crate::{Laser, Motion, PreparedSpeckle, ShadingError, Speckle, patterns::Pat
 /// [`SpeckleFrame::factor`](crate::SpeckleFrame::factor) in single precision: functions and structs
 /// without bindings.
 ///
-/// Its first comment says how to call it and how exact it is. The texts of
-/// [`tem00_decorrelation::closed_form`] and [`tem00_speckle::closed_form`] stand beside it. A frame
-/// is a uniform, [`KernelSpeckle::rows`].
+/// Its first comment states how to call it and how exact it is. It needs the texts of
+/// [`tem00_decorrelation::closed_form`] and [`tem00_speckle::closed_form`] in the same shader. A
+/// frame is a uniform, [`KernelSpeckle::rows`].
 ///
 /// # Examples
 ///
@@ -34,10 +34,10 @@ use crate::{Laser, Motion, PreparedSpeckle, ShadingError, Speckle, patterns::Pat
 /// ```
 pub const WGSL: &str = include_str!("../shaders/tem00_shading.wgsl");
 
-/// The speckle of a laser in the image of a camera for a kernel, whose host makes the stack itself:
-/// on the card, or by [`SpeckleStack`](tem00_speckle::SpeckleStack).
+/// The speckle of a laser in the image of a camera for a kernel whose host generates the stack
+/// itself: on the card, or by [`SpeckleStack`](tem00_speckle::SpeckleStack).
 ///
-/// It is the speckle that [`Speckle::prepare`] gives.
+/// It is the same speckle as from [`Speckle::prepare`].
 #[derive(Clone, Debug)]
 pub struct KernelSpeckle {
     /// Patterns without stacks.
@@ -50,9 +50,9 @@ impl Speckle {
     ///
     /// # Errors
     ///
-    /// As [`prepare`](Self::prepare), if the light has a linewidth that the speckle shows, and if
-    /// it takes more than one pattern: for several looks take as many, each with a seed of its own,
-    /// and let the kernel average their factors.
+    /// Returns the errors of [`prepare`](Self::prepare), and an error if the linewidth of the light
+    /// affects the speckle or if more than one pattern is needed: for several looks prepare several
+    /// stacks, each with its own seed, and let the kernel average their factors.
     pub fn for_kernel(self) -> Result<KernelSpeckle, ShadingError> {
         let (patterns, mut fields) = self.planned()?;
         one_pattern(&patterns)?;
@@ -79,7 +79,7 @@ impl KernelSpeckle {
     ///
     /// # Errors
     ///
-    /// As [`PreparedSpeckle::frame`] and [`KernelFrame::to_rows`].
+    /// Returns the errors of [`PreparedSpeckle::frame`] and [`KernelFrame::to_rows`].
     pub fn rows(&self, motion: &Motion) -> Result<[[f32; 4]; 14], ShadingError> {
         let frame = self.speckle.frame(motion)?;
         KernelFrame {
@@ -93,8 +93,8 @@ impl KernelSpeckle {
     }
 }
 
-/// The speckle of one body in one frame, for a kernel and a stack of the host's own: what a
-/// [`SpeckleFrame`](crate::SpeckleFrame) is made of.
+/// The speckle of one body in one frame, for a kernel and a stack of the host's own: the parts of a
+/// [`SpeckleFrame`](crate::SpeckleFrame).
 #[derive(Clone, Copy, Debug)]
 pub struct KernelFrame<'a> {
     /// The camera in the reference state.
@@ -106,7 +106,7 @@ pub struct KernelFrame<'a> {
     /// The sizes of the stack.
     pub plan: &'a StackPlan,
     /// The largest shift of the pupil that the slices hold on this side of the reference state, in
-    /// its diameters: less than 0 on one of both sides.
+    /// pupil diameters; it is negative on one of the two sides.
     pub reach: f64,
 }
 
@@ -129,7 +129,7 @@ impl KernelFrame<'_> {
         if let Some(&(parameter, value)) = bends.iter().find(|(_, value)| *value != 0.0) {
             return Err(refused(parameter, value, "0 for a kernel"));
         }
-        // What has moved relative to the camera, in its axes and from its pupil.
+        // The motions relative to the camera, in its axes and from its pupil.
         let (axes, pupil) = (self.camera.axes(), self.camera.position());
         let to_camera = axes.transpose();
         let Motion {
@@ -164,7 +164,7 @@ impl KernelFrame<'_> {
         let on_axis = (on_axis * per_pixel + place).rem_euclid(size);
         let pixels = geometry.principal_distance() / geometry.pixel_pitch();
         let diameter = geometry.pupil_diameter();
-        // What has not moved keeps the first slice, wherever it is.
+        // Bodies that have not moved keep the first slice at any position.
         let reach = if self.motion.is_still() {
             0.0
         } else {

@@ -18,7 +18,7 @@ use crate::{ShadingError, Trajectory};
 /// Parameters of a [`Laser`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct LaserDescription {
-    /// The vacuum wavelength and the spectrum about it. The beam is that of its middle.
+    /// The vacuum wavelength and the spectrum about it. The beam has the wavelength of its middle.
     pub line: SpectralLine,
     /// The power of the beam, in watts.
     pub power: f64,
@@ -26,8 +26,8 @@ pub struct LaserDescription {
     pub position: DVec3,
     /// A point on the axis in front of the aperture, in metres.
     pub look_at: DVec3,
-    /// Across the axis: the direction in which a line opens, and the first axis of an elliptic
-    /// spot. Its part along the axis is ignored.
+    /// The direction in which a line opens, or the first axis of an elliptic spot. Its component
+    /// along the beam axis is ignored.
     pub line_direction: DVec3,
     /// The shape of the beam.
     pub shape: BeamShape,
@@ -36,7 +36,8 @@ pub struct LaserDescription {
 /// The shape of a laser's beam.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BeamShape {
-    /// A Gaussian beam, round or elliptic: each value along the line direction and across it.
+    /// A Gaussian beam, round or elliptic, with two values each: along the line direction and
+    /// across it.
     Spot {
         /// The waist radii, in metres.
         waist_radius: [f64; 2],
@@ -83,9 +84,8 @@ impl Laser {
     ///
     /// # Errors
     ///
-    /// Returns an error if the beam is not possible (see
-    /// [`GaussianBeam`](tem00_beam::GaussianBeam)), if `look_at` is the position, or if the line
-    /// direction is parallel to the axis.
+    /// Returns an error if the beam is invalid (see [`GaussianBeam`](tem00_beam::GaussianBeam)), if
+    /// `look_at` equals the position, or if the line direction is parallel to the axis.
     pub fn new(description: LaserDescription) -> Result<Self, ShadingError> {
         let placement = Placement {
             origin: description.position,
@@ -127,8 +127,8 @@ impl Laser {
         })
     }
 
-    /// Returns the laser with a source that is no point, as the surfaces see it: it acts on speckle
-    /// only.
+    /// Returns the laser with an extended source, as seen from the surfaces. The extent affects the
+    /// speckle only.
     #[must_use]
     pub fn with_source_extent(mut self, source_extent: SourceExtent) -> Self {
         self.source_extent = source_extent;
@@ -140,7 +140,7 @@ impl Laser {
         &self.source_extent
     }
 
-    /// Tells whether the light is of one wavelength and from a point.
+    /// Returns whether the light has one wavelength and comes from a point.
     pub fn is_coherent(&self) -> bool {
         self.spectral_line().is_monochromatic() && self.source_extent.is_point()
     }
@@ -152,21 +152,21 @@ impl Laser {
         self
     }
 
-    /// Returns how the laser moves from frame to frame.
+    /// Returns the motion of the laser from frame to frame.
     pub const fn trajectory(&self) -> &Trajectory {
         &self.trajectory
     }
 
-    /// Returns the laser as it stands in `frame`.
+    /// Returns the laser in its pose in `frame`.
     #[must_use]
     pub fn in_frame(&self, frame: u32) -> Self {
         self.moved(&self.trajectory.pose_at(frame))
     }
 
-    /// Returns the laser carried along by a rigid motion: its aperture, its axis and the direction
-    /// of its line.
+    /// Returns the laser moved by a rigid motion: its aperture, its axis and the direction of its
+    /// line.
     ///
-    /// The laser in its new pose stands still.
+    /// The laser in its new pose has no motion from frame to frame.
     #[must_use]
     pub fn moved(&self, motion: &RigidMotion) -> Self {
         let description = &self.description;
@@ -183,7 +183,7 @@ impl Laser {
         }
     }
 
-    /// Returns what the laser was created from.
+    /// Returns the description from which the laser was created.
     pub const fn description(&self) -> &LaserDescription {
         &self.description
     }
@@ -203,8 +203,8 @@ impl Laser {
         self.description.power
     }
 
-    /// Returns how the laser lights `point` as a delta light, or `None` where it sends no light:
-    /// the light of one direction, along the mean flow of energy there.
+    /// Returns the light of the laser at `point` as a delta light, or `None` where it sends no
+    /// light. The light comes from one direction, along the mean energy flow at the point.
     pub fn next_event(&self, point: DVec3) -> Option<LaserEvent> {
         let event = match &self.source {
             Source::Spot { light, .. } => light.next_event(point.to_array()),
@@ -217,8 +217,8 @@ impl Laser {
         })
     }
 
-    /// Finds for each of the points what [`next_event`](Self::next_event) finds, but for the
-    /// rounding of the point of the aperture, in less time.
+    /// Computes for each point the result of [`next_event`](Self::next_event), up to rounding of
+    /// the aperture point, in less time.
     pub fn next_events(&self, events: &mut LaserEventBatch) {
         match &self.source {
             Source::Spot { light, .. } => events.by(light),
@@ -232,7 +232,7 @@ impl Laser {
         }
     }
 
-    /// Returns the placed light as plain data, for a kernel of one's own; the table of a tabulated
+    /// Returns the placed light as plain data, for a custom kernel; the table of a tabulated
     /// profile is in [`description`](Self::description).
     pub const fn placed(&self) -> PlacedLight {
         match &self.source {
@@ -304,10 +304,10 @@ fn line_event(line: &LaserLine, light: &LineLight, point: [f64; 3]) -> Option<Ne
     }
 }
 
-/// Points, and how a laser lights them.
+/// Points and the light of a laser at them.
 #[derive(Debug, Default)]
 pub struct LaserEventBatch {
-    /// Their coordinates x, y, z, in metres.
+    /// Coordinates x, y, z of the points, in metres.
     points: [Vec<f64>; 3],
     /// The coordinates of the directions towards the light, the distances to the aperture and the
     /// irradiances.
@@ -340,7 +340,7 @@ impl LaserEventBatch {
         light.next_event_batch(x, y, z, out);
     }
 
-    /// Returns how a point is lit, or `None` where it is not.
+    /// Returns the light at a point, or `None` where there is no light.
     #[inline(always)]
     pub fn at(&self, index: usize) -> Option<LaserEvent> {
         let vector = |of: &[Vec<f64>]| DVec3::new(of[0][index], of[1][index], of[2][index]);
@@ -364,7 +364,7 @@ pub struct LaserEvent {
     pub point: DVec3,
     /// The unit direction towards the light.
     pub wi: DVec3,
-    /// The irradiance on a plane across that direction, in W/m².
+    /// The irradiance on a plane perpendicular to this direction, in W/m².
     pub e_perp: f64,
 }
 

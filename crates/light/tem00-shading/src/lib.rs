@@ -4,24 +4,25 @@
 //!
 //! - SI units and radians; world vectors are [`DVec3`], image points [`DVec2`] in pixels with y
 //!   down.
-//! - The camera and the laser that a [`Speckle`] is made for stand as they do in the *reference
-//!   state*. A [`Motion`] leads from there to now; points and normals are given as they are now.
-//! - Factors are dimensionless with mean 1: multiply the radiance that a surface sends from this
-//!   laser to the camera.
+//! - A [`Speckle`] is created from the camera and the laser in the *reference state*. A [`Motion`]
+//!   leads from the reference state to the current frame; points and normals are given in the
+//!   current frame.
+//! - Factors are dimensionless with mean 1: multiply the radiance that a surface scatters from this
+//!   laser to the camera by the factor.
 //!
 //! # Two levels
 //!
 //! | level | names |
 //! |---|---|
-//! | what a renderer calls | [`Laser`], [`Camera`], [`Speckle`], [`Motion`], [`Pose`], [`SpeckleFrame`] |
-//! | what a kernel on a graphics card calls | [`WGSL`], [`KernelSpeckle`], [`KernelFrame`] |
-//! | what these are made of | [`SpeckleLaw`] and [`SpeckleShift`], [`SpectralLaw`] and [`SpectralShift`], [`Perspective`], [`Trajectory`], and the crates beam, camera, decorrelation, speckle |
+//! | interface of a renderer | [`Laser`], [`Camera`], [`Speckle`], [`Motion`], [`Pose`], [`SpeckleFrame`] |
+//! | interface of a kernel on a graphics card | [`WGSL`], [`KernelSpeckle`], [`KernelFrame`] |
+//! | building blocks | [`SpeckleLaw`] and [`SpeckleShift`], [`SpectralLaw`] and [`SpectralShift`], [`Perspective`], [`Trajectory`], and the crates beam, camera, decorrelation, speckle |
 //!
 //! # Validity
 //!
-//! That of the parts: a lit patch much wider than a resolution cell, fully developed speckle of a
-//! rough surface, a pupil free of aberrations. The light of a laser line thinner than a few
-//! speckles has a profile that the lens blurs before it is multiplied.
+//! The limits of the parts apply: a lit patch much wider than a resolution cell, fully developed
+//! speckle of a rough surface, and a pupil free of aberrations. The lens blurs the profile of a
+//! laser line thinner than a few speckles before the factor multiplies it.
 
 mod error;
 mod frame;
@@ -56,7 +57,7 @@ pub use shift::{BLOCK, LightPath, SeenPoint, SpeckleLaw, SpeckleShift};
 pub use speckle::Speckle;
 pub use spectral::{Bandwidth, SpectralLaw, SpectralShift, SurfaceLight};
 pub use tem00_camera::{Camera, CameraDescription};
-/// The place of a rigid body, relative to the reference state: a rotation and a translation.
+/// Pose of a rigid body relative to the reference state: a rotation and a translation.
 pub use tem00_decorrelation::RigidMotion as Pose;
 pub use tem00_decorrelation::{Illumination, Wavefront};
 pub use trajectory::{Keyframe, Rotation, Trajectory};

@@ -1,14 +1,14 @@
 use crate::Pose;
 
-/// The motion of a body, the camera and the laser from the reference state to now.
+/// The motion of a body, the camera and the laser from the reference state to the current frame.
 ///
-/// Only differences count: if all three move as one, nothing changes.
+/// Only relative motions matter: if all three move as one, nothing changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
-    /// The number of the body. Bodies that move apart have numbers of their own, and speckle of
-    /// their own: what one of them uncovers does not show the speckle that it took with it.
+    /// The number of the body. Bodies with different motions have different numbers and independent
+    /// speckle: a surface that a moving body uncovers does not show the speckle of that body.
     pub body: usize,
-    /// The pose of the body whose surface is looked at.
+    /// The pose of the body whose surface is shaded.
     pub surface: Pose,
     /// The pose of the camera.
     pub camera: Pose,
@@ -17,7 +17,7 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Tells whether nothing has moved.
+    /// Returns whether nothing has moved.
     pub(crate) fn is_still(&self) -> bool {
         [self.surface, self.camera, self.laser] == [Pose::IDENTITY; 3]
     }

@@ -5,19 +5,19 @@ use tem00_speckle::{SpeckleStack, StackNeeds, StackPlan};
 
 use crate::{Bandwidth, Laser, state::ReferencePoint};
 
-/// The patterns, and what they were chosen for.
+/// The patterns, and the requirements for which they were chosen.
 #[derive(Debug)]
 pub(crate) struct Patterns {
     pub(crate) camera: Camera,
     pub(crate) laser: Laser,
     pub(crate) geometry: ImagingGeometry,
-    /// The fields that share a stack.
+    /// The number of fields that share a stack.
     pub(crate) in_a_stack: usize,
     /// Stacks, one for each field or one for all.
     pub(crate) stacks: Vec<SpeckleStack>,
     pub(crate) parts: Vec<Part>,
     pub(crate) bandwidth: Option<Bandwidth>,
-    /// The equal parts of the line, each with its median wave number, that stand for all its light.
+    /// The number of equal parts of the line, each represented by its median wave number.
     pub(crate) waves: usize,
     pub(crate) needs: StackNeeds,
     pub(crate) plan: StackPlan,
@@ -35,11 +35,11 @@ pub(crate) struct Part {
     pub fields: Vec<Field>,
 }
 
-/// A place in one of the stacks.
+/// A position in one of the stacks.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Field {
     pub stack: usize,
-    /// In samples.
+    /// Offset in samples.
     pub offset: DVec2,
 }
 

@@ -2,24 +2,25 @@ use glam::{DVec2, DVec3};
 use tem00_camera::{Camera, RadialDistortion, SensorTilt};
 use tem00_decorrelation::ImagingGeometry;
 
-/// The image of a camera in perspective: as an untilted sensor would see it through a lens without
+/// The image of a camera in perspective, as seen by an untilted sensor through a lens without
 /// distortion.
 ///
-/// Speckle has one size there, that of the imaging geometry on the axis, since it is as wide as
-/// directions that the pupil tells apart. On a tilted sensor it is stretched as the perspective is.
+/// In this image speckle has one size, the speckle size of the imaging geometry on the axis, since
+/// its angular size is the resolution of the pupil. On a tilted sensor the speckle is stretched
+/// like the perspective.
 #[derive(Clone, Copy, Debug)]
 pub struct Perspective {
     camera: Camera,
     tilted: bool,
-    /// True if image points are those of the sensor itself.
+    /// Whether image points in perspective equal the image points of the sensor.
     plain: bool,
 }
 
-/// Points along each edge of the image that are looked at to find how far it reaches.
+/// Number of points along each edge of the image from which its extent is found.
 const EDGE_POINTS: u32 = 32;
 
 impl Perspective {
-    /// Takes the image of a camera.
+    /// Creates the perspective image of a camera.
     pub fn new(camera: Camera) -> Self {
         let description = camera.description();
         let tilted = description.tilt != SensorTilt::default();
@@ -35,7 +36,7 @@ impl Perspective {
         &self.camera
     }
 
-    /// Returns where an image point lies in perspective, in pixels.
+    /// Returns the position of an image point in perspective, in pixels.
     #[inline]
     pub fn point(&self, pixel: DVec2) -> DVec2 {
         if self.plain {
@@ -48,8 +49,8 @@ impl Perspective {
         if point.is_finite() { point } else { pixel }
     }
 
-    /// Returns the image point of a point in perspective, both in pixels, or `None` where the
-    /// sensor is not met.
+    /// Returns the image point of a point in perspective, both in pixels, or `None` where its ray
+    /// misses the sensor.
     pub fn pixel(&self, point: DVec2) -> Option<DVec2> {
         if self.plain {
             return Some(point);
@@ -79,8 +80,8 @@ impl Perspective {
         )
     }
 
-    /// Returns the imaging geometry for an image point, from that on the axis: in focus may be
-    /// another distance.
+    /// Returns the imaging geometry for an image point from the geometry on the axis: the distance
+    /// in focus may differ.
     pub fn geometry(&self, on_axis: &ImagingGeometry, pixel: DVec2) -> ImagingGeometry {
         let tilted = self.tilted.then(|| {
             self.camera
@@ -90,7 +91,7 @@ impl Perspective {
         tilted.flatten().unwrap_or(*on_axis)
     }
 
-    /// Returns the vergence 1/L of what is in focus at an image point, in 1/m.
+    /// Returns the vergence 1/L of the point in focus at an image point, in 1/m.
     #[inline]
     pub fn focus_vergence(&self, on_axis: &ImagingGeometry, pixel: DVec2) -> f64 {
         if self.tilted {
@@ -141,7 +142,8 @@ mod tests {
             let sensor = bent.camera.project(point).unwrap();
             let perspective = bent.point(sensor);
             let error = perspective.distance(plain.project(point).unwrap());
-            // Rounding over 8000 pixels of image distance, and the inversion of the distortion.
+            // The tolerance covers rounding over 8000 pixels of image distance and the inversion of
+            // the distortion.
             assert!(error < 1e-8, "{point}: {error:e} pixels");
             let moved = perspective.distance(sensor);
             assert!(moved > 1e-3, "{point}: the sensor sees the perspective");
@@ -183,7 +185,7 @@ mod tests {
             let geometry = tilted.geometry(&on_axis, pixel);
             let depth = (point - camera.position()).dot(-camera.axes().z_axis);
             let defocus = geometry.defocus_at(depth);
-            // Of lengths of 0.3 m, rounded after some ten operations.
+            // The tolerance covers rounding of lengths of 0.3 m over some ten operations.
             assert!(defocus.abs() < 1e-12, "{a}, {b}: {defocus:e} per metre");
             largest = largest.max(on_axis.defocus_at(depth).abs());
         }

@@ -7,18 +7,19 @@ use tem00_speckle::StackPlan;
 
 use crate::{Motion, Pose, ShadingError, SpeckleFrame, patterns::Patterns, state::State};
 
-/// The speckle of a laser in the image of a camera, ready for the frames that it was prepared for.
-/// Clones share the patterns.
+/// The speckle of a laser in the image of a camera, prepared for a set of frames. Clones share the
+/// patterns.
 #[derive(Clone, Debug)]
 pub struct PreparedSpeckle(pub(crate) Arc<Patterns>);
 
 impl PreparedSpeckle {
-    /// Returns the speckle of a body in a frame: once per body and frame.
+    /// Returns the speckle of a body in a frame. Call it once per body and frame.
     ///
     /// # Errors
     ///
-    /// Returns an error if the motion shifts the speckle farther than the poses that it was
-    /// prepared for, or otherwise than [`prepare`](crate::Speckle::prepare) says of a linewidth.
+    /// Returns an error if the motion shifts the speckle farther than the poses for which it was
+    /// prepared, or violates the condition that [`prepare`](crate::Speckle::prepare) states for a
+    /// linewidth.
     pub fn frame(&self, motion: &Motion) -> Result<SpeckleFrame, ShadingError> {
         let Self(patterns) = self;
         let frame = self.unchecked(motion)?;
@@ -27,7 +28,7 @@ impl PreparedSpeckle {
         let shifts = shifts.filter(|shift| shift.pupil.is_finite());
         let farthest = shifts.max_by(|a, b| a.pupil.total_cmp(&b.pupil));
         let shift = farthest.map_or(0.0, |shift| shift.pupil);
-        // Of two frames the second has new speckle beyond the reach, whatever it is.
+        // With two frames, all speckle of the second beyond the reach is new.
         let held = frame.reach;
         if shift > held && (patterns.needs.frames > 2 || held == 0.0) {
             return Err(ShadingError::BeyondPoses { shift, held });
@@ -36,12 +37,12 @@ impl PreparedSpeckle {
         Ok(frame)
     }
 
-    /// Writes the factors at points that stood elsewhere in the reference state, for a host that
-    /// knows no bodies but has buffers of an image: where the points are, their unit normals, and
-    /// where they were.
+    /// Writes the factors at points that have moved since the reference state, for a host that has
+    /// no bodies but image buffers: the positions of the points, their unit normals, and their
+    /// positions in the reference state.
     ///
-    /// A point counts as carried along without a turn. Points whose motion is the same, one after
-    /// the other, are looked up fastest; those that are not finite have the factor 1.
+    /// Each point is treated as translated without rotation. Look-ups are fastest if consecutive
+    /// points have the same motion; points that are not finite have the factor 1.
     ///
     /// # Panics
     ///
@@ -90,7 +91,7 @@ impl PreparedSpeckle {
         })
     }
 
-    /// Returns the imaging geometry on the axis of the camera, with the size of the speckle.
+    /// Returns the imaging geometry on the axis of the camera, which gives the speckle size.
     pub fn geometry(&self) -> &ImagingGeometry {
         &self.0.geometry
     }
@@ -100,7 +101,7 @@ impl PreparedSpeckle {
         &self.0.plan
     }
 
-    /// Returns the bytes that all patterns take.
+    /// Returns the memory of all patterns, in bytes.
     pub fn memory_bytes(&self) -> u64 {
         self.0
             .plan

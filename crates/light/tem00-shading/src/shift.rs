@@ -12,17 +12,18 @@ use crate::{
     laser::{WaveFrame, WaveShape},
 };
 
-/// The number of points that are worked out together.
+/// The number of points that are computed together.
 pub const BLOCK: usize = 64;
 
-/// Points that share vector instructions: a block with fewer ends on a multiple of it.
+/// Number of points that share vector instructions: a partial block is extended to a multiple of
+/// it.
 const LANES: usize = 8;
 
-/// A point of a surface, and where in the image it is seen.
+/// A point of a surface, and the image point at which it is seen.
 ///
-/// The point need not lie on the chief ray of its pixel: out of focus it is seen beside it, and in
-/// a mirror somewhere else. Its speckle counts as moving by as much as the point would move seen
-/// directly, which in a plane mirror is right but for the reflection.
+/// The point need not lie on the chief ray of its pixel: out of focus it is seen next to the chief
+/// ray, and in a mirror elsewhere. Its speckle is assumed to move as the point would move if seen
+/// directly, which in a plane mirror is correct except for the reflection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeenPoint {
     /// The image point of the sample, in pixels with y down.
@@ -42,12 +43,12 @@ impl SeenPoint {
     };
 }
 
-/// The light whose speckle is meant.
+/// Kind of light whose speckle is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LightPath {
-    /// Light straight from the laser.
+    /// Light directly from the laser.
     Direct,
-    /// Light that keeps its phases where it meets the surface, however the laser moves.
+    /// Light that keeps its phases on the surface under any motion of the laser.
     Carried,
 }
 
@@ -56,27 +57,27 @@ pub enum LightPath {
 pub struct SpeckleShift {
     /// The displacement of the speckle in the image in perspective, in pixels with y down.
     pub displacement: DVec2,
-    /// The displacement of the pupil over the speckle, in pupil diameters, never negative: the one
-    /// across it that leaves alone what it and a displacement along the axis leave together.
-    /// Infinite where the speckle is new.
+    /// The displacement of the pupil over the speckle, in pupil diameters, never negative: the
+    /// lateral displacement that leaves the same correlation as the lateral and the axial
+    /// displacement together. Infinite where the speckle is new.
     pub pupil: f64,
-    /// The part of it across the line of sight, to the right and up, in pupil diameters.
+    /// The displacement across the line of sight, to the right and up, in pupil diameters.
     pub across: DVec2,
     /// The displacement along the axis, in axial decorrelation lengths: positive where the point
-    /// has come nearer.
+    /// has approached.
     pub axial: f64,
 }
 
 impl SpeckleShift {
-    /// Returns the displacement of the pupil as a vector, to the right and up, in its diameters:
-    /// one without direction is to the right.
+    /// Returns the displacement of the pupil as a vector, to the right and up, in pupil diameters;
+    /// a displacement without a direction points to the right.
     pub fn pupil_vector(&self) -> DVec2 {
         self.pupil * self.across.try_normalize().unwrap_or(DVec2::X)
     }
 
-    /// Returns the way of the pupil over the speckle: across it, in its diameters, and along the
-    /// axis, in axial decorrelation lengths. Ways on two sides of the reference have a negative
-    /// product.
+    /// Returns the path of the pupil over the speckle: across it, in pupil diameters, and along the
+    /// axis, in axial decorrelation lengths. Paths on opposite sides of the reference have a
+    /// negative scalar product.
     pub const fn way(&self) -> DVec3 {
         DVec3::new(self.across.x, self.across.y, self.axial)
     }
@@ -88,17 +89,17 @@ impl SpeckleShift {
 pub struct SpeckleLaw<'a> {
     /// The motion of body and camera since the reference frame.
     pub change: &'a RigidChange,
-    /// The laser in the reference frame and now.
+    /// The laser in the reference frame and in the current frame.
     pub lasers: [&'a Laser; 2],
-    /// The image now.
+    /// The image in the current frame.
     pub perspective: &'a Perspective,
     /// The camera's imaging geometry on the axis, in the light of the laser.
     pub geometry: &'a ImagingGeometry,
 }
 
 impl SpeckleLaw<'_> {
-    /// Writes what has become of the speckle at points, `None` where a frame does not see them: the
-    /// same bits as one by one.
+    /// Writes the change of the speckle at points, `None` where a frame does not see them; the bits
+    /// are the same as one by one.
     ///
     /// # Panics
     ///
@@ -127,8 +128,8 @@ impl SpeckleLaw<'_> {
 }
 
 impl SpeckleLaw<'_> {
-    /// Returns what has become of the speckle of a point that is lit from the unit vectors
-    /// `to_source`, in the reference frame and now, or `None` where the law has no value.
+    /// Returns the change of the speckle of a point that is lit from the unit vectors `to_source`,
+    /// in the reference frame and in the current frame, or `None` where the law has no value.
     pub fn shift_under(&self, to_source: [DVec3; 2], point: SeenPoint) -> Option<SpeckleShift> {
         let shared = self.shared(LightPath::Direct);
         let block = self.block([point].into_iter());
@@ -156,7 +157,7 @@ impl SpeckleLaw<'_> {
         }
     }
 
-    #[inline(always)] // It is filled in where it lies.
+    #[inline(always)] // It is filled in place.
     fn block(&self, points: impl Iterator<Item = SeenPoint>) -> Block {
         Block::new(points, |pixel| {
             self.perspective.focus_vergence(self.geometry, pixel)
@@ -167,7 +168,7 @@ impl SpeckleLaw<'_> {
 /// Quantities common to all points of a surface.
 struct Shared<'a> {
     law: &'a RigidChange,
-    /// The laser in the reference frame and now.
+    /// The laser in the reference frame and in the current frame.
     lasers: [WaveFrame; 2],
     is_carried: bool,
     pixels_per_tangent: f64,
@@ -184,18 +185,18 @@ struct Block {
     focus_vergence: [f64; BLOCK],
 }
 
-/// Displacements and correlations of the points of a block.
+/// Displacements of the speckle at the points of a block.
 struct Changes {
     displacement: [[f64; BLOCK]; 2],
     across: [[f64; BLOCK]; 2],
-    /// Across the pupil, in its diameters; infinite where the theory has no value.
+    /// Displacement across the pupil, in pupil diameters; infinite where the theory has no value.
     pupil: [f64; BLOCK],
-    /// Along the axis, in axial decorrelation lengths.
+    /// Displacement along the axis, in axial decorrelation lengths.
     axial: [f64; BLOCK],
 }
 
 impl Block {
-    #[inline(always)] // It is filled in where it lies.
+    #[inline(always)] // It is filled in place.
     fn new(points: impl Iterator<Item = SeenPoint>, focus_vergence: impl Fn(DVec2) -> f64) -> Self {
         let mut block = Self {
             count: 0,
@@ -216,8 +217,8 @@ impl Block {
 }
 
 impl Shared<'_> {
-    /// Works out the points of a block.
-    #[inline(always)] // They are written where they lie.
+    /// Computes the changes at the points of a block.
+    #[inline(always)] // They are written in place.
     fn changes(&self, block: &Block, shape: &WaveShape) -> Changes {
         let end = block.count.next_multiple_of(LANES).min(BLOCK);
         let mut changes = Changes::new();
@@ -259,7 +260,8 @@ impl Shared<'_> {
         }
     }
 
-    /// Adds what defocus moves the pattern by to the image of the point: `∓ C A (W + W') / 2`.
+    /// Adds the displacement of the pattern by defocus to the image of the point:
+    /// `∓ C A (W + W') / 2`.
     #[inline(always)]
     fn put(&self, point: &PointChange, focus_vergence: f64, i: usize, changes: &mut Changes) {
         let [before, now] = point.per_depth;
@@ -278,7 +280,7 @@ impl Shared<'_> {
 }
 
 impl Changes {
-    #[inline(always)] // It is filled in where it lies.
+    #[inline(always)] // It is filled in place.
     const fn new() -> Self {
         Self {
             displacement: [[0.0; BLOCK]; 2],

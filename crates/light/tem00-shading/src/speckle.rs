@@ -13,10 +13,10 @@ use crate::{
     state::{ReferencePoint, State},
 };
 
-/// Description of speckle: of a laser, in the image of a camera, for the motions of some frames.
+/// Description of the speckle of a laser in the image of a camera, for the motions of some frames.
 ///
-/// [`prepare`](Self::prepare) chooses the sizes and generates the patterns; its `Display` says what
-/// it chose and why.
+/// [`prepare`](Self::prepare) chooses the sizes and generates the patterns; the `Display` of the
+/// result reports the choice and its reasons.
 ///
 /// # Examples
 ///
@@ -59,11 +59,11 @@ pub struct Speckle {
 }
 
 impl Speckle {
-    /// Asks for the speckle of a laser in the image of a camera, both as they stand in the
-    /// reference state, with the phasors of `seed`: one look, polarised, in at most 256 MiB, of
-    /// bodies that stand still.
+    /// Describes the speckle of a laser in the image of a camera, both in the reference state, with
+    /// the phasors of `seed`. The defaults are one look, polarised light, at most 256 MiB, and
+    /// bodies at rest.
     ///
-    /// Two lasers want two seeds: [`derived`](tem00_numerics::seed::derived) makes them from one.
+    /// Two lasers need two seeds: [`derived`](tem00_numerics::seed::derived) derives them from one.
     pub fn new(camera: &Camera, laser: &Laser, seed: u64) -> Self {
         Self {
             camera: *camera,
@@ -78,7 +78,7 @@ impl Speckle {
         }
     }
 
-    /// Adds frames in which a body has these poses, and camera and laser stand still.
+    /// Adds frames in which a body has these poses, and camera and laser are at rest.
     pub fn for_poses<'a>(self, poses: impl IntoIterator<Item = &'a Pose>) -> Self {
         self.for_motions(poses.into_iter().map(|&pose| pose.into()))
     }
@@ -92,36 +92,36 @@ impl Speckle {
     /// Sets points with their normals, in the reference state, from which the largest shift of the
     /// speckle is found.
     ///
-    /// Without them it is found where the light of the laser crosses the plane in focus, or all
-    /// over the image if it is seen nowhere, on a surface that faces the camera, the laser or the
-    /// direction between both.
+    /// Without such points the largest shift is found where the light of the laser crosses the
+    /// plane in focus, or over the whole image if this light is outside of it, on surfaces that
+    /// face the camera, the laser or the direction between both.
     pub fn at_points(mut self, points: impl IntoIterator<Item = (DVec3, DVec3)>) -> Self {
         self.points.extend(points);
         self
     }
 
-    /// Sets the bytes that the patterns may take.
+    /// Sets the memory limit of the patterns, in bytes.
     pub const fn within(mut self, bytes: u64) -> Self {
         self.memory = bytes;
         self
     }
 
     /// Sets the number of equal independent patterns that add up, which lowers the contrast to
-    /// `1/√looks`: of several exposures, places or modes that the detector adds.
+    /// `1/√looks`: several exposures, positions or modes that the detector adds.
     pub const fn looks(mut self, looks: usize) -> Self {
         self.looks = looks;
         self
     }
 
     /// Sets the degree of polarisation of the light that reaches the sensor: 1 behind a polariser,
-    /// near 0 for laser light off white paper without one.
+    /// near 0 for laser light from white paper without one.
     pub const fn polarisation(mut self, degree: f64) -> Self {
         self.polarisation = degree;
         self
     }
 
-    /// Sets the relief of the surface that is finer than a resolution cell: its paths lower the
-    /// contrast of a laser that has a linewidth.
+    /// Sets the surface relief finer than a resolution cell. The path differences of the relief
+    /// lower the contrast of a laser with a linewidth.
     pub const fn relief(mut self, relief: Relief) -> Self {
         self.relief = relief;
         self
@@ -131,14 +131,14 @@ impl Speckle {
     ///
     /// # Errors
     ///
-    /// Returns an error if the image or the motions need more memory than allowed, if the number of
-    /// looks or the degree of polarisation is out of range, or if no frame shows a point from which
-    /// to find the largest shift.
+    /// Returns an error if the image or the motions need more memory than the limit, if the number
+    /// of looks or the degree of polarisation is out of range, or if no frame shows a point from
+    /// which the largest shift can be found.
     ///
-    /// A laser that has a linewidth or is no point needs [`at_points`](Self::at_points), one of
+    /// A laser with a linewidth or an extended source needs [`at_points`](Self::at_points), one of
     /// which the camera sees in the reference state. With a linewidth, motions must displace the
-    /// pupil along the direction in which other wavelengths do: an error says where two frames
-    /// would correlate by 0.05 otherwise than by the law.
+    /// pupil in the direction in which other wavelengths displace it: it is an error if the
+    /// correlation of two frames would differ from the law by more than 0.05.
     pub fn prepare(self) -> Result<PreparedSpeckle, ShadingError> {
         let motions = self.motions.clone();
         let (mut patterns, fields) = self.planned()?;
@@ -153,7 +153,8 @@ impl Speckle {
         Ok(speckle)
     }
 
-    /// Chooses sizes, slices and seeds: patterns without their stacks, and the fields of these.
+    /// Chooses sizes, slices and seeds. Returns the patterns without their stacks, and the fields
+    /// of the stacks.
     pub(crate) fn planned(mut self) -> Result<(Patterns, Vec<PupilField>), ShadingError> {
         self.motions.retain(|motion| !motion.is_still());
         let geometry = self.camera.imaging_geometry(self.laser.wavelength())?;
@@ -163,8 +164,8 @@ impl Speckle {
         let bandwidth = light.bandwidth.map(|bandwidth| demand.beside(&bandwidth));
         let heights = bandwidth.as_ref().map_or(1, |b| b.heights.len());
         let fields = fractions.len() * heights;
-        // The reference state is one of them; the waves of a line want a path as long as many
-        // frames do.
+        // The reference state counts as a frame; the wave numbers of a line need a path as long as
+        // for many frames.
         let frames = 1 + self.motions.len();
         let frames = if bandwidth.is_some() {
             frames.max(3)
@@ -211,7 +212,8 @@ impl Speckle {
         Ok((patterns, plan.field(self.seed)?.independent(stacks)?))
     }
 
-    /// Finds what the linewidth and the extent of the laser ask of the surface.
+    /// Finds the fractions and the bandwidth of the surface's speckle due to linewidth and extent
+    /// of the laser.
     fn light(&self, geometry: &ImagingGeometry) -> Result<SurfaceLight, ShadingError> {
         if self.laser.is_coherent() {
             return Ok(SurfaceLight::single());
@@ -267,7 +269,7 @@ impl Speckle {
     }
 }
 
-/// A stack for each field, or one for all.
+/// Layout of the fields: a stack for each field, or one stack for all.
 struct Layout {
     plan: StackPlan,
     stacks: usize,
@@ -301,8 +303,8 @@ struct Demand {
     image: DVec2,
     /// The corners of the region of the reference image from which speckle is looked up, in pixels.
     region: [DVec2; 2],
-    /// The largest shifts of the pupil to either side of the reference, in its diameters; the
-    /// second to the side of the farthest.
+    /// The largest shifts of the pupil to either side of the reference, in pupil diameters; the
+    /// second is on the side of the largest shift of all.
     shifts: [f64; 2],
     farthest: Option<ReferencePoint>,
 }
@@ -317,13 +319,13 @@ impl Demand {
         }
     }
 
-    /// Makes room beside the motion for what a linewidth asks, which it returns on the side of the
-    /// farthest.
+    /// Extends the demand by the displacements of a linewidth, and returns the bandwidth oriented
+    /// to the side of the largest shift.
     fn beside(&mut self, bandwidth: &Bandwidth) -> Bandwidth {
         let [before, after] = self.shifts;
         self.shifts = [before.max(after) + bandwidth.reach; 2];
         let [low, high] = self.region;
-        // Turned so that the slices stand along the axis.
+        // The region is rotated so that the slices lie along the axis.
         let size = (high - low).max(turned((high - low).abs(), bandwidth.axis.abs()));
         self.region = [low, low + size];
         let way = self.farthest.as_ref().map(ReferencePoint::way_across);

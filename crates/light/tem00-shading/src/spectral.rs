@@ -17,18 +17,18 @@ use crate::{Laser, Perspective, SeenPoint};
 /// The law by which the speckle of points changes with the wave number of the light of one laser.
 #[derive(Clone, Copy, Debug)]
 pub struct SpectralLaw<'a> {
-    /// The laser now.
+    /// The laser in the current frame.
     pub laser: &'a Laser,
-    /// The image now.
+    /// The image in the current frame.
     pub perspective: &'a Perspective,
-    /// The camera's imaging geometry on the axis, in the mean wavelength of the laser.
+    /// The camera's imaging geometry on the axis, at the mean wavelength of the laser.
     pub geometry: &'a ImagingGeometry,
 }
 
 /// The change of the speckle of a point with the wave number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpectralShift {
-    /// The displacement of the speckle in the image in perspective, in pixels with y down: none in
+    /// The displacement of the speckle in the image in perspective, in pixels with y down; zero in
     /// focus.
     pub displacement: DVec2,
     /// The displacement of the pupil over the speckle to the right and up, in pupil diameters.
@@ -37,27 +37,29 @@ pub struct SpectralShift {
     pub phase_per_height: f64,
 }
 
-/// The light of a laser on a surface: fractions of patterns whose intensities add, and what else
-/// its bandwidth asks.
+/// The light of a laser on a surface: fractions of patterns whose intensities add, and the look-up
+/// for its bandwidth.
 #[derive(Clone, Debug)]
 pub struct SurfaceLight {
-    /// Fractions of independent patterns: one, or the dominant modes of heights or of directions of
-    /// the source.
+    /// Fractions of independent patterns: one pattern, or the dominant modes of heights or of
+    /// source directions.
     pub modes: Vec<f64>,
-    /// Draw from the linewidth for each look-up, unless all wave numbers look alike.
+    /// Parameters for drawing a wave number from the linewidth for each look-up, unless all wave
+    /// numbers have the same speckle.
     pub bandwidth: Option<Bandwidth>,
 }
 
 /// Look-up of a surface's speckle under a laser with a linewidth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bandwidth {
-    /// Heights that stand for the relief, in metres, with the roots of their fractions of the
-    /// light. Their fields add.
+    /// Heights that represent the relief, in metres, with the square roots of their fractions of
+    /// the light. Their fields add.
     pub heights: Vec<[f64; 2]>,
     /// The unit vector in the image, with y up, along which another wavelength displaces the pupil,
-    /// on the side to which it moves farthest.
+    /// pointing to the side of the largest displacement.
     pub axis: DVec2,
-    /// The largest such displacement that the slices hold to either side, in pupil diameters.
+    /// The largest displacement along the axis that the slices hold to either side, in pupil
+    /// diameters.
     pub reach: f64,
     /// The displacement in pupil diameters over the difference of wave numbers.
     pub tilt: f64,
@@ -66,19 +68,19 @@ pub struct Bandwidth {
     pub phase_per_height: f64,
 }
 
-/// The spread of the wave number over that which displaces the pupil by its diameter, below which a
-/// contrast is above 0.999.
+/// The spread of the wave number, divided by the change that displaces the pupil by its diameter,
+/// below which the contrast is above 0.999.
 const NEGLIGIBLE_TILT: f64 = 5e-4;
 
-/// The part of the line to either side that the slices need not hold, and the most that they hold
-/// in pupil diameters: on a path that closes, the rest finds speckle that is new to nearly all of
-/// the line.
+/// The fraction of the line to either side that the slices need not hold, and the largest
+/// displacement that they hold, in pupil diameters. On a closed path the rest of the line gets
+/// speckle that is new to nearly all of the line.
 const LEFT_OUT: f64 = 5e-4;
 const MAX_REACH: f64 = 1.5;
 
 impl SpectralLaw<'_> {
-    /// Returns what becomes of the speckle at a point in light whose wave number differs by
-    /// `kappa`, in rad/m, from the mean one, or `None` where the theory has no value.
+    /// Returns the change of the speckle at a point in light whose wave number differs by `kappa`,
+    /// in rad/m, from the mean wave number, or `None` where the theory has no value.
     pub fn shift(&self, point: &SeenPoint, kappa: f64) -> Option<SpectralShift> {
         let mean = self.configuration(point)?;
         let other = mean
@@ -113,10 +115,10 @@ impl SpectralLaw<'_> {
         .ok()
     }
 
-    /// Returns the light on a surface of a relief of which these points are seen, or `None` if the
-    /// theory has a value at none of them.
+    /// Returns the light on a surface with a relief, of which these points are seen, or `None` if
+    /// the theory has no value at any of them.
     ///
-    /// The point where wavelengths displace the pupil most stands for all.
+    /// The point at which wavelengths displace the pupil most represents all points.
     pub fn light(
         &self,
         points: impl Iterator<Item = SeenPoint>,
@@ -154,9 +156,9 @@ impl SpectralLaw<'_> {
         })
     }
 
-    /// Returns the change of the speckle of a point over the difference of wave numbers.
+    /// Returns the change of the speckle of a point per difference of wave numbers.
     fn response(&self, point: &SeenPoint) -> Option<SpectralShift> {
-        // Small against every linewidth that counts, and large against rounding.
+        // Small compared with every linewidth that matters, and large compared with rounding.
         let kappa = 1e-6 * self.laser.spectral_line().wave_number();
         let shift = self.shift(point, kappa)?;
         Some(SpectralShift {
@@ -166,8 +168,8 @@ impl SpectralLaw<'_> {
         })
     }
 
-    /// The point with its light: its phase follows from its direction alone, so that the wave need
-    /// not be known.
+    /// The point with its light: the phase follows from the direction of the light alone, so that
+    /// the shape of the wave is not needed.
     fn configuration(&self, point: &SeenPoint) -> Option<Configuration> {
         let camera = self.perspective.camera();
         let to_source = self.laser.wave_direction_at(point.position);
@@ -188,14 +190,15 @@ impl SpectralShift {
         self.displacement.is_finite() && self.pupil.is_finite() && self.phase_per_height.is_finite()
     }
 
-    /// Returns the displacement of the pupil along an axis, with its length.
+    /// Returns the displacement of the pupil with its full length and the sign of its component
+    /// along an axis.
     pub fn along(&self, axis: DVec2) -> f64 {
         self.pupil.length() * self.pupil.dot(axis).signum()
     }
 }
 
 impl SurfaceLight {
-    /// Returns light of one wavelength from a point.
+    /// Returns the light of one wavelength from a point source.
     pub fn single() -> Self {
         Self {
             modes: vec![1.0],
@@ -205,15 +208,15 @@ impl SurfaceLight {
 }
 
 impl Bandwidth {
-    /// Returns the same with an axis on the side of a way of the pupil over the speckle, to the
-    /// right and up.
+    /// Returns the same bandwidth with the axis on the side of a path of the pupil over the
+    /// speckle, to the right and up.
     #[must_use]
     pub fn beside(&self, way: DVec2) -> Self {
         let axis = self.axis;
         self.along(if way.dot(axis) < 0.0 { -axis } else { axis })
     }
 
-    /// Returns the same with another axis, along which a motion is followed.
+    /// Returns the same bandwidth with another axis, along which a motion is followed.
     #[must_use]
     pub fn along(&self, axis: DVec2) -> Self {
         Self {
@@ -222,14 +225,15 @@ impl Bandwidth {
         }
     }
 
-    /// Returns the covariance of intensities in the light of a line between which the pupil has
-    /// moved by so many diameters, where other waves displace it along an axis.
+    /// Returns the covariance of two intensities in the light of a line, between which the pupil
+    /// has moved by `shift`, in pupil diameters; other wave numbers displace the pupil along
+    /// `axis`.
     pub fn covariance(&self, line: &SpectralLine, shift: DVec2, axis: DVec2) -> f64 {
         line.mean_over_pairs(self.scale(), |kappa| self.kept_of(kappa, shift, axis))
     }
 
-    /// Returns into how many equal parts a line must be split, each with its median wave number,
-    /// for a contrast within 1 % of that of the whole line: at most 64.
+    /// Returns the number of equal parts, at most 64, into which a line must be split, each with
+    /// its median wave number, for a contrast within 1 % of the contrast of the whole line.
     pub(crate) fn waves(&self, line: &SpectralLine) -> usize {
         let law = self.covariance(line, DVec2::ZERO, self.axis);
         let of_parts = |count: usize| {
@@ -247,8 +251,8 @@ impl Bandwidth {
             .unwrap_or(64)
     }
 
-    /// Returns the covariance that a difference of wave numbers and a displacement of the pupil
-    /// leave.
+    /// Returns the covariance that remains after a difference of wave numbers and a displacement of
+    /// the pupil.
     fn kept_of(&self, kappa: f64, shift: DVec2, axis: DVec2) -> f64 {
         let shift = shift + kappa * self.tilt * axis;
         self.kept_by_heights(kappa) * pupil_overlap_correlation(shift.length())
@@ -261,7 +265,7 @@ impl Bandwidth {
         self.tilt.max(phases).recip()
     }
 
-    /// Returns the squared correlation that the heights leave of a difference of wave numbers.
+    /// Returns the squared correlation that the heights leave for a difference of wave numbers.
     fn kept_by_heights(&self, kappa: f64) -> f64 {
         let phase = |height: f64| Complex::cis(self.phase_per_height * kappa * height);
         let fields = self.heights.iter();

@@ -7,20 +7,20 @@ use crate::{
     SpectralLaw,
 };
 
-/// Body, camera and laser now, beside the reference state.
+/// Body, camera and laser in the current frame and in the reference state.
 #[derive(Clone, Debug)]
 pub(crate) struct State {
     pub(crate) motion: Motion,
     change: RigidChange,
     camera: Camera,
-    /// The laser in the reference state and now.
+    /// The laser in the reference state and in the current frame.
     lasers: [Laser; 2],
     perspective: Perspective,
 }
 
-/// A point in the reference state, and the way of the pupil over its speckle in some frame.
+/// A point in the reference state, and the path of the pupil over its speckle in some frame.
 ///
-/// It tells a motion to one side of the reference from one to the other.
+/// It distinguishes motions to the two sides of the reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ReferencePoint {
     position: DVec3,
@@ -29,14 +29,14 @@ pub(crate) struct ReferencePoint {
 }
 
 impl ReferencePoint {
-    /// Returns the way of the pupil across the line of sight, to the right and up.
+    /// Returns the path of the pupil across the line of sight, to the right and up.
     pub(crate) fn way_across(&self) -> DVec2 {
         self.way.truncate()
     }
 }
 
-/// Rays along each dimension of the light of the laser, and of the image, by which points are
-/// found.
+/// Number of rays along each dimension of the laser's light, and of the image, with which points
+/// are found.
 const RAYS: u32 = 6;
 
 impl State {
@@ -65,7 +65,7 @@ impl State {
         &self.perspective
     }
 
-    /// Returns a point where the camera sees it, if it lies before the lens.
+    /// Returns a point with its image point, if the point lies before the lens.
     pub(crate) fn seen(&self, position: DVec3, normal: DVec3) -> Option<SeenPoint> {
         let pixel = self.camera.project(position)?;
         Some(SeenPoint {
@@ -75,7 +75,7 @@ impl State {
         })
     }
 
-    /// Writes what has become of the speckle at points, `None` where the law has no value.
+    /// Writes the change of the speckle at points, `None` where the law has no value.
     pub(crate) fn shifts(
         &self,
         geometry: &ImagingGeometry,
@@ -99,8 +99,8 @@ impl State {
         }
     }
 
-    /// Returns what has become of the speckle of a point in light that, in the reference state, was
-    /// this and moves with the laser.
+    /// Returns the change of the speckle of a point in light that is given in the reference state
+    /// and moves with the laser.
     pub(crate) fn shift_under(
         &self,
         light: &Illumination,
@@ -113,7 +113,7 @@ impl State {
         self.law(geometry).shift_under(to_source, point)
     }
 
-    /// Returns the law by which speckle changes with the wave number, now.
+    /// Returns the law by which speckle changes with the wave number in the current frame.
     pub(crate) const fn spectral_law<'a>(
         &'a self,
         geometry: &'a ImagingGeometry,
@@ -132,7 +132,7 @@ impl State {
         shift[0]
     }
 
-    /// Returns where a point was in the reference state, with the way of the pupil over its
+    /// Returns the position of a point in the reference state, with the path of the pupil over its
     /// speckle.
     pub(crate) fn reference_point(&self, point: &SeenPoint, way: DVec3) -> ReferencePoint {
         let back = self.motion.surface.inverse();
@@ -143,8 +143,9 @@ impl State {
         }
     }
 
-    /// Returns on which side of the reference the speckle is: 1 where the pupil has moved over that
-    /// of a point as it has where it moved farthest, and −1 where it has moved the other way.
+    /// Returns the side of the reference on which the speckle is: 1 if the pupil has moved over the
+    /// speckle in the same direction as in the frame of the largest motion, and −1 if it has moved
+    /// in the opposite direction.
     pub(crate) fn side(
         &self,
         geometry: &ImagingGeometry,
@@ -163,8 +164,8 @@ impl State {
         }
     }
 
-    /// Returns points that the camera sees now, with what has become of their speckle: those given
-    /// in the reference state, or else points of the plane in focus.
+    /// Returns points that the camera sees in the current frame, with the change of their speckle:
+    /// the points given in the reference state or, without any, points of the plane in focus.
     pub(crate) fn scouted(
         &self,
         geometry: &ImagingGeometry,
@@ -197,9 +198,9 @@ impl State {
         DVec2::new(self.camera.width() as f64, self.camera.height() as f64)
     }
 
-    /// Points in the image and in focus, where rays of the laser meet the plane there or, if none
-    /// does as of a line much wider than the image, all over the image; with normals towards the
-    /// camera, the laser and between both.
+    /// Points in the image and in focus, with normals towards the camera, the laser and between
+    /// both. They lie where rays of the laser meet the plane in focus or, if no ray does within the
+    /// image, as for a line much wider than the image, all over the image.
     fn in_focus(&self) -> Vec<(DVec3, DVec3)> {
         let (origin, normal) = self.camera.plane_in_focus();
         let meet = |ray: Ray| {

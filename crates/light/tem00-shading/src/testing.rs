@@ -5,7 +5,7 @@ use tem00_coherence::SpectralLine;
 
 use crate::{BeamShape, LaserDescription};
 
-/// A round spot of 650 nm and 1 mW whose waist lies at the origin, where it is aimed at.
+/// A round spot of 650 nm and 1 mW that is aimed at the origin, where its waist lies.
 pub(crate) fn spot(position: DVec3, waist_radius: f64) -> LaserDescription {
     LaserDescription {
         line: SpectralLine::monochromatic(650e-9).unwrap(),

@@ -6,20 +6,22 @@ use crate::ShadingError;
 
 /// Motion of an object from frame to frame.
 ///
-/// The pose of a frame takes the thing from its position in the scene description to that in the
-/// frame: a rotation by R about a pivot P of the scene description, and then a displacement d.
+/// The pose of a frame takes the object from its position in the scene description to its position
+/// in the frame: a rotation by R about a pivot P of the scene description, and then a displacement
+/// d.
 ///
 /// ```text
 /// x' = R (x − P) + P + d
 /// ```
 ///
-/// In a steady motion angle and displacement grow with the frame, from none in frame 0; the pivot
-/// travels along. Between keyframes the displacement changes at a constant rate and the rotation at
-/// a constant rate about one axis; before the first and after the last the thing stands still.
+/// In a steady motion angle and displacement grow in proportion to the frame number, from zero in
+/// frame 0; the pivot moves with the object. Between keyframes the displacement changes at a
+/// constant rate and the rotation at a constant rate about one axis; before the first and after the
+/// last keyframe the object is at rest.
 ///
 /// # Examples
 ///
-/// A turntable that turns by 1° per frame, and one that has turned once in frame 10:
+/// A turntable that turns by 1° per frame, and a turntable that has made one turn in frame 10:
 ///
 /// ```
 /// use glam::DVec3;
@@ -45,7 +47,7 @@ pub struct Trajectory {
 
 /// A rotation about an axis through a pivot, right-handed.
 ///
-/// The angle may be more than a turn.
+/// The angle may exceed a full turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation {
     /// The direction of the axis, of any length.
@@ -80,7 +82,7 @@ pub struct Keyframe {
 }
 
 impl Keyframe {
-    /// Returns the keyframe at which something is where the scene description has it.
+    /// Returns the keyframe at which an object is in the pose of the scene description.
     pub const fn unmoved(frame: f64) -> Self {
         Self {
             frame,
@@ -97,7 +99,7 @@ enum Path {
         displacement: DVec3,
         rotation: Rotation,
     },
-    /// In the order of time, at least one, with unit axes.
+    /// At least one keyframe, in the order of time, with unit axes.
     Keyframes(Vec<Keyframe>),
 }
 
@@ -106,7 +108,7 @@ impl Trajectory {
     ///
     /// # Errors
     ///
-    /// Returns an error if the displacement, or what it adds up to in 2³² frames, is not finite.
+    /// Returns an error if the displacement, or its sum over 2³² frames, is not finite.
     pub fn steady(displacement: DVec3) -> Result<Self, ShadingError> {
         check_steps(displacement)?;
         Ok(Self {
@@ -123,8 +125,8 @@ impl Trajectory {
     ///
     /// # Errors
     ///
-    /// As [`steady`](Self::steady), and if the pivot is not finite, if the axis is zero or not
-    /// finite, or if the angle, or what it adds up to, is not finite.
+    /// Returns the errors of [`steady`](Self::steady), and an error if the pivot is not finite, if
+    /// the axis is zero or not finite, or if the angle, or its sum over 2³² frames, is not finite.
     pub fn turning(
         pivot: DVec3,
         rotation: Rotation,
@@ -133,7 +135,7 @@ impl Trajectory {
         check_finite("pivot", pivot * ROOM, "a finite point")?;
         let rotation = checked(rotation, ROOM * f64::from(u32::MAX))?;
         if rotation.angle == 0.0 {
-            // Motions without rotation are the same whatever their pivot.
+            // Motions without rotation do not depend on the pivot.
             return Self::steady(displacement);
         }
         check_steps(displacement)?;
@@ -150,7 +152,7 @@ impl Trajectory {
     /// description, in metres.
     ///
     /// Between two rotations about the same axis the angle changes steadily, through whole turns if
-    /// it has to. Between others the thing turns the shortest way.
+    /// necessary. Between other rotations the object turns through the smallest angle.
     ///
     /// # Errors
     ///
@@ -205,7 +207,7 @@ impl Trajectory {
         }
     }
 
-    /// Returns the keyframes, in the order of time; none of a steady motion.
+    /// Returns the keyframes, in the order of time; empty for a steady motion.
     pub fn keyframes(&self) -> &[Keyframe] {
         match &self.path {
             Path::Steady { .. } => &[],
@@ -244,7 +246,7 @@ impl Trajectory {
     /// A rotation about the pivot, and then a displacement.
     fn placed(&self, rotation: DQuat, displacement: DVec3) -> RigidMotion {
         let rotation = DMat3::from_quat(rotation);
-        // What does not turn keeps its position to the last bit, wherever the pivot is.
+        // An object that does not turn keeps its position to the last bit for any pivot.
         let kept = if rotation == DMat3::IDENTITY {
             DVec3::ZERO
         } else {
@@ -267,10 +269,12 @@ impl Default for Trajectory {
     }
 }
 
-/// Numbers that stay finite times this leave room for their sums and differences.
+/// Numbers that stay finite when multiplied by this factor leave room for their sums and
+/// differences.
 const ROOM: f64 = 8.0;
 
-/// The rotation that leads from one to another: about their common axis, or else the shortest.
+/// The rotation that leads from one rotation to another: about their common axis, or else through
+/// the smallest angle.
 fn between(from: &Rotation, to: &Rotation) -> Rotation {
     let (a, b) = (from, to);
     if a.angle == 0.0 || a.axis == b.axis {
@@ -301,13 +305,13 @@ fn between(from: &Rotation, to: &Rotation) -> Rotation {
 
 /// A rotation about a unit axis.
 ///
-/// The sine is that of a library, so that a pose has the same bits on every processor.
+/// The sine comes from a library, so that a pose has the same bits on every processor.
 fn quaternion(axis: DVec3, angle: f64) -> DQuat {
     let (sin, cos) = libm::sincos(0.5 * angle);
     DQuat::from_xyzw(sin * axis.x, sin * axis.y, sin * axis.z, cos)
 }
 
-/// The rotation with a unit axis, whose angle is finite even `count` times over.
+/// The rotation with a unit axis; its angle must stay finite when multiplied by `count`.
 fn checked(rotation: Rotation, count: f64) -> Result<Rotation, ShadingError> {
     if !(rotation.angle * count).is_finite() {
         let allowed = "finite (in radians), and so must what it adds up to";

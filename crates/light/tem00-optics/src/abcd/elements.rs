@@ -17,7 +17,7 @@ pub struct ThickLens {
     pub index: f64,
     /// The curvature of the surface that the light enters, in m⁻¹.
     pub front_curvature: f64,
-    /// The curvature of the surface that the light leaves by, in m⁻¹.
+    /// The curvature of the surface that the light leaves through, in m⁻¹.
     pub back_curvature: f64,
     /// The distance of the surfaces on the axis, in metres.
     pub thickness: f64,
@@ -25,7 +25,7 @@ pub struct ThickLens {
 
 /// # Elements
 impl AbcdMatrix {
-    /// Returns the system that does nothing: its input plane is its output plane.
+    /// Returns the identity system, whose input plane is its output plane.
     pub const fn identity() -> Self {
         Self::unimodular([1.0, 0.0, 0.0, 1.0])
     }
@@ -101,9 +101,9 @@ impl AbcdMatrix {
         ))
     }
 
-    /// Returns a mirror of the curvature `1/R`, in m⁻¹ and positive if concave, at an angle of
-    /// incidence in radians: the matrices of the plane of incidence (tangential) and of the plane
-    /// across it (sagittal).
+    /// Returns a mirror with the curvature `1/R`, in m⁻¹ and positive if concave, at an angle of
+    /// incidence in radians: the matrices in the plane of incidence (tangential) and perpendicular
+    /// to it (sagittal).
     ///
     /// ```text
     /// f_t = (R/2) cos φ      f_s = (R/2) / cos φ
@@ -186,17 +186,17 @@ impl AbcdMatrix {
         Ok(Self::unimodular([cos, length * sinc, -gradient * sin, cos]))
     }
 
-    /// Returns a rod of such a medium with flat faces, in air: `index` is `n₀` on the axis,
-    /// `gradient` is `g`, in m⁻¹, and `length` is in metres.
+    /// Returns a rod of a gradient-index medium with flat faces, in air: `index` is `n₀` on the
+    /// axis, `gradient` is `g`, in m⁻¹, and `length` is in metres.
     ///
     /// # Errors
     ///
-    /// Returns an error if `index` does not lie between 0.001 and 1000, or as [`grin`](Self::grin)
-    /// does.
+    /// Returns an error if `index` does not lie between 0.001 and 1000, and the errors of
+    /// [`grin`](Self::grin).
     ///
     /// # Examples
     ///
-    /// A quarter pitch collimates what leaves a fibre at its face, with the focal length
+    /// A quarter pitch collimates the light of a fibre at its face, with the focal length
     /// `1 / (n₀ g)`:
     ///
     /// ```
@@ -219,7 +219,7 @@ impl AbcdMatrix {
         })
     }
 
-    /// The refracting power alone, of an element without length between equal media.
+    /// The refracting power of an element without length between equal media.
     const fn power(c: f64) -> Self {
         Self::unimodular([1.0, 0.0, c, 1.0])
     }

@@ -1,4 +1,4 @@
-//! Systems that light travels through again and again.
+//! Systems that light travels through repeatedly.
 
 use tem00_beam::Refusal;
 use tem00_numerics::check;
@@ -15,21 +15,21 @@ impl AbcdMatrix {
         0.5 * self.a + 0.5 * self.d
     }
 
-    /// Returns whether rays stay near the axis however often they travel through the system: for
-    /// the round trip of a resonator, whether it is stable.
+    /// Returns whether rays stay near the axis after any number of passes through the system: for
+    /// the round trip of a resonator, whether the resonator is stable.
     ///
     /// ```text
     /// |A + D| / 2 < √det      where √det = 1 for a round trip
     /// ```
     ///
-    /// The limits themselves (plane, concentric and confocal resonators) do not count as stable:
-    /// no beam, or every beam, reproduces itself there.
+    /// The limits themselves (plane, concentric and confocal resonators) do not count as stable: in
+    /// them no beam, or every beam, reproduces itself.
     pub fn is_stable(&self) -> bool {
         self.stability() > 0.0
     }
 
     /// Returns the beam parameter that reproduces itself from the input plane to the output plane:
-    /// for the round trip of a resonator, that of its eigenmode.
+    /// for the round trip of a resonator, the parameter of its eigenmode.
     ///
     /// ```text
     /// z = (A − D) / (2 C)      z_R = √(det − (A + D)²/4) / |C|
@@ -42,8 +42,8 @@ impl AbcdMatrix {
     ///
     /// # Examples
     ///
-    /// A helium–neon laser of 0.3 m with a plane mirror, where the round trip begins, and one of
-    /// 1 m radius:
+    /// A helium–neon laser of 0.3 m with a plane mirror, where the round trip begins, and a mirror
+    /// of 1 m radius:
     ///
     /// ```
     /// use tem00_optics::AbcdMatrix;

@@ -2,8 +2,9 @@
 
 use core::f64::consts::{FRAC_2_SQRT_PI, SQRT_2};
 
-/// Below this width, in units of the 1/e half-width, an interval is integrated by a series. Its
-/// first term left out is below `2 NARROW⁶`; the difference of error functions loses `1 / NARROW`.
+/// Below this width, in units of the 1/e half-width, an interval is integrated by a series. The
+/// first omitted term is below `2 NARROW⁶`; the difference of error functions loses a factor of
+/// `1 / NARROW`.
 const NARROW: f64 = 3e-3;
 
 /// An interval of one axis, in metres.
@@ -16,8 +17,8 @@ pub(super) struct Interval {
 }
 
 impl Interval {
-    /// The interval of half-width `half` about `middle`, or its mirror image about 0. A negative
-    /// width holds nothing.
+    /// The interval of half-width `half` about `middle`, or its mirror image about 0. An interval
+    /// of negative width is empty.
     pub(super) fn new(middle: f64, half: f64) -> Self {
         Self {
             middle: middle.abs(),

@@ -7,16 +7,16 @@ use super::error::FitError;
 use super::least_squares::{Residual, minimise};
 use super::positions::{Axis, Estimate, check_count};
 
-/// Errors of measured beam radii, as far as they are known.
+/// Assumption about the errors of measured beam radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RadiusErrors<'a> {
-    /// Errors proportional to the radius; the factor follows from the residuals.
+    /// Errors are proportional to the radius; the factor follows from the residuals.
     Relative,
-    /// Equal errors of all radii; their size follows from the residuals.
+    /// All radii have equal errors; their size follows from the residuals.
     Equal,
-    /// The standard deviation of each radius, in metres. The scatter of the data does not change
-    /// the standard errors that follow from these.
+    /// The standard deviation of each radius is known, in metres. The standard errors follow from
+    /// these values and do not depend on the scatter of the data.
     Known(&'a [f64]),
 }
 
@@ -30,23 +30,23 @@ pub enum RadiusErrors<'a> {
 /// M²   = π w₀ δ / λ
 /// ```
 ///
-/// By default the radii count with *relative* errors, and the fit minimises the squares of
+/// By default the radii have *relative* errors, and the fit minimises the squares of
 /// `ln(w_measured / w)`: a camera measures D4σ with an error proportional to the width, so that
-/// equal errors would leave the waist to the noise of the far field.
-/// [`with_errors`](Self::with_errors) takes other assumptions. Standard errors are the linear ones:
-/// they suppose that the curvature of the model over the error of a parameter is small. M² is
-/// not confined to 1 and above: noise may bring it below.
+/// with equal errors the noise of the far field would dominate the waist.
+/// [`with_errors`](Self::with_errors) takes other assumptions. Standard errors are linear: they
+/// assume that the curvature of the model over the error of a parameter is small. M² is not
+/// constrained to values of at least 1: noise may reduce it below 1.
 ///
 /// # Validity
 ///
-/// The radii are second-moment radii, half of D4σ, on one axis of a beam that keeps its axes. ISO
-/// 11146-1 asks for at least ten positions, about half of them within one Rayleigh length of the
-/// waist and half beyond two. Fewer, or on one side only, fit too, with standard errors that say
-/// so.
+/// The radii are second-moment radii, half of D4σ, on one axis of a beam whose axes do not rotate.
+/// ISO 11146-1 requires at least ten positions, about half of them within one Rayleigh length of
+/// the waist and half beyond two. A fit to fewer positions, or to positions on one side only, works
+/// as well, with larger standard errors.
 ///
 /// # Examples
 ///
-/// A fibre laser at 1064 nm, focused, and measured with a scatter of about 1 %:
+/// A focused fibre laser at 1064 nm, measured with a scatter of about 1 %:
 ///
 /// ```
 /// use tem00_optics::CausticFit;
@@ -66,7 +66,7 @@ pub enum RadiusErrors<'a> {
 ///
 /// # References
 ///
-/// - ISO 11146-1, 2021, whose polynomial fit of `w²` is where the search begins.
+/// - ISO 11146-1, 2021, whose polynomial fit of `w²` is the start of the search.
 /// - A. E. Siegman, *How to (Maybe) Measure Laser Beam Quality*, OSA TOPS 17, 1998.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CausticFit {
@@ -94,12 +94,12 @@ impl CausticFit {
     }
 
     /// Fits a beam of the given wavelength to the radii measured at the given positions, all in
-    /// metres, with errors as stated.
+    /// metres, with the given errors.
     ///
     /// # Errors
     ///
-    /// Returns an error as [`new`](Self::new) does, or if a known standard deviation is not a
-    /// length from 1e−30 m to 1e30 m or missing.
+    /// Returns the errors of [`new`](Self::new), and an error if a known standard deviation is
+    /// missing or not a length from 1e−30 m to 1e30 m.
     pub fn with_errors(
         wavelength: f64,
         positions: &[f64],
@@ -221,14 +221,15 @@ fn from_logarithm(value: f64, variance: f64) -> Estimate {
     }
 }
 
-/// ln w₀, the coordinate of the waist, and ln δ: in logarithms nothing can become negative.
+/// ln w₀, the coordinate of the waist, and ln δ: with logarithms waist and divergence stay
+/// positive.
 const PARAMETERS: usize = 3;
 
 /// The data of a fit, in coordinates of order 1.
 #[derive(Clone, Debug)]
 struct Caustic<'a> {
     axis: Axis,
-    /// The largest radius, in metres, in units of which the others are given.
+    /// The largest radius, in metres: the unit of the other radii.
     unit: f64,
     radii: Vec<f64>,
     errors: RadiusErrors<'a>,
@@ -252,7 +253,7 @@ impl<'a> Caustic<'a> {
         })
     }
 
-    /// The standard deviation of the logarithm of a radius, up to a common factor where unknown.
+    /// The standard deviation of the logarithm of a radius, up to a common factor if it is unknown.
     fn relative_deviation(&self, i: usize) -> f64 {
         match self.errors {
             RadiusErrors::Relative => 1.0,
@@ -282,7 +283,7 @@ impl<'a> Caustic<'a> {
         }
     }
 
-    /// Tests that waist and divergence both change some radius by more than rounding.
+    /// Returns whether waist and divergence both change some radius by more than rounding.
     fn show(&self, p: &[f64; PARAMETERS]) -> bool {
         const ROUNDING: f64 = 1e-12;
         let fraction = |k: usize, i: usize| {
@@ -302,8 +303,8 @@ impl<'a> Caustic<'a> {
         }
     }
 
-    /// Start of the search: the hyperbola as a polynomial, `w² = a + b z + c z²`, unless that
-    /// has no waist.
+    /// Start of the search: the hyperbola as a polynomial, `w² = a + b z + c z²`, unless the
+    /// polynomial has no waist.
     fn polynomial(&self) -> Option<[f64; PARAMETERS]> {
         let minimum = minimise([0.0; 3], self.radii.len(), |p, i| {
             let (x, square) = (self.axis.coordinates[i], self.radii[i].powi(2));
@@ -321,8 +322,8 @@ impl<'a> Caustic<'a> {
         (c > 0.0 && waist > 0.0).then_some(start)
     }
 
-    /// Start of the search if that fails: the smallest radius as the waist, and the steepest line
-    /// from it as the divergence.
+    /// Start of the search if the polynomial has no waist: the smallest radius as the waist, and
+    /// the steepest line from it as the divergence.
     fn guess(&self) -> Result<[f64; PARAMETERS], FitError> {
         let points = || self.axis.coordinates.iter().zip(&self.radii);
         let (&middle, &waist) = points()

@@ -2,7 +2,7 @@ use core::{error, fmt};
 
 use tem00_beam::Refusal;
 
-/// Reasons why measured data have no fit.
+/// Reasons for which measured data have no fit.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum FitError {
@@ -10,7 +10,7 @@ pub enum FitError {
     LengthsDiffer {
         /// The number of positions.
         positions: usize,
-        /// The number of values that belong to them.
+        /// The number of values at these positions.
         values: usize,
     },
     /// There are fewer points than the parameters and one error estimate need.
@@ -24,13 +24,13 @@ pub enum FitError {
     Argument(Refusal),
     /// The positions are all equal.
     EqualPositions,
-    /// The power does not change along the trace, or only a beam of negative power would fit it.
+    /// The power does not change along the trace, or only a beam of negative power fits it.
     NoEdge,
-    /// The data leave a parameter open: no divergence is to be seen, or no waist, or an edge falls
-    /// between two positions.
+    /// The data do not determine a parameter: they show no divergence, or no waist, or an edge
+    /// falls between two positions.
     Undetermined,
-    /// The search for the best parameters did not come to an end, as for radii on a straight line,
-    /// which fit the better the smaller the waist.
+    /// The search for the best parameters did not converge, as for radii on a straight line, whose
+    /// fit improves with ever smaller waists.
     NotConverged,
 }
 

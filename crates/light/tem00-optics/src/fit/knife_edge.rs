@@ -16,7 +16,7 @@ use super::positions::{Axis, Estimate, check_count};
 /// ```
 ///
 /// The sign follows from the data: the power may rise or fall with the position of the edge. Powers
-/// may have any unit, and their errors count as equal; the size of the errors follows from the
+/// may have any unit, and their errors are assumed equal; the size of the errors follows from the
 /// scatter of the data.
 ///
 /// # Examples
@@ -52,7 +52,7 @@ pub struct KnifeEdgeFit {
 
 impl KnifeEdgeFit {
     /// Fits radius, centre and power to the powers, in any unit, that pass a knife edge at the
-    /// given positions, in metres, where nothing passes the closed edge.
+    /// given positions, in metres. No power passes the closed edge.
     ///
     /// # Errors
     ///
@@ -68,7 +68,7 @@ impl KnifeEdgeFit {
     ///
     /// # Errors
     ///
-    /// Returns an error as [`new`](Self::new) does, or if there are fewer than 5 points.
+    /// Returns the errors of [`new`](Self::new), and an error if there are fewer than 5 points.
     pub fn with_background(positions: &[f64], powers: &[f64]) -> Result<Self, FitError> {
         Self::fit::<4>(positions, powers)
     }
@@ -147,7 +147,7 @@ impl KnifeEdgeFit {
     }
 }
 
-/// The indices of the parameters; the background is missing from a fit without it.
+/// The indices of the parameters; a fit without background lacks its parameter.
 const POWER: usize = 0;
 const CENTRE: usize = 1;
 const LN_RADIUS: usize = 2;
@@ -210,8 +210,8 @@ impl Trace {
         }
     }
 
-    /// The best of a grid of centres over the range of the positions and of radii from twice that
-    /// range downwards.
+    /// The best point of a grid of centres over the range of the positions and of radii from twice
+    /// this range downwards.
     fn start<const N: usize>(&self) -> [f64; N] {
         let max = self
             .powers

@@ -3,7 +3,7 @@ use tem00_numerics::{LeastSquaresError, Minimum, NormalEquations};
 use super::error::FitError;
 
 /// The deviation of one datum from the model, in units of its own error, and the derivatives of
-/// that deviation by the parameters.
+/// this deviation with respect to the parameters.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Residual<const N: usize> {
     pub(super) value: f64,

@@ -1,4 +1,4 @@
-//! Positions of a measurement, and what is found along them.
+//! Positions of a measurement, and estimates along them.
 
 use tem00_numerics::check;
 
@@ -7,13 +7,13 @@ use super::error::FitError;
 /// A fitted value and its standard error, in the same unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// The value that fits best.
+    /// The best-fit value.
     pub value: f64,
     /// The standard deviation of the value over repeated measurements, to first order.
     pub standard_error: f64,
 }
 
-/// Checks that both lists have one length, and at least `needed` entries.
+/// Checks that both lists have equal lengths and at least `needed` entries.
 pub(super) fn check_count(
     positions: &[f64],
     values: &[f64],
@@ -61,7 +61,7 @@ impl Axis {
         })
     }
 
-    /// The position that an estimated coordinate stands for.
+    /// The position of an estimated coordinate.
     pub(super) fn position(&self, coordinate: f64, variance: f64) -> Estimate {
         Estimate {
             value: self.middle + self.half_range * coordinate,

@@ -19,8 +19,8 @@ pub(super) fn pull(estimate: Estimate, truth: f64) -> f64 {
     (estimate.value - truth) / estimate.standard_error
 }
 
-/// Asserts that the values are independent draws from the standard normal distribution: their mean
-/// and their sum of squares are rejected with a probability of 1e−4 each if so.
+/// Asserts that the values are independent draws from the standard normal distribution: if they
+/// are, their mean and their sum of squares are each rejected with a probability of 1e−4.
 #[track_caller]
 pub(super) fn assert_standard_normal(values: &[f64], what: &str) {
     let count = values.len() as f64;
@@ -29,8 +29,8 @@ pub(super) fn assert_standard_normal(values: &[f64], what: &str) {
     assert_chi_squared(values.iter().map(|v| v * v).sum(), values.len(), what);
 }
 
-/// Asserts that a value is drawn from the χ² distribution; rejected with a probability of 1e−4 if
-/// it is.
+/// Asserts that a value is drawn from the χ² distribution; if it is, it is rejected with a
+/// probability of 1e−4.
 #[track_caller]
 pub(super) fn assert_chi_squared(value: f64, freedom: usize, what: &str) {
     let p = chi_squared_survival(value, freedom.try_into().unwrap());

@@ -4,7 +4,7 @@ use tem00_coherence::{SourceExtent, SpectralLine};
 
 use crate::{BeamShape, Laser, LaserDescription, ShadingError};
 
-/// A laser on the way to its place: what is not said is 1 mW, in focus at the target, M² = 1.
+/// Builder of a laser. By default it has 1 mW, a focus at the target, and M² = 1.
 #[derive(Clone, Debug, PartialEq)]
 #[must_use]
 pub struct LaserBuilder {
@@ -20,7 +20,7 @@ pub struct LaserBuilder {
 }
 
 impl Laser {
-    /// Begins the description of a round spot: a Gaussian beam of a vacuum wavelength and a waist
+    /// Begins the description of a round spot: a Gaussian beam with a vacuum wavelength and a waist
     /// radius, both in metres.
     ///
     /// # Examples
@@ -42,8 +42,8 @@ impl Laser {
         LaserBuilder::of_spot(wavelength, waist_radius)
     }
 
-    /// Begins the description of a laser line of a vacuum wavelength and a thickness in focus
-    /// (1/e², full width), in metres, that opens by an angle, in radians.
+    /// Begins the description of a laser line with a vacuum wavelength and a thickness in focus
+    /// (1/e², full width), both in metres, and a full fan angle, in radians.
     pub fn line(wavelength: f64, thickness: f64, fan_angle: f64) -> LaserBuilder {
         LaserBuilder::of_line(wavelength, thickness, fan_angle)
     }
@@ -76,14 +76,14 @@ impl LaserBuilder {
         self
     }
 
-    /// Sets the distance of the waist from the aperture, in metres; of a spot also negative, behind
-    /// it.
+    /// Sets the distance of the waist from the aperture, in metres; for a spot it may be negative,
+    /// with the waist behind the aperture.
     pub const fn focused_at(mut self, distance: f64) -> Self {
         self.focus = Some(distance);
         self
     }
 
-    /// Sets the beam quality factor M²: of a line that across it.
+    /// Sets the beam quality factor M²; for a line, M² across the line.
     pub const fn m_squared(mut self, m_squared: f64) -> Self {
         self.m_squared = m_squared;
         self
@@ -92,7 +92,7 @@ impl LaserBuilder {
     /// Makes a spot elliptic, with a waist radius along the line direction and one across it, in
     /// metres.
     ///
-    /// A line has only the second.
+    /// A line uses only the second radius.
     pub const fn waist_radii(mut self, radii: [f64; 2]) -> Self {
         self.waist_radius = radii;
         self
@@ -113,20 +113,20 @@ impl LaserBuilder {
         self
     }
 
-    /// Sets the directions from which the light reaches a surface, where the source is no point: it
-    /// acts on speckle only.
+    /// Sets the directions from which the light of an extended source reaches a surface. They
+    /// affect the speckle only.
     pub fn source_extent(mut self, extent: SourceExtent) -> Self {
         self.source_extent = extent;
         self
     }
 
     /// Places the laser at `origin`, aimed at `target`, with `line_direction` across the axis: the
-    /// direction in which a line opens, and the first axis of an elliptic spot. Its part along the
-    /// axis is ignored.
+    /// direction in which a line opens, and the first axis of an elliptic spot. Its component along
+    /// the axis is ignored.
     ///
     /// # Errors
     ///
-    /// Returns an error if the beam is not possible, if the target is the origin, or if the line
+    /// Returns an error if the beam is invalid, if the target equals the origin, or if the line
     /// direction is parallel to the axis.
     pub fn placed(
         self,
@@ -153,7 +153,7 @@ impl LaserBuilder {
                     m_squared: self.m_squared,
                     fan: FanGeometry {
                         fan_angle,
-                        // A round beam on the lens.
+                        // The beam is round on the lens.
                         apex_offset: on_lens / (0.5 * fan_angle).tan(),
                         focus_distance: focus,
                         focus_curve: FocusCurve::EqualPlane,

@@ -1,4 +1,4 @@
-//! A laser as a source of rays: the phase-space density of its beam, drawn from and evaluated.
+//! A laser as a source of rays: sampling and evaluation of the phase-space density of its beam.
 
 use glam::DVec3;
 use tem00_beam::{Emitter, LineProfile, TabulatedLineLight};
@@ -11,8 +11,8 @@ use super::{Laser, Source};
 pub struct EmittedRay {
     /// The ray, from the plane of the aperture.
     pub ray: Ray,
-    /// The power that the ray stands for, in watts: that of the laser, to be divided by the number
-    /// of rays.
+    /// The power of the laser, in watts. Divided by the number of rays, it is the power that the
+    /// ray carries.
     pub flux: f64,
 }
 
@@ -32,8 +32,8 @@ pub struct SampledEvent {
 impl Laser {
     /// Draws a ray from four uniform numbers in [0, 1).
     ///
-    /// Every ray stands for the same power, so rays that follow mirrors and lenses carry the beam
-    /// through them: straight rays drawn from the phase-space density of a Gaussian beam obey the
+    /// Every ray carries the same power, so that tracing rays through mirrors and lenses propagates
+    /// the beam: straight rays drawn from the phase-space density of a Gaussian beam obey the
     /// complex q law behind every paraxial system.
     ///
     /// # Examples
@@ -67,8 +67,8 @@ impl Laser {
     /// or returns `None` where it sends no light.
     ///
     /// The estimate of the reflected radiance is `f · |n·direction| · value`, where the source is
-    /// visible. No light is counted beyond four radii of the beam;
-    /// [`next_event_pdf`](Self::next_event_pdf) is 0 there.
+    /// visible. Light beyond four beam radii is neglected; [`next_event_pdf`](Self::next_event_pdf)
+    /// is 0 there.
     pub fn next_event_sampled(&self, point: DVec3, u: [f64; 2]) -> Option<SampledEvent> {
         let event = self.with_emitter(|light| light.next_event_sampled(point.to_array(), u))?;
         Some(SampledEvent {
@@ -88,8 +88,8 @@ impl Laser {
     /// Returns the radiance, in W/(m² sr), that arrives at `origin` from the unit `direction`; 0
     /// behind the aperture.
     ///
-    /// It is the radiance of free space: whether something stands between `origin` and the
-    /// aperture, at [`aperture_distance`](Self::aperture_distance), is the caller's to find out.
+    /// It is the radiance in free space: the caller checks for occluders between `origin` and the
+    /// aperture, at [`aperture_distance`](Self::aperture_distance).
     pub fn radiance(&self, origin: DVec3, direction: DVec3) -> f64 {
         if self.aperture_distance(origin, direction).is_none() {
             return 0.0;
@@ -112,7 +112,7 @@ impl Laser {
         (height >= 0.0 && descent > 0.0 && distance.is_finite()).then_some(distance)
     }
 
-    /// Calls `query` with the light, whatever its kind.
+    /// Calls `query` with the light of any kind.
     pub fn with_emitter<R>(&self, query: impl FnOnce(&dyn Emitter) -> R) -> R {
         match &self.source {
             Source::Spot { light, .. } => query(light),

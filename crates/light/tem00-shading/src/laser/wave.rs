@@ -1,4 +1,4 @@
-//! The wave of a laser, where it lights a surface and where it does not.
+//! The wave of a laser, inside and outside of its lit region.
 
 use glam::DVec3;
 use tem00_beam::FocusCurve;
@@ -12,7 +12,8 @@ pub(crate) enum WaveShape {
     Line(LineWave),
 }
 
-/// The wave of a beam: for each axis, where its waist lies and the square of its Rayleigh range.
+/// The wave of a beam: for each axis, the position of the waist and the square of the Rayleigh
+/// range.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpotWave {
     waist_distance: [f64; 2],
@@ -36,10 +37,10 @@ pub(crate) struct WaveFrame {
     pub(crate) axes: [DVec3; 3],
 }
 
-/// A wave as the numbers of a kernel, for which a spot and a line are alike.
+/// A wave as numbers for a kernel, which treats spots and lines alike.
 pub(crate) struct WaveNumbers {
-    /// The waist along x, and that across it from there: once, and as much again per secant of the
-    /// ray.
+    /// The waist along x, and the distance of the waist across it from there: a constant and a
+    /// coefficient per secant of the ray.
     pub(crate) centres: [f64; 3],
     pub(crate) rayleigh_range_squared: [f64; 2],
     pub(crate) is_line: bool,
@@ -104,8 +105,8 @@ fn curvature(from_waist: f64, rayleigh_range_squared: f64) -> f64 {
 }
 
 impl WaveFrame {
-    /// Returns the unit direction from `point` along which the wave arrives, by the slopes of its
-    /// rays: towards the aperture where they are not finite.
+    /// Returns the unit direction from `point` along which the wave arrives, from the slopes of its
+    /// rays; towards the aperture where the slopes are not finite.
     #[inline(always)]
     pub(crate) fn direction_to_source(
         &self,
@@ -129,7 +130,7 @@ impl WaveFrame {
 }
 
 impl Laser {
-    /// Returns where the laser stands.
+    /// Returns the pose of the laser.
     pub(crate) fn wave_frame(&self) -> WaveFrame {
         WaveFrame {
             origin: self.description.position,
@@ -137,7 +138,7 @@ impl Laser {
         }
     }
 
-    /// Returns its wave.
+    /// Returns the wave of the laser.
     pub(crate) fn wave_shape(&self) -> WaveShape {
         match &self.source {
             Source::Spot { beam, .. } => WaveShape::Spot(SpotWave {
@@ -159,9 +160,9 @@ impl Laser {
 
     /// Returns the unit direction from `point` along which the wave arrives, towards its source.
     ///
-    /// Where the laser lights the point it is the direction of the light. Beyond its cut-off, where
-    /// no light is followed any more, the wave goes on; at the apex of a line and behind it, there
-    /// is none, and the direction is that to the middle of the aperture.
+    /// Where the laser lights the point this is the direction of the light. The wave continues
+    /// beyond the cut-off, where light is neglected. At the apex of a line and behind it there is
+    /// no wave, and the direction leads to the middle of the aperture.
     pub fn wave_direction_at(&self, point: DVec3) -> DVec3 {
         let frame = self.wave_frame();
         match self.wave_shape() {
@@ -170,16 +171,16 @@ impl Laser {
         }
     }
 
-    /// Returns the optical path of the wave to `point`, in metres, less one that is the same for
-    /// all points.
+    /// Returns the optical path of the wave to `point`, in metres, minus a constant that is the
+    /// same for all points.
     ///
     /// ```text
     /// Φ = z + (κ_x x² + κ_y y²) / 2     of a spot; κ the curvatures of the wave at z
     /// Φ = r + κ y² / 2                  of a line; r from the apex, κ that of the focus at r
     /// ```
     ///
-    /// The Gouy phase, half a wavelength over a focus, is left out. Returns `None` at the apex of a
-    /// line and behind it.
+    /// The Gouy phase, half a wavelength over a focus, is not included. Returns `None` at the apex
+    /// of a line and behind it.
     pub fn path_to(&self, point: DVec3) -> Option<f64> {
         let [x, y, z] = self.local(point);
         match &self.source {
@@ -261,7 +262,8 @@ mod tests {
                         [1e-5, -1e-5].map(|step| laser.path_to(point + step * direction).unwrap());
                     (ahead - behind) / 2e-5
                 };
-                // Paraxially: half the square of the slope of the rays, at most 0.15 to the side.
+                // The paraxial error is half the square of the slope of the rays, which is at most
+                // 0.15.
                 assert_absolute(slope(-wave), 1.0, 0.012);
                 assert!(slope(across).abs() < 2e-3, "{point}: {}", slope(across));
             }
@@ -280,7 +282,7 @@ mod tests {
                 if let Some(light) = laser.next_event(point) {
                     lit += 1;
                     let error = (wave - light.wi).length();
-                    // Both are made of the same few products, in another order.
+                    // Both consist of the same few products, in a different order.
                     assert!(error < 1e-14, "{point}: {error:e}");
                 }
             }

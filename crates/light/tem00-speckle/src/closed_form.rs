@@ -1,14 +1,14 @@
 //! Phasors, the parts of a Fourier transform and look-ups as source text, for kernels on a graphics
 //! card.
 //!
-//! A kernel cannot call this crate. It is given the
+//! A kernel cannot call this crate. It receives the
 //! [`coefficients`](crate::SpeckleStack::coefficients) of a stack and the rows of its
-//! [`SliceLaw`](crate::SliceLaw), and looks intensities up by these functions; or it makes the
-//! phasors from the seed itself. `tem00-gpu` does both on a device of `wgpu`.
+//! [`SliceLaw`](crate::SliceLaw) and looks up intensities with these functions, or it generates the
+//! phasors from the seed itself. `tem00-gpu` does both on a `wgpu` device.
 //!
 //! # Examples
 //!
-//! Put the functions before a shader of your own, which says where the stack lies:
+//! The functions precede a shader of your own, which defines where the stack is stored:
 //!
 //! ```
 //! use tem00_speckle::closed_form::WGSL;

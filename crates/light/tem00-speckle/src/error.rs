@@ -3,26 +3,26 @@ use std::borrow::Cow;
 
 use tem00_numerics::{Refusal, RefusedValue};
 
-/// Error of constructing a pupil, a field, a stack or light.
+/// Reason for which a pupil, a field, a stack or light is refused.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SpeckleError {
-    /// An argument is not allowed.
+    /// An argument is out of its allowed range.
     Refused(Refusal),
     /// A stack takes more memory than [`StackOptions::memory_limit`] allows.
     ///
     /// [`StackOptions::memory_limit`]: crate::StackOptions::memory_limit
     MemoryLimit {
-        /// The bytes that the stack takes.
+        /// Memory of the stack, in bytes.
         needed: u64,
-        /// The bytes that it may take.
+        /// The memory limit, in bytes.
         limit: u64,
     },
-    /// The machine refused the memory of a stack.
+    /// The memory of a stack could not be allocated.
     ///
-    /// On Linux this includes whatever exceeds the memory that the system has available.
+    /// On Linux this includes every request above the available memory of the system.
     Memory {
-        /// The bytes that were asked for.
+        /// The requested memory, in bytes.
         bytes: u64,
     },
 }
@@ -36,8 +36,8 @@ impl SpeckleError {
         Self::Refused(Refusal::new(parameter, value, allowed))
     }
 
-    /// Returns the name of the argument that was refused, as the function that refused it calls it;
-    /// "memory" for [`Memory`](Self::Memory).
+    /// Returns the name of the refused argument in the function that refused it; "memory" for
+    /// [`Memory`](Self::Memory).
     ///
     /// # Examples
     ///

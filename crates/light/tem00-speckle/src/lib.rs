@@ -2,33 +2,36 @@
 //!
 //! # On a graphics card
 //!
-//! [`closed_form`] has phasors and look-ups as text for kernels, [`Aperture`] and [`StackSource`]
-//! what a transform there takes. The crate `tem00-gpu` does it on `wgpu`.
+//! [`closed_form`] has phasors and look-ups as text for kernels; [`Aperture`] and [`StackSource`]
+//! provide the input of a transform on the card. The crate `tem00-gpu` runs it on `wgpu`.
 //!
 //! # Conventions
 //!
 //! - **Intensity** is dimensionless with mean 1.
-//! - **Displacements** of the pupil are in its diameters, `a_P / D`, along the axes of the pattern.
+//! - **Displacements** of the pupil are in pupil diameters, `a_P / D`, along the axes of the
+//!   pattern.
 //! - **Lengths** are in samples in the plane (period Q) and in lattice points in the pupil
 //!   (diameter C). A speckle is `h_p = Q/C` samples wide: look up at `h_p / h` times a length on
-//!   the sensor, where `h = λ d / D` is the speckle size there.
+//!   the sensor, where `h = λ d / D` is the speckle size on the sensor.
 //! - **The slice coordinate** u follows from a correlation by [`SpeckleStack::coordinate_of`].
-//! - **Correlation** γ is that of the intensity, the square of the amplitude's.
+//! - **Correlation** γ is the correlation of the intensity, the square of the amplitude
+//!   correlation.
 //! - **Sign**: a field is the *forward* transform, `exp(−2πi k·r/Q)`, of its pupil.
 //!
 //! # Reproducibility
 //!
-//! The phasors depend on the seed alone and are the same bits on every platform. Patterns and
-//! stacks are the same bits for any number of threads (feature `parallel`); between processors they
-//! agree to the rounding of an `f32` Fourier transform, some 1e−6 of the mean.
+//! The phasors depend on the seed alone and have the same bits on every platform. Patterns and
+//! stacks have the same bits for any number of threads (feature `parallel`); between processors
+//! they agree to the rounding of an `f32` Fourier transform, some 1e−6 of the mean.
 //!
 //! # Scope and non-goals
 //!
-//! Speckle behind pupils of any shape that may be out of focus, or of a field measured in the
-//! pupil: fully developed, polarised and monochromatic by itself, and in sums, on backgrounds and
-//! over pixels what light and sensor make of that. The geometry that moves and decorrelates it
-//! belongs to the crate above; so does the light that it modulates. A stack has the speckle of one
-//! wave: its look-ups are summed in [`incoherent_fractions`].
+//! The crate generates speckle behind pupils of any shape, in or out of focus, or from a field
+//! measured in the pupil. A single pattern is fully developed, polarised and monochromatic; sums,
+//! backgrounds and means over pixels describe other light and sensors. The geometry that moves and
+//! decorrelates the speckle belongs to the crate above, as does the light that the speckle
+//! modulates. A stack holds the speckle of one wave; look-ups are summed with
+//! [`incoherent_fractions`].
 
 pub mod closed_form;
 mod error;

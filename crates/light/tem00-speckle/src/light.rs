@@ -1,4 +1,4 @@
-//! Light that is more than one wave, and what a sensor makes of it.
+//! Light of more than one wave, and its detection by a sensor.
 
 mod exposure;
 mod sum;

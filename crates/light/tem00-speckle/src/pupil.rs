@@ -1,4 +1,4 @@
-//! The pupil and the field in it, and the patterns behind it.
+//! The pupil, the field in the pupil, and the patterns behind it.
 
 mod aperture;
 mod field;

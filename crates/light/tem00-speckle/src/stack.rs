@@ -31,8 +31,8 @@ use workers::map_with_scratch;
 /// Speckle that moves and decorrelates: slices of one random field behind a moving pupil.
 ///
 /// A look-up takes a position (x, y) in samples and a coordinate u in slices. Along x and y the
-/// pattern repeats after Q samples, along u after 2M slices. Two slices are correlated by how far
-/// their pupils overlap, γ = ρ², and Δu slices apart by
+/// pattern repeats after Q samples, along u after 2M slices. The correlation of two slices follows
+/// from the overlap ρ of their pupils, γ = ρ². For slices Δu apart it is
 ///
 /// ```text
 /// circle:    ρ(Δu) = 1 − s − sin(π s)/π    s = Δu / M
@@ -43,9 +43,9 @@ use workers::map_with_scratch;
 ///
 /// Slices hold complex amplitudes, not intensities: interpolated amplitudes of a Gaussian random
 /// process are Gaussian again, so that the intensity keeps its exponential law at every coordinate
-/// once it is divided by the variance that the interpolation leaves. In the plane that is the cubic
-/// B-spline over 4 × 4 coefficients, prefiltered in the pupil, with the variance in closed form.
-/// Between slices it is a linear blend in the common frame of the lattice:
+/// once it is divided by the variance after interpolation. In the plane the interpolation is a
+/// cubic B-spline over 4 × 4 coefficients, prefiltered in the pupil, with the variance in closed
+/// form. Between slices it is a linear blend in the common frame of the lattice:
 ///
 /// ```text
 /// U = (1 − f) U_i + f U_{i+1} exp(−2πi (c_{i+1} − c_i)·r / Q)
@@ -54,31 +54,32 @@ use workers::map_with_scratch;
 ///
 /// with the pupil centres c, the variance v of the interpolated amplitude and its covariance w
 /// between the two slices, both as functions of the fractions of x and y. At the samples w is the
-/// overlap of the two pupils, counted on the lattice; elsewhere it is what interpolation makes of
-/// the light that both see. For an external field, v and w are those of the light that the pupils
-/// see, slice by slice.
+/// overlap of the two pupils, counted on the lattice; between samples it is the covariance after
+/// interpolation of the light in both pupils. For an external field, v and w are computed from the
+/// light in the pupils, slice by slice.
 ///
 /// # Validity
 ///
 /// - Pupil centres are rounded to the lattice, which changes the overlap of two slices by up to
-///   about 1/C against the closed form. [`correlation_between`](Self::correlation_between) is
+///   about 1/C relative to the closed form. [`correlation_between`](Self::correlation_between) is
 ///   exact.
-/// - The spline's rms error of the field is 4.3e−3 at a speckle size of 2 samples and 2e−4 at 4,
-///   twice that behind a square pupil. It changes the autocovariance by up to 3.8e−3 and 1.3e−4,
-///   but neither mean nor contrast.
-/// - The mean is 1 at every coordinate but for 3e−6, the rounding of `f32`, and between slices of a
-///   pupil without symmetry 2e−5, what polynomials leave of their covariance. The one exception is
-///   M = 1, where both pupils may meet the same points of the rim from opposite sides: the overlap
-///   is 1/N for a disc and up to 1/C for a rectangle.
-/// - Between slices the correlation is that of the blend, which the methods below take in:
+/// - The spline's rms error of the field is 4.3e−3 at a speckle size of 2 samples and 2e−4 at 4
+///   samples, and twice as large behind a square pupil. It changes the autocovariance by up to
+///   3.8e−3 and 1.3e−4, but neither mean nor contrast.
+/// - The mean is 1 at every coordinate up to 3e−6, the rounding of `f32`, and between slices of a
+///   pupil without symmetry up to 2e−5, the error of the polynomials for their covariance. The one
+///   exception is M = 1, where both pupils may contain the same points of the rim on opposite
+///   sides: the overlap is 1/N for a disc and up to 1/C for a rectangle.
+/// - Between slices the correlation is the correlation of the blend, which the methods below
+///   include:
 ///
 ///   ```text
 ///   γ(0, i + f) = [(1 − f) ρ(i) + f ρ(i + 1)]² / [1 − 2 f (1 − f) (1 − ρ(1))]
 ///   ```
 ///
-///   It depends on both coordinates, and not on their distance alone: on a circle it exceeds ρ² of
-///   that distance by up to 0.2 for 2M = 16 slices and 0.06 for 64, from slice 0 by up to 0.11 and
-///   0.03.
+///   It depends on both coordinates, and not on their distance alone: on a circle it exceeds ρ² at
+///   the same distance by up to 0.2 for 2M = 16 slices and 0.06 for 64 slices; relative to slice 0,
+///   by up to 0.11 and 0.03.
 ///
 /// # Examples
 ///
@@ -104,7 +105,7 @@ pub struct SpeckleStack {
     /// The periods along x, y and u.
     pub(crate) periods: [Period; 3],
     pub(crate) slices: Vec<Slice>,
-    /// Variances, one for all slices or one for each.
+    /// Variances: one for all slices, or one for each slice.
     pub(crate) variances: Vec<Variance>,
 }
 
@@ -113,8 +114,8 @@ impl SpeckleStack {
     ///
     /// # Errors
     ///
-    /// Returns an error if the half period of `path` is zero or too large, if its length is, or if
-    /// the memory for [`SlicePath::memory_bytes`] is refused.
+    /// Returns an error if the half period or the length of `path` is zero or too large, or if the
+    /// memory for [`SlicePath::memory_bytes`] cannot be allocated.
     pub fn generate(field: &PupilField, path: SlicePath) -> Result<Self, SpeckleError> {
         Self::generate_with(field, path, StackOptions::default())
     }
@@ -123,7 +124,8 @@ impl SpeckleStack {
     ///
     /// # Errors
     ///
-    /// As [`generate`](Self::generate), and if the slices take more than the memory limit.
+    /// Returns the errors of [`generate`](Self::generate), and an error if the slices take more
+    /// than the memory limit.
     ///
     /// # Examples
     ///
@@ -155,7 +157,8 @@ impl SpeckleStack {
         Ok(Self::assemble(source.into_field(), path, slices))
     }
 
-    /// Joins the coefficients of the slices of `field`, a field that the path has closed.
+    /// Assembles a stack from the coefficients of the slices of `field`, on the closed lattice of
+    /// the path.
     pub(crate) fn assemble(
         field: PupilField,
         path: SlicePath,
@@ -172,8 +175,8 @@ impl SpeckleStack {
         }
     }
 
-    /// Returns the field the slices were cut from. That of a straight path closes on itself after
-    /// the length of the path.
+    /// Returns the field from which the slices were cut. For a straight path the field closes on
+    /// itself after the length of the path.
     pub const fn field(&self) -> &PupilField {
         &self.field
     }
@@ -183,8 +186,8 @@ impl SpeckleStack {
         self.law.path
     }
 
-    /// Returns the coefficients of slice `index` that the look-up interpolates: those of the
-    /// prefiltered spline.
+    /// Returns the coefficients of slice `index` that the look-up interpolates, the coefficients of
+    /// the prefiltered spline.
     ///
     /// # Panics
     ///
@@ -193,7 +196,7 @@ impl SpeckleStack {
         &self.slices[index].coefficients
     }
 
-    /// Returns the closed forms of slice `index` and of its join to the next.
+    /// Returns the closed forms of slice `index` and of its join to the next slice.
     ///
     /// # Panics
     ///
@@ -217,12 +220,12 @@ impl SpeckleStack {
         self.slices.len()
     }
 
-    /// Returns the bytes that the slices take.
+    /// Returns the memory of the slices, in bytes.
     pub const fn memory_bytes(&self) -> u64 {
         self.law.path.memory_bytes(self.field.size())
     }
 
-    /// Returns where the pupil of slice `index` stands, in its diameters.
+    /// Returns the position of the pupil of slice `index`, in pupil diameters.
     ///
     /// At integer u the stack is the field's [`PupilField::pattern_at`] this offset.
     ///
@@ -241,14 +244,14 @@ impl SpeckleStack {
     /// Returns the correlation γ of the intensities looked up at u = 0 and u = `distance`, in
     /// closed form.
     ///
-    /// It is what look-ups show of the pattern of slice 0, on slices and between. That of any two
-    /// coordinates is [`correlation_between`](Self::correlation_between), from which this differs
-    /// by the rounding of pupil centres. The function is even and has the period of the stack; for
-    /// a still stack it is 1. A `distance` that is not finite leaves nothing: 0.
+    /// It is the correlation of look-ups with the pattern of slice 0, on slices and between them.
+    /// For any two coordinates use [`correlation_between`](Self::correlation_between); the two
+    /// methods differ by the rounding of pupil centres. The function is even and has the period of
+    /// the stack; for a still stack it is 1. For a `distance` that is not finite it is 0.
     ///
     /// # Validity
     ///
-    /// For pupils with aberrations it takes the overlaps by their magnitude, as if the light of all
+    /// For pupils with aberrations it uses the magnitudes of the overlaps, as if the light of all
     /// slices were in phase.
     pub fn correlation_at(&self, distance: f64) -> f64 {
         if !distance.is_finite() {
@@ -257,21 +260,21 @@ impl SpeckleStack {
         self.law.overlap_at(distance.abs()).powi(2)
     }
 
-    /// Returns the coordinate u, in slices, at which a look-up has a given `correlation` to the
+    /// Returns the coordinate u, in slices, at which a look-up has a given `correlation` with the
     /// reference pattern at u = 0: the inverse of [`correlation_at`](Self::correlation_at).
     ///
-    /// A correlation of 1 or more needs no distance. One of 0 or less, and NaN, gives the first
-    /// slice of no correlation: M on the circle, the first from `2 M / length` on along the
-    /// straight path. For a still stack the distance is always 0. Where the law is not monotonic
-    /// (an annulus), it is the smallest distance.
+    /// A correlation of 1 or more gives the distance 0. A correlation of 0 or less, and NaN, gives
+    /// the first uncorrelated slice: M on the circle, the first slice from `2 M / length` on along
+    /// the straight path. For a still stack the distance is always 0. If the law is not monotonic
+    /// (an annulus), the result is the smallest distance.
     pub fn coordinate_of(&self, correlation: f64) -> f64 {
         let mut coordinate = [correlation];
         self.coordinates_of(&mut coordinate);
         coordinate[0]
     }
 
-    /// Puts the coordinate of each correlation in its place, as
-    /// [`coordinate_of`](Self::coordinate_of) returns it.
+    /// Replaces each correlation by its coordinate, as [`coordinate_of`](Self::coordinate_of)
+    /// returns it.
     ///
     /// Neighbours between the same two slices are found fastest.
     pub fn coordinates_of(&self, correlations: &mut [f64]) {
@@ -281,13 +284,14 @@ impl SpeckleStack {
         self.law.coordinates_of(correlations);
     }
 
-    /// Returns the coordinate u, in slices, where the pupil has moved by a `shift` over the
-    /// speckle, in its diameters, to one side or the other.
+    /// Returns the coordinate u, in slices, for a `shift` of the pupil over the speckle, in pupil
+    /// diameters, to one side or the other.
     ///
-    /// The look-up there has kept as much of the reference pattern at u = 0 as that shift leaves,
-    /// chat²(s), and its speckle is that of no smaller shift. Shifts beyond the
-    /// [reach](SlicePath::reach) of the path count as the reach, and so does NaN: speckle that is
-    /// new. Behind pupils that are no circle, a shift counts by what it would leave behind one.
+    /// The look-up at this coordinate has the correlation chat²(s) with the reference pattern at u
+    /// = 0, as the shift leaves it, and its speckle differs from the speckle of every smaller
+    /// shift. Shifts beyond the [reach](SlicePath::reach) of the path, and NaN, count as the reach:
+    /// the speckle is new. For a pupil that is not circular, a shift is converted by the
+    /// correlation that it would leave behind a circular pupil.
     ///
     /// # Examples
     ///
@@ -309,10 +313,10 @@ impl SpeckleStack {
         coordinate[0].copysign(shift)
     }
 
-    /// Puts the coordinate of each shift, to one side, in its place, as
-    /// [`coordinate_at`](Self::coordinate_at) returns it, for a `reach` that is not that of the
-    /// path: where one side of the reference gets a part of the path, or where the slices are a
-    /// part of a longer path.
+    /// Replaces each shift, to one side, by its coordinate, as
+    /// [`coordinate_at`](Self::coordinate_at) returns it, for a `reach` other than the reach of the
+    /// path: if one side of the reference gets only a part of the path, or if the slices are a part
+    /// of a longer path.
     ///
     /// Neighbours between the same two slices are found fastest.
     pub fn coordinates_within(&self, reach: f64, shifts: &mut [f64]) {
@@ -325,8 +329,9 @@ impl SpeckleStack {
                 *shift = shift.min(reach);
                 *overlap = disc_overlap(*shift);
             }
-            // Where the blend of two slices has kept as much of the reference pattern as that
-            // shift, and on along the path once nothing is left.
+            // The coordinate where the blend of two slices has the same correlation with the
+            // reference pattern as the shift; beyond zero correlation, the position farther along
+            // the path.
             self.law.coordinates_of(overlaps);
             for (shift, u) in shifts.iter_mut().zip(&*overlaps) {
                 *shift = u.max(*shift * per_diameter);

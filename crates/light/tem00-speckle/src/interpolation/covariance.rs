@@ -1,12 +1,12 @@
-//! The mean squares that interpolation leaves, as polynomials of the fractions.
+//! Mean squares after interpolation, as polynomials of the fractions.
 //!
-//! A pupil point k that stands for the wave `exp(−2πi k x / Q)` comes out of the interpolation as
-//! that wave times its response `g(k; f)`, near 1 (see [`response`]). Mean squares are sums of
-//! products of two responses over the pupil, one axis times the other. Along each axis the real
-//! part of such a product is even about f = ½ and the imaginary part odd, so that both are
-//! polynomials of `p = f (1 − f)`, the odd one after division by `p (1 − 2f)`. Of one slice this is
-//! exact: degree 3 in p. Of two slices, whose pupils stand apart, the products also turn with f,
-//! and the polynomials leave 1e−6 at most, of the odd parts, which a symmetric pupil cancels, 2e−5.
+//! Interpolation multiplies the wave `exp(−2πi k x / Q)` of a pupil point k by a response `g(k; f)`
+//! near 1 (see [`response`]). Mean squares are sums of products of two responses over the pupil,
+//! one axis times the other. Along each axis the real part of such a product is even about f = ½
+//! and the imaginary part odd, so that both are polynomials of `p = f (1 − f)`, the odd part after
+//! division by `p (1 − 2f)`. For one slice this is exact, with degree 3 in p. For two slices with
+//! different pupil positions, the products also turn with f. The polynomials then have errors of at
+//! most 1e−6, and of 2e−5 in the odd parts, which cancel for a symmetric pupil.
 
 use num_complex::Complex;
 use tem00_numerics::{
@@ -21,11 +21,11 @@ use crate::{
     pupil::mask::{Row, Span},
 };
 
-/// Powers of p for the part that is even about the middle.
+/// Number of powers of p in the part that is even about the middle.
 pub(crate) const EVEN: usize = 4;
-/// Powers of p for the part that is odd.
+/// Number of powers of p in the odd part.
 const ODD: usize = 2;
-/// The shapes along one axis: 1, p, p², p³ and o, o p with o = p (1 − 2f).
+/// Number of shapes along one axis: 1, p, p², p³ and o, o p with o = p (1 − 2f).
 pub(crate) const SHAPES: usize = EVEN + ODD;
 
 /// Coefficients of the products of even shapes, `[ny][nx]`.
@@ -53,7 +53,7 @@ pub(crate) fn even_at<const L: usize>(table: &Even, x: &[f32; L], y: &[f32; L]) 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Covariance {
     pub(crate) even: Even,
-    /// The terms with an odd shape, unless they are below what `f32` amplitudes resolve.
+    /// The terms with an odd shape, unless they are below the resolution of `f32` amplitudes.
     odd: Option<[[f32; SHAPES]; SHAPES]>,
 }
 
@@ -80,7 +80,7 @@ impl Covariance {
     }
 
     fn new(table: [[f64; SHAPES]; SHAPES]) -> Self {
-        // The largest that each shape becomes: p ≤ ¼, o ≤ √3/18.
+        // The largest value of each shape: p ≤ ¼, o ≤ √3/18.
         const LARGEST: [f64; SHAPES] = [1.0, 0.25, 0.0625, 0.015_625, 0.096_3, 0.024_1];
         const RESOLVED: f64 = 2e-6;
         let even = core::array::from_fn(|ny| core::array::from_fn(|nx| to_f32(table[ny][nx])));
@@ -144,7 +144,7 @@ impl Responses {
         }))
     }
 
-    /// The covariance of two slices of phasors whose pupils stand `shift` lattice points apart.
+    /// The covariance of two slices of phasors whose pupils are `shift` lattice points apart.
     pub(crate) fn of_phasors(&self, field: &PupilField, shift: [i64; 2]) -> Covariance {
         let mask = &field.mask;
         let shapes = self.shapes(shift);
@@ -158,7 +158,8 @@ impl Responses {
         Covariance::new(table.map(|row| row.map(|entry| entry / mask.power())))
     }
 
-    /// The covariance of two slices whose pupils see `here` and, displaced by `shift`, `next`.
+    /// The covariance of two slices whose pupils contain the fields `here` and, displaced by
+    /// `shift`, `next`.
     pub(crate) fn of_light(
         &self,
         here: &Grid<Complex<f32>>,
@@ -190,7 +191,7 @@ fn moved(index: usize, shift: i64) -> Option<usize> {
     usize::try_from(to_signed(index).saturating_sub(shift)).ok()
 }
 
-/// Σ over the rows that both pupils have, of the sums along each.
+/// Σ over the rows that both pupils share, of the sums along each row.
 fn sum_rows(
     shapes: &[[f64; SHAPES]],
     shift: i64,
@@ -317,7 +318,7 @@ fn nodes<const N: usize>() -> [f64; N] {
     core::array::from_fn(|n| 0.125 * (1.0 - (step * (2 * n + 1) as f64).cos()))
 }
 
-/// The fractions below ½ at the nodes of the even part, then at those of the odd.
+/// The fractions below ½ at the nodes of the even part, then at the nodes of the odd part.
 fn fractions() -> [f64; SHAPES] {
     let fraction = |p: f64| 0.5 - (0.25 - p).sqrt();
     let (even, odd) = (nodes::<EVEN>(), nodes::<ODD>());

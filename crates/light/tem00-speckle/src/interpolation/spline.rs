@@ -1,4 +1,4 @@
-//! Interpolation of a band-limited random field, and the variance it leaves.
+//! Interpolation of a band-limited random field, and the variance of the result.
 
 use core::f64::consts::PI;
 
@@ -39,8 +39,8 @@ pub(crate) fn prefilters(field: &PupilField) -> [Vec<f32>; 2] {
 /// R(lx, ly) = Σ p cos(2π kx lx/Q) cos(2π ky ly/Q) b(kx)² b(ky)² / Σ p
 /// ```
 ///
-/// R is the autocorrelation of the coefficients at the lags that four taps can reach, the mean over
-/// both signs of each lag, with the prefilter b and the power p of the pupil points.
+/// R is the autocorrelation of the coefficients at the lags within four taps, averaged over both
+/// signs of each lag, with the prefilter b and the power p of the pupil points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Variance {
     /// `table[ly][lx]`, with lags of both signs gathered in one entry.
@@ -92,7 +92,7 @@ impl Variance {
             if total > 0.0 {
                 to_f32(table[ly][lx] * multiplicity(lx) * multiplicity(ly) / total)
             } else {
-                // Without light any variance will do; this one is 1 at every fraction.
+                // Without light the variance is arbitrary; this one is 1 at every fraction.
                 if ly + lx == 0 {
                     1.0
                 } else {
@@ -135,8 +135,8 @@ pub(crate) fn lag_products(f: f64) -> [f64; 4] {
     core::array::from_fn(|lag| w[lag..].iter().zip(&w).map(|(a, b)| a * b).sum())
 }
 
-/// Response of the interpolation at the fraction `f` to the wave of the pupil point k, over that
-/// wave.
+/// Response of the interpolation at the fraction `f` to the wave of the pupil point k, divided by
+/// the wave.
 ///
 /// ```text
 /// g(k; f) = b(k) Σ w(t) exp(−2πi k (t − f) / Q)

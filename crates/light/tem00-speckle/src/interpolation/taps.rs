@@ -1,4 +1,4 @@
-//! The taps of a look-up on the torus, and the amplitude that they add up to.
+//! Taps of a look-up on the torus, and the interpolated amplitude.
 
 use num_complex::Complex;
 use tem00_numerics::Grid;
@@ -11,10 +11,10 @@ pub(crate) struct Period {
     reciprocal: f64,
 }
 
-/// Adding it, and taking it off again, rounds to a whole number.
+/// Adding and subtracting this number rounds to an integer.
 const ROUNDING: f64 = 1.5 * (1_u64 << 52) as f64;
 
-/// Below this, whole periods are taken off by multiplication.
+/// Coordinates below this one are reduced by multiplication.
 const NEAR: f64 = (1_u64 << 50) as f64;
 
 impl Period {
@@ -27,17 +27,17 @@ impl Period {
         }
     }
 
-    /// Splits coordinates into the cell, below the period, and the fraction in [0, 1] of the way to
-    /// the next.
+    /// Splits coordinates into the cell, below the period, and the fraction in [0, 1] of the
+    /// distance to the next cell.
     ///
-    /// No step rounds what a `f64` can hold: the number of periods and its product are whole
-    /// numbers below 2⁵³, and the difference is a multiple of the last bit of x and smaller. So the
-    /// period is exact. Only what lies within rounding below zero comes out as the end of the last
-    /// cell. What is not finite has the last cell and the fraction NaN.
+    /// No step rounds a value that an `f64` can hold: the number of periods and its product are
+    /// integers below 2⁵³, and the difference is a multiple of the last bit of x and smaller than
+    /// x. The period is therefore exact. Only a coordinate within rounding below zero gives the end
+    /// of the last cell. A coordinate that is not finite gives the last cell and the fraction NaN.
     #[inline(always)]
     pub(crate) fn split<const L: usize>(&self, x: &[f64; L]) -> ([usize; L], [f64; L]) {
         let mut x = *x;
-        // Without a branch for each.
+        // A fold without a branch for each coordinate.
         let near = x.iter().fold(true, |near, x| near & (x.abs() < NEAR));
         if !near {
             x = x.map(|x| self.brought_near(x));
@@ -72,13 +72,13 @@ impl Period {
     }
 }
 
-/// Rounds to the nearest whole number, without the function that plain processors have to call.
+/// Rounds to the nearest integer, without the function call that basic processors need.
 #[inline(always)]
 fn round(x: f64) -> f64 {
     x + ROUNDING - ROUNDING
 }
 
-/// A whole number below 2³², from the last bits of its sum with a large one.
+/// Converts an integral number below 2³², from the last bits of its sum with a large number.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
 fn low_bits(x: f64) -> usize {
@@ -93,9 +93,9 @@ pub(crate) struct Taps<const L: usize> {
     /// The first of the four cells, one after the other on the torus.
     first: [usize; L],
     weights: [[f32; L]; 4],
-    /// The fractions that the weights belong to.
+    /// The fractions from which the weights follow.
     pub(crate) fractions: [f32; L],
-    /// The coordinates that the taps stand for, in one period.
+    /// The coordinates of the taps, within one period.
     pub(crate) positions: [f64; L],
 }
 
@@ -143,8 +143,7 @@ fn positions<const L: usize>(cells: &[usize; L], fractions: &[f64; L]) -> [f64; 
     positions
 }
 
-/// The four taps of the cubic B-spline that reach the fraction `f` between the second and the
-/// third.
+/// The four taps of the cubic B-spline at the fraction `f` between the second and the third.
 #[inline(always)]
 pub(crate) fn cubic_weights(f: f32) -> [f32; 4] {
     let g = 1.0 - f;
@@ -191,7 +190,7 @@ pub(crate) fn amplitudes<const L: usize>(
     parts
 }
 
-/// The sums over the rows where the taps lie on both sides of a seam.
+/// The sums over the rows if the taps lie on both sides of the seam of the torus.
 #[cold]
 #[inline(never)]
 fn across_a_seam<const L: usize>(
@@ -210,7 +209,7 @@ fn across_a_seam<const L: usize>(
 }
 
 /// Σ over the rows of the four columns: real and imaginary parts of two columns side by side, as
-/// vector instructions take them.
+/// vector instructions need them.
 #[derive(Clone, Copy, Default)]
 struct Sums([[f32; 4]; 2]);
 

@@ -11,34 +11,34 @@ use tem00_numerics::{
 use super::transform::{frequency, plan, to_complex, wave};
 use crate::{PupilField, SpeckleError, SpecklePattern, SpeckleScratch};
 
-/// An exposure during which the pattern moves, or changes, or both, at a constant rate.
+/// Exposure during which the pattern moves or changes, or both, at a constant rate.
 ///
 /// ```text
 /// I(r) = ∫ |U(r − T t; offset + s t)|² dt       t from −½ to ½
 /// ```
 ///
 /// The *image drift* T moves the pattern over the sensor; the *pupil drift* s moves the light over
-/// the pupil, so that the speckle boils where it is. The exposure is centred: at t = 0 the pattern
-/// is the one that does not move. The mean is exactly 1 where that of the still pattern is.
+/// the pupil, so that the speckle boils without moving. The exposure is centred: at t = 0 the
+/// pattern equals the still pattern. The mean is exactly 1 if the mean of the still pattern is.
 ///
 /// ```text
 /// C² = 2 ∫₀¹ (1 − t) |μ(t T)|² dt           image drift alone
 /// C² = 2 ∫₀¹ (1 − t) chat(t s)² dt          pupil drift alone, circular pupil
 /// ```
 ///
-/// Look-ups of a stack need none of this: draw the moment of each sample of a pixel at random
-/// within the exposure, and look up at the coordinates of that moment.
+/// Look-ups of a stack do not need this type: draw the time of each sample of a pixel at random
+/// within the exposure, and look up at the coordinates of this time.
 ///
 /// # Validity
 ///
-/// Image drift is exact, by a factor sinc in the spectrum of the intensity. Pupil drift takes the
-/// mean of [`moments`](Self::moments) patterns at equal steps, between which the pattern moves as
-/// it does in the exposure. That leaves the squared contrast too high by
-/// `(4s/3π + (1 − chat(s)²)/6) / n²` for n moments behind a circle, which is less than 10⁻³.
+/// Image drift is exact, by a factor sinc in the spectrum of the intensity. Pupil drift is the mean
+/// of [`moments`](Self::moments) patterns at equal steps, between which the pattern moves as in the
+/// exposure. The squared contrast is then too high by `(4s/3π + (1 − chat(s)²)/6) / n²` for n
+/// moments behind a circle, which is less than 10⁻³.
 ///
 /// # Examples
 ///
-/// A pattern that boils for one pupil diameter has the contrast 0.656:
+/// A pattern that boils over one pupil diameter has the contrast 0.656:
 ///
 /// ```
 /// use tem00_speckle::{Exposure, PupilField};
@@ -61,14 +61,14 @@ pub struct Exposure {
 }
 
 impl Exposure {
-    /// The largest image drift along an axis, in speckle sizes: a phase of so many turns still has
-    /// ten digits behind the point.
+    /// The largest image drift along an axis, in speckle sizes: a phase of 10⁶ turns still has ten
+    /// digits after the decimal point.
     pub const MAX_IMAGE_DRIFT: f64 = 1e6;
     /// The largest pupil drift along an axis, in pupil diameters: 3840 patterns.
     pub const MAX_PUPIL_DRIFT: f64 = 128.0;
 
-    /// Returns the same exposure with another drift of the pattern over the sensor, in speckle
-    /// sizes h along x and y.
+    /// Returns the exposure with another drift of the pattern over the sensor, in speckle sizes h
+    /// along x and y.
     ///
     /// # Errors
     ///
@@ -83,7 +83,7 @@ impl Exposure {
         Ok(self)
     }
 
-    /// Returns the same exposure with another drift of the light over the pupil, in pupil diameters
+    /// Returns the exposure with another drift of the light over the pupil, in pupil diameters
     /// along x and y.
     ///
     /// # Errors
@@ -109,7 +109,7 @@ impl Exposure {
         self.pupil_drift
     }
 
-    /// Returns the number of patterns whose mean the exposure is, 1 without pupil drift.
+    /// Returns the number of patterns that the exposure averages, 1 without pupil drift.
     ///
     /// ```text
     /// n = ⌈30 max(s, √s)⌉
@@ -125,7 +125,7 @@ impl Exposure {
         self.pattern_at(field, [0.0; 2], 0.0)
     }
 
-    /// Returns the exposure in whose middle the pupil is displaced by `offset` diameters and out of
+    /// Returns the exposure with the pupil displaced by `offset` diameters at its middle and out of
     /// focus by `defocus`, as for [`PupilField::pattern_at`].
     ///
     /// # Panics
@@ -211,7 +211,7 @@ impl Smear {
         add(&mut self.sum, &spectrum);
     }
 
-    /// The inverse transform: that of the conjugate is the conjugate of the transform.
+    /// The inverse transform, which is the conjugate of the transform of the conjugate.
     fn into_values(self) -> Grid<f32> {
         let [width, height] = [self.sum.width(), self.sum.height()];
         let norm = to_f32((width as f64 * height as f64).recip());

@@ -15,23 +15,25 @@ const MAX_PATTERNS: usize = 1024;
 /// I = Σ wⱼ Iⱼ          Σ wⱼ = 1, Iⱼ independent patterns of mean 1
 /// ```
 ///
-/// There are `patterns` equal ones; each is two waves of the fractions `(1 ± P)/2`, with the degree
-/// of `polarisation` P, and each of these has parts of the mean intensities `weights`, in any unit:
-/// several lasers, or the coherent modes of a broad spectrum. Parts without light are left out. P
-/// is that of the light that reaches the sensor: 1 behind a polariser, near 0 for laser light off
-/// white paper without one.
+/// The light consists of `patterns` equal patterns. Each consists of two waves with the fractions
+/// `(1 ± P)/2`, where P is the degree of `polarisation`, and each wave has parts with the mean
+/// intensities `weights`, in any unit: several lasers, or the coherent modes of a broad spectrum.
+/// Parts without light are left out. P is the degree of polarisation of the light at the sensor: 1
+/// behind a polariser, near 0 for laser light from white paper without one.
 ///
-/// The contrast is `√(Σ wⱼ²)`; `tem00_statistics::IncoherentSum` has the law. Equal motion leaves
-/// every part with the same correlation, so that coordinates stay those of one pattern.
+/// The contrast is `√(Σ wⱼ²)`; `tem00_statistics::IncoherentSum` gives the distribution. Under
+/// equal motion every part has the same correlation, so that look-up coordinates are the same as
+/// for one pattern.
 ///
 /// # Errors
 ///
-/// Returns an error unless `0 ≤ polarisation ≤ 1`, if a weight is negative or not finite or none
-/// positive, or unless there are between 1 and 1024 patterns in all.
+/// Returns an error unless `0 ≤ polarisation ≤ 1`, if a weight is negative or not finite, if no
+/// weight is positive, or unless there are between 1 and 1024 patterns in all.
 ///
 /// # Examples
 ///
-/// Unpolarised light of two lasers, one of them twice as strong, as a pattern and by look-ups:
+/// Unpolarised light of two lasers, one of them twice as strong as the other, as a pattern and by
+/// look-ups:
 ///
 /// ```
 /// use tem00_speckle::{
@@ -92,15 +94,15 @@ fn check_count(patterns: usize) -> Result<(), SpeckleError> {
 }
 
 impl PupilField {
-    /// Returns fields of as many independent patterns: this one, then the same with seeds made from
-    /// its own.
+    /// Returns the fields of `patterns` independent patterns: this field, then the same field with
+    /// seeds derived from its seed.
     ///
     /// Two fields made from different seeds are the same with a probability of 2⁻⁶⁴ only.
     ///
     /// # Errors
     ///
     /// Returns an error unless `1 ≤ patterns ≤ 1024`, or if the field was made from samples and
-    /// there is more than one pattern: samples are no source of independent ones.
+    /// there is more than one pattern: samples cannot provide independent patterns.
     pub fn independent(&self, patterns: usize) -> Result<Vec<Self>, SpeckleError> {
         check_count(patterns)?;
         match self.seed() {
@@ -123,13 +125,13 @@ impl PupilField {
 impl SpecklePattern {
     /// Returns the mean of patterns with weights in any unit: light that adds by intensities.
     ///
-    /// Its mean intensity is 1 where that of every pattern is, and its speckle size that of the
-    /// first.
+    /// Its mean intensity is 1 if the mean intensity of every pattern is 1, and its speckle size is
+    /// the one of the first pattern.
     ///
     /// # Errors
     ///
-    /// Returns an error if a weight is negative or not finite or none positive, or unless there are
-    /// as many patterns as weights, all of one size.
+    /// Returns an error if a weight is negative or not finite, if no weight is positive, or unless
+    /// there are as many patterns as weights, all of one size.
     pub fn weighted_mean(
         weights: &[f64],
         patterns: impl IntoIterator<Item = Self>,

@@ -1,4 +1,4 @@
-//! The values that a pupil selects from the lattice: what the transform of a pattern takes.
+//! The values that a pupil selects from the lattice: the input of a pattern's transform.
 
 use core::{f64::consts::TAU, ops::Range};
 use std::borrow::Cow;
@@ -19,8 +19,8 @@ use crate::{
 
 const ZERO: Complex<f32> = Complex::new(0.0, 0.0);
 
-/// The field in a pupil that stands somewhere on the lattice, over the box around its points: for a
-/// Fourier transform of the caller's own, as on a graphics card.
+/// The field in a pupil at any position on the lattice, over the bounding box of its points, for
+/// the caller's own Fourier transform, as on a graphics card.
 ///
 /// The value at column i and row j of the box is
 ///
@@ -29,10 +29,10 @@ const ZERO: Complex<f32> = Complex::new(0.0, 0.0);
 /// ```
 ///
 /// with the [`transmission`](Self::transmission) t, or 1, and the phasor P of word kx of the
-/// `ChaCha8` stream ky, both of the lattice point nearest to the origin on a lattice that closes
-/// after [`period`](Self::period), and farther by the [`origin`](PupilField::origin) of the field.
-/// With its box at the corner of an array of W × H zeros it transforms to the pattern and, about
-/// zero frequency, to the amplitude:
+/// `ChaCha8` stream ky, where (kx, ky) is the representative nearest to the origin on a lattice
+/// that closes after [`period`](Self::period), displaced by the [`origin`](PupilField::origin) of
+/// the field. With its box at the corner of an array of W × H zeros the aperture transforms to the
+/// pattern and, centred on zero frequency, to the amplitude:
 ///
 /// ```text
 /// I(x, y) = |F(x, y)|² / power                                        F = Σ A(i, j) exp(−2πi (i x / W + j y / H))
@@ -114,7 +114,7 @@ impl PupilField {
         (0..mask.extent()[axis])
             .map(|i| {
                 let rho = 2.0 * (corner + i as f64) / self.diameter()[axis];
-                // Whole turns are taken off before 2π rounds what is left.
+                // Whole turns are removed before the multiplication by 2π rounds the rest.
                 to_c32(Complex::cis(TAU * (defocus * rho * rho % 1.0)))
             })
             .collect()
@@ -160,13 +160,13 @@ impl<'a> Aperture<'a> {
             .nearest([0, 1].map(|axis| self.centre[axis] + corner[axis]))
     }
 
-    /// Returns the points along each axis after which the lattice closes, at most 2³².
+    /// Returns the number of points along each axis after which the lattice closes, at most 2³².
     pub const fn period(&self) -> [i64; 2] {
         self.lattice.period
     }
 
-    /// Returns the columns of row `y` of the box that belong to the pupil, and those among them
-    /// that do not.
+    /// Returns the outer span of the columns of row `y` of the box that belong to the pupil, and
+    /// the span of the hole within it.
     ///
     /// # Panics
     ///
@@ -181,7 +181,8 @@ impl<'a> Aperture<'a> {
         self.mask.transmission()
     }
 
-    /// Returns the factors of each column and of each row, unless all are 1: lens and prefilter.
+    /// Returns the factors of each column and of each row, from lens and prefilter, or `None` if
+    /// all are 1.
     pub const fn factors(&self) -> Option<&[Vec<Complex<f32>>; 2]> {
         self.factors.as_ref()
     }
@@ -190,7 +191,7 @@ impl<'a> Aperture<'a> {
     pub fn power(&self) -> f64 {
         match self.gain {
             None => self.mask.power(),
-            // That of samples is made 1 as they are filled in.
+            // Samples are normalised to a power of 1 as they are filled in.
             Some(_) => 1.0,
         }
     }
@@ -199,7 +200,8 @@ impl<'a> Aperture<'a> {
     ///
     /// # Panics
     ///
-    /// Panics unless the box has the row and the columns, and `values` as many.
+    /// Panics unless the box has the row and the columns, and `values` has as many elements as
+    /// there are columns.
     pub fn fill(&self, columns: Range<usize>, y: usize, values: &mut [Complex<f32>]) {
         self.fill_points(columns.clone(), y, values);
         if let Some(gain) = self.gain {
@@ -218,7 +220,7 @@ impl<'a> Aperture<'a> {
     fn fill_points(&self, columns: Range<usize>, y: usize, values: &mut [Complex<f32>]) {
         let Self { centre, mask, .. } = self;
         let row = mask.row(y);
-        // Where a span lies among the columns.
+        // Position of a span among the columns.
         let part = |span: Span| {
             let column = |x: usize| x.clamp(columns.start, columns.end) - columns.start;
             column(span.start)..column(span.end)
@@ -237,7 +239,7 @@ impl<'a> Aperture<'a> {
         }
     }
 
-    /// The factor that makes the sum of squares of external samples 1; 0 without any light.
+    /// The factor that normalises the sum of squares of external samples to 1; 0 without light.
     fn gain(&self) -> f64 {
         let [width, height] = self.extent();
         let mut row = vec![ZERO; width];
@@ -255,14 +257,15 @@ impl<'a> Aperture<'a> {
     }
 }
 
-/// The lattice point nearest to `offset` diameters, and the way from there.
+/// The lattice point nearest to `offset` diameters, and the remaining distance.
 fn lattice_point(offset: f64, diameter: f64) -> (i64, f64) {
-    // So many diameters are a number of rounds of the lattice, which the remainder takes off
+    // `SIDE` diameters are a whole number of rounds of the lattice, which the remainder removes
     // exactly.
     let position = offset % Lattice::SIDE as f64 * diameter;
     let point = position.round();
     let fraction = position - point;
-    // Whole numbers over the diameter, times the diameter, are whole but for this rounding.
+    // An integer divided by the diameter and multiplied by it again is an integer up to this
+    // rounding.
     let rounding = 2.0 * f64::EPSILON * position.abs();
     let on_lattice = fraction.abs() <= rounding;
     (to_i64(point), if on_lattice { 0.0 } else { fraction })

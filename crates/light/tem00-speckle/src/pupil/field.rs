@@ -14,10 +14,10 @@ use crate::{
 
 /// A field on the lattice of pupil points, random or measured, seen through the pupil.
 ///
-/// The lattice has no end: a pupil may move over it as far as it likes and never meets the same
-/// phasors again. The phasor `P(k)` at a point depends on the seed and on k alone. A pupil of C
-/// lattice points in diameter, displaced by `offset` diameters, selects the points about
-/// `c = offset · C`, and their Fourier transform is the speckle field on Q × Q samples:
+/// The lattice is unbounded: a pupil may move over it any distance and never meets the same phasors
+/// again. The phasor `P(k)` at a point depends on the seed and on k alone. A pupil of C lattice
+/// points in diameter, displaced by `offset` diameters, selects the points about `c = offset · C`,
+/// and their Fourier transform is the speckle field on Q × Q samples:
 ///
 /// ```text
 /// U(r) = Σ t(p) P(k + c₀) exp(2πi a |2p|²) exp(−2πi k·r / Q) / √(Σ |t|²)     p = (k + c₀ − c) / C
@@ -25,16 +25,17 @@ use crate::{
 /// ```
 ///
 /// with the transmission t of the [`Pupil`], the defocus a, and the lattice point c₀ nearest to c.
-/// The sum runs over points about k = 0, wherever the pupil stands on the lattice, so that U is
+/// The sum runs over points about k = 0 for any position of the pupil on the lattice, so that U is
 /// band-limited about zero frequency and can be interpolated.
 ///
-/// Patterns need not be square: on W × H samples of speckles h wide the pupil has the diameters W/h
-/// and H/h in lattice points, and p is taken along each axis in its own.
+/// Patterns need not be square: on W × H samples with speckles h wide the pupil has the diameters
+/// W/h and H/h in lattice points, and each component of p is in units of the diameter along its
+/// axis.
 ///
 /// # Defocus
 ///
 /// The defocus a is counted in axial decorrelation lengths: it adds a turn of phase per unit from
-/// the centre of the pupil to its rim. Speckle in focus and out of it correlate by
+/// the centre of the pupil to its rim. Speckle in focus and out of focus has the correlation
 /// `γ = sinc²(π a)`, whose first zero is at a = 1. A surface that moves by `d` along the line of
 /// sight, at the distance L from a pupil of diameter D, is out of focus by `a = d D² / (8 λ L²)`.
 ///
@@ -45,10 +46,10 @@ use crate::{
 ///
 /// The intensity holds spatial frequencies up to C/Q, twice those of the amplitude: C ≤ Q/2 keeps
 /// it free of aliasing. C ≥ 8 gives 49 phasors or more, so that the contrast is within 1 % of one.
-/// Random phasors repeat after 2³² lattice points along each axis, which is a million diameters of
-/// a pupil of 4096.
+/// Random phasors repeat after 2³² lattice points along each axis, which is a million diameters for
+/// a pupil of 4096 points.
 ///
-/// Any size works; those without prime factors above 5 are transformed fastest.
+/// Any size works; sizes without prime factors above 5 are transformed fastest.
 ///
 /// # Examples
 ///
@@ -82,7 +83,7 @@ pub struct PupilField {
     pub(crate) transform: Fft2,
 }
 
-/// Sizes of a pattern: samples, and lattice points across the pupil.
+/// Sizes of a pattern: its samples, and the lattice points across the pupil.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Layout {
     pub(crate) size: [usize; 2],
@@ -95,7 +96,7 @@ impl PupilField {
     pub const MAX_SIZE: usize = 1 << 15;
     /// The smallest pupil diameter C, in lattice points.
     pub const MIN_DIAMETER: usize = 8;
-    /// The smallest number of phasors N, that of a circle of the smallest diameter.
+    /// The smallest number of phasors N: the number in a circle of the smallest diameter.
     pub const MIN_PHASORS: usize = 49;
 
     /// Creates a square field of unit phasors behind a circular pupil.
@@ -141,11 +142,11 @@ impl PupilField {
     /// # Speckle without a lens
     ///
     /// On a screen at the distance z, parallel to a rough surface and near the axis, the lit area
-    /// takes the place of the pupil: of the width w it makes speckles of `λz / w`, and
-    /// [`with_pupil`](Self::with_pupil) gives its shape. A Gaussian spot is cut off, at five radii
-    /// in w for a pupil of the radius 0.2. A surface that has moved by d through the light
-    /// displaces the pupil by `−d / w`: its speckle boils and does not move. The law is
-    /// `tem00_statistics::laws::ObjectiveSpeckle`.
+    /// takes the place of the pupil: with the width w it produces speckles of the size `λz / w`,
+    /// and [`with_pupil`](Self::with_pupil) sets its shape. A Gaussian spot is cut off: the width w
+    /// holds five radii for a pupil of the radius 0.2. A surface that has moved by d through the
+    /// light displaces the pupil by `−d / w`: its speckle boils and does not move.
+    /// `tem00_statistics::laws::ObjectiveSpeckle` gives the law.
     ///
     /// # Errors
     ///
@@ -180,13 +181,14 @@ impl PupilField {
     /// Creates a field of external samples behind a circular pupil: a measured or computed complex
     /// amplitude in the pupil plane.
     ///
-    /// One sample is one lattice point, and the sample (⌊width/2⌋, ⌊height/2⌋) the origin, about
-    /// which the undisplaced pupil stands. The field is zero beyond the samples. `size` and
-    /// `speckle_size` are those of [`from_speckle_size`](Self::from_speckle_size): for a pupil of C
-    /// samples in diameter, ask for patterns of Q × Q samples and speckles of Q/C.
+    /// One sample is one lattice point, and the sample (⌊width/2⌋, ⌊height/2⌋) is the origin, about
+    /// which the undisplaced pupil is centred. The field is zero beyond the samples. `size` and
+    /// `speckle_size` are as in [`from_speckle_size`](Self::from_speckle_size): for a pupil of C
+    /// samples in diameter, request patterns of Q × Q samples and speckles of Q/C.
     ///
-    /// Only the shape of the field matters: each pattern is divided by the power that its pupil
-    /// sees, so that its mean is 1 wherever the pupil stands. Where it sees none, the pattern is 0.
+    /// Only the shape of the field matters: each pattern is divided by the power within its pupil,
+    /// so that its mean is 1 at any position of the pupil. If the pupil contains no power, the
+    /// pattern is 0.
     ///
     /// # Errors
     ///
@@ -207,7 +209,7 @@ impl PupilField {
     ///
     /// # Errors
     ///
-    /// Returns an error if a proportion of `pupil` is out of range or if it holds fewer than
+    /// Returns an error if a proportion of `pupil` is out of range or if the pupil holds fewer than
     /// [`MIN_PHASORS`](Self::MIN_PHASORS) lattice points.
     pub fn with_pupil(self, pupil: Pupil) -> Result<Self, SpeckleError> {
         pupil.check()?;
@@ -220,13 +222,14 @@ impl PupilField {
     ///
     /// # Errors
     ///
-    /// As [`from_speckle_size`](Self::from_speckle_size) and [`with_pupil`](Self::with_pupil).
+    /// Returns the errors of [`from_speckle_size`](Self::from_speckle_size) and
+    /// [`with_pupil`](Self::with_pupil).
     pub fn with_speckle_size(self, speckle_size: f64) -> Result<Self, SpeckleError> {
         let layout = Layout::new(self.size, speckle_size)?;
         Self::build(self.lattice, layout, self.pupil)
     }
 
-    /// Returns the same pupil with another law of phasors. External samples stay as they are.
+    /// Returns the same pupil with another law of phasors. External samples do not change.
     #[must_use]
     pub const fn with_phasors(mut self, phasors: Phasors) -> Self {
         if let Source::Seeded(seeded) = &mut self.lattice.source {
@@ -235,8 +238,8 @@ impl PupilField {
         self
     }
 
-    /// Returns the same pupil with another, independent set of phasors. External samples stay as
-    /// they are.
+    /// Returns the same pupil with another, independent set of phasors. External samples do not
+    /// change.
     #[must_use]
     pub const fn with_seed(mut self, seed: u64) -> Self {
         if let Source::Seeded(seeded) = &mut self.lattice.source {
@@ -245,11 +248,11 @@ impl PupilField {
         self
     }
 
-    /// Returns the same field about a pupil that rests `points` lattice points farther along each
-    /// axis.
+    /// Returns the same field with the rest position of the pupil displaced by `points` lattice
+    /// points along each axis.
     ///
-    /// A stack of it holds another part of a path than a stack of the field itself. Where both hold
-    /// the same slices, they hold the same speckle.
+    /// A stack of the displaced field holds another part of a path than a stack of the field
+    /// itself. Slices that both stacks hold have the same speckle.
     ///
     /// # Examples
     ///
@@ -280,7 +283,8 @@ impl PupilField {
         self
     }
 
-    /// Returns the displacement between two lattice points, the shorter way round.
+    /// Returns the displacement between two lattice points, along the shorter way round the
+    /// lattice.
     pub(crate) fn shift(&self, from: [i64; 2], to: [i64; 2]) -> [i64; 2] {
         self.lattice.nearest([to[0] - from[0], to[1] - from[1]])
     }
@@ -288,7 +292,7 @@ impl PupilField {
     fn build(lattice: Lattice, layout: Layout, pupil: Pupil) -> Result<Self, SpeckleError> {
         let Layout { size, diameter, .. } = layout;
         let mask = Mask::new(&pupil, diameter, [0.0; 2]);
-        // (Σ|t|²)² / Σ|t|⁴ is a whole number of equal phasors but for its rounding.
+        // For equal phasors (Σ|t|²)² / Σ|t|⁴ is an integer up to rounding.
         let effective = mask.effective_count() * (1.0 + 1e-12);
         if effective < Self::MIN_PHASORS as f64 {
             let allowed =
@@ -370,13 +374,13 @@ impl PupilField {
         self.mask.count()
     }
 
-    /// Returns the number of phasors of equal weight that fluctuate as the pupil's do.
+    /// Returns the number of phasors of equal weight with the same fluctuations as the pupil.
     ///
     /// ```text
     /// N = (Σ |t|²)² / Σ |t|⁴
     /// ```
     ///
-    /// It is the count itself unless the pupil is apodised. The squared contrast of unit phasors is
+    /// It equals the count unless the pupil is apodised. The squared contrast of unit phasors is
     /// `1 − 1/N`.
     pub fn effective_phasor_count(&self) -> f64 {
         self.mask.effective_count()
@@ -384,9 +388,9 @@ impl PupilField {
 
     /// Returns the diameter `2√(N/π)` of the disc whose area is the pupil's N lattice cells.
     ///
-    /// With it the Airy autocovariance of a circular pupil holds within 1.3e−3 in every direction
-    /// at C = 32, and within 3e−4 at C = 128. With the nominal C these are 4.1e−3 and 6e−4. For a
-    /// pattern that is not square it is the geometric mean over both axes.
+    /// With this diameter the Airy autocovariance of a circular pupil holds within 1.3e−3 in every
+    /// direction at C = 32, and within 3e−4 at C = 128. With the nominal C the deviations are
+    /// 4.1e−3 and 6e−4. For a pattern that is not square it is the geometric mean over both axes.
     pub fn effective_diameter(&self) -> f64 {
         2.0 * (self.phasor_count() as f64 / PI).sqrt()
     }
@@ -412,18 +416,18 @@ impl PupilField {
         self.mask.correlation(lag, self.size)
     }
 
-    /// Returns the amplitude correlation of the fields of the pupil and of the same pupil displaced
-    /// by `shift` lattice points.
+    /// Returns the amplitude correlation between the field of the pupil and the field of the same
+    /// pupil displaced by `shift` lattice points.
     ///
     /// ```text
     /// Σ t(k) t*(k − shift) / Σ |t|²
     /// ```
     ///
-    /// Without apodisation it is the fraction of the lattice points that both share: counted, not
-    /// approximated. [`Pupil::overlap`] is its limit for a fine lattice.
+    /// Without apodisation it is the fraction of the lattice points that both share, counted
+    /// exactly. [`Pupil::overlap`] is its limit for a fine lattice.
     pub fn overlap(&self, shift: [i64; 2]) -> Complex<f64> {
         let [x, y] = self.lattice.nearest(shift);
-        // On a lattice that closes early a displaced pupil may be met from both sides.
+        // On a lattice that closes early a displaced pupil may overlap from both sides.
         self.sides()
             .map(|side| self.overlap_on_one_side([x + side[0], y + side[1]]))
             .sum()
@@ -445,7 +449,7 @@ impl PupilField {
 
 impl PartialEq for PupilField {
     fn eq(&self, other: &Self) -> bool {
-        // The mask and the plan follow from these.
+        // The mask and the plan follow from these fields.
         self.lattice == other.lattice
             && self.size == other.size
             && self.diameter == other.diameter

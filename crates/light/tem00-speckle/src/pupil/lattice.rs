@@ -10,9 +10,9 @@ use tem00_numerics::{Grid, cast::to_signed, vectorised};
 
 use crate::Phasors;
 
-/// A field on the points of a torus, of so many points along each axis.
+/// A field on the points of a torus, with `period` points along each axis.
 ///
-/// On a torus of P points the point k shows what the source has at the representative of k in
+/// On a torus of P points the point k has the value of the source at the representative of k in
 /// [−P/2, P/2), counted from the origin, so that the surroundings of the origin are the same for
 /// every P.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,25 +33,26 @@ pub(crate) enum Source {
 
 /// Random phasors.
 ///
-/// The phasor at (kx, ky) is made of word kx of the `ChaCha8` stream ky, both modulo 2³², so that
-/// any part of the lattice can be generated alone, in any order and by any thread.
+/// The phasor at (kx, ky) is computed from word kx of the `ChaCha8` stream ky, both modulo 2³², so
+/// that any part of the lattice can be generated alone, in any order and by any thread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Seeded {
     pub(crate) seed: u64,
     pub(crate) phasors: Phasors,
 }
 
-/// Rest of the generator's key beside the seed; a new value would be a new family.
+/// The part of the generator's key other than the seed; a new value would give a new family of
+/// phasors.
 const KEY: &[u8; 24] = b"tem00 speckle phasors v1";
 
-/// Streams from here on hold the magnitudes, those below the phases.
+/// The first stream with magnitudes; the streams below hold the phases.
 const MAGNITUDES: u64 = 1 << 32;
 
 /// Words drawn at a time.
 const CHUNK: usize = 64;
 
 impl Lattice {
-    /// The points along an axis after which random phasors repeat.
+    /// The number of points along an axis after which random phasors repeat.
     pub(crate) const SIDE: i64 = 1 << 32;
 
     /// A lattice that does not close before its phasors do.
@@ -66,7 +67,7 @@ impl Lattice {
     /// Returns the lattice displaced by a number of points.
     pub(crate) const fn displaced(mut self, [x, y]: [i64; 2]) -> Self {
         let [x0, y0] = self.origin;
-        // 2³² points lead back.
+        // A displacement by 2³² points is the identity.
         self.origin = [
             nearest(x0.wrapping_add(x), Self::SIDE),
             nearest(y0.wrapping_add(y), Self::SIDE),
@@ -104,7 +105,7 @@ const fn nearest(k: i64, period: i64) -> i64 {
     if k < period - k { k } else { k - period }
 }
 
-/// Copies the samples at (kx, ky), (kx + 1, ky), …, and zeros where there are none.
+/// Copies the samples at (kx, ky), (kx + 1, ky), …, with zeros beyond the samples.
 fn copy_run(samples: &Grid<Complex<f32>>, [kx, ky]: [i64; 2], run: &mut [Complex<f32>]) {
     let [width, height] = [samples.width(), samples.height()].map(to_signed);
     run.fill(Complex::new(0.0, 0.0));
@@ -133,7 +134,7 @@ impl Seeded {
             return;
         }
         let (word, stream) = (kx as u32, u64::from(ky as u32));
-        // The generator runs on from word 2³² − 1 to 2³², not to 0.
+        // After word 2³² − 1 the generator continues with word 2³², not with word 0.
         let length = usize::try_from(Lattice::SIDE - i64::from(word)).unwrap_or(usize::MAX);
         let (run, beyond) = run.split_at_mut(length.min(run.len()));
         self.fill_run([0, ky], beyond);
@@ -182,15 +183,15 @@ impl Seeded {
     }
 }
 
-/// An index that the caller keeps from being negative.
+/// Converts an index, which the caller guarantees not to be negative.
 fn to_index(n: i64) -> usize {
     usize::try_from(n).unwrap_or(0)
 }
 
 /// Returns `exp(2πi · word / 2³²)`.
 ///
-/// Only `f32` additions and multiplications, which every platform rounds alike; the library sine
-/// and cosine are not. The error is below 1.2e−7.
+/// It uses only `f32` additions and multiplications, which every platform rounds alike, unlike the
+/// library sine and cosine. The error is below 1.2e−7.
 #[inline(always)]
 #[expect(
     clippy::cast_possible_wrap,
@@ -209,7 +210,7 @@ pub(crate) fn unit_phasor(word: u32) -> Complex<f32> {
     Complex::new(negate(re, quarter + 1), negate(im, quarter))
 }
 
-/// Taylor series on [−π/4, π/4]: the first terms left out are 2e−9 (sine) and 2.5e−8 (cosine).
+/// Taylor series on [−π/4, π/4]: the first omitted terms are 2e−9 (sine) and 2.5e−8 (cosine).
 #[inline(always)]
 fn sin_cos_octant(a: f32) -> (f32, f32) {
     let a2 = a * a;
@@ -243,7 +244,7 @@ fn ln(x: f64) -> f64 {
     #[expect(clippy::cast_possible_wrap, reason = "the sign of the exponent")]
     let exponent = (shifted as i64 >> 52) as i32;
     let m = f64::from_bits((shifted & MANTISSA).wrapping_add(SQRT_HALF_BITS));
-    // ln m = 2 artanh(s) with |s| ≤ 0.172: the first term left out is 2 s¹⁵ / 15 = 4e−13.
+    // ln m = 2 artanh(s) with |s| ≤ 0.172: the first omitted term is 2 s¹⁵ / 15 = 4e−13.
     let s = (m - 1.0) / (m + 1.0);
     let s2 = s * s;
     let series = [
@@ -359,8 +360,8 @@ mod tests {
         }
     }
 
-    /// Recorded once. Stable on every platform: `ChaCha8` is integer arithmetic, and the phasor is
-    /// made of `f32` operations that IEEE 754 rounds alike everywhere.
+    /// The values were recorded once and are the same on every platform: `ChaCha8` is integer
+    /// arithmetic, and the phasor uses `f32` operations that IEEE 754 rounds alike everywhere.
     #[test]
     fn a_seed_means_the_same_bits_for_ever() {
         let bits: Vec<_> = row(&lattice(2_016), [3, 7], 3)
@@ -410,7 +411,7 @@ mod tests {
                 assert_eq!(row(&displaced, start, 40), there, "{start:?} by {origin:?}");
             }
         }
-        // One that closes keeps what lies around its origin.
+        // A lattice that closes keeps the values around its origin.
         let closed = torus(7, [64, 16]).displaced([500, 0]);
         assert_eq!(row(&closed, [-20, 2], 40), here([480, 2]));
         assert_eq!(row(&closed, [44, 18], 40), here([480, 2]));
@@ -470,7 +471,7 @@ mod tests {
     fn the_series_is_the_logarithm() {
         for i in 0..10_000_u32 {
             let x = (f64::from(i) + 0.5) / 10_000.0;
-            // 4e−13 of the series and the rounding of |ln x| ≤ 10.
+            // The tolerance covers 4e−13 of the series and the rounding of |ln x| ≤ 10.
             assert!((ln(x) - x.ln()).abs() < 1e-12, "at {x}");
         }
         // −ln 2⁻³³ for the smallest word, and a positive value for the largest.

@@ -1,4 +1,4 @@
-//! The lattice points inside the pupil, and the exact sums over them.
+//! Lattice points inside the pupil, and exact sums over them.
 
 use core::f64::consts::PI;
 
@@ -11,7 +11,7 @@ use tem00_numerics::{
 
 use crate::Pupil;
 
-/// The lattice points of a pupil about a point of the lattice, and what they transmit.
+/// The lattice points of a pupil about a point of the lattice, and their transmission.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Mask {
     /// The first column and row of the box around the points.
@@ -19,19 +19,20 @@ pub(crate) struct Mask {
     /// The number of columns and rows of the box.
     extent: [usize; 2],
     rows: Vec<Row>,
-    /// Transmission over the box, unless it is 1 wherever a row says so.
+    /// Transmission over the box, unless it is 1 at all points of the pupil.
     weights: Option<Grid<Complex<f32>>>,
     sums: Sums,
 }
 
-/// The columns of a row of the box that belong to the pupil, without a hole in their midst.
+/// The columns of a row of the box that belong to the pupil: an outer span without a hole in the
+/// middle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Row {
     pub(crate) outer: Span,
     pub(crate) hole: Span,
 }
 
-/// The columns from `start` up to, but without, `end`.
+/// The columns from `start` up to, but excluding, `end`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Span {
     pub(crate) start: usize,
@@ -116,7 +117,7 @@ impl Mask {
         mask
     }
 
-    /// The largest box that the points can need, wherever the centre lies.
+    /// The largest box that the points need for any position of the centre.
     pub(crate) fn extent_of(pupil: &Pupil, diameter: [f64; 2]) -> [usize; 2] {
         let reach = pupil.reach();
         [0, 1].map(|axis| to_usize(reach[axis] * diameter[axis] * Pupil::RIM) + 1)
@@ -165,12 +166,12 @@ impl Mask {
         self.rows[y]
     }
 
-    /// The transmission along row `y` of the box, if it is not just 1.
+    /// The transmission along row `y` of the box, unless it is 1 at all points.
     pub(crate) fn weights(&self, y: usize) -> Option<&[Complex<f32>]> {
         self.weights.as_ref().map(|weights| weights.row(y))
     }
 
-    /// The transmission over the box, unless it is 1 wherever a row says so.
+    /// The transmission over the box, unless it is 1 at all points of the pupil.
     pub(crate) const fn transmission(&self) -> Option<&Grid<Complex<f32>>> {
         self.weights.as_ref()
     }
@@ -182,7 +183,7 @@ impl Mask {
         self.rows[y].columns().map(move |x| (x, power(x)))
     }
 
-    /// Σ |t|² `exp(−2πi k·lag/size)` over Σ |t|².
+    /// Σ |t|² `exp(−2πi k·lag/size)` divided by Σ |t|².
     pub(crate) fn correlation(&self, lag: [f64; 2], size: [usize; 2]) -> Complex<f64> {
         let turns = |axis: usize| nearest(lag[axis], size[axis] as f64) / size[axis] as f64;
         let (x, y) = (PI * turns(0), -2.0 * PI * turns(1));
@@ -213,7 +214,7 @@ impl Mask {
 
     /// Σ over the span of exp(−2i kx theta).
     fn span_sum(&self, span: Span, theta: f64) -> Complex<f64> {
-        // First and last point lie as far to either side of half their sum.
+        // The first and the last point lie symmetrically about half their sum.
         let twice_middle = 2 * self.corner[0] + to_signed(span.start + span.end) - 1;
         Complex::cis(-theta * twice_middle as f64) * dirichlet(span.count(), theta)
     }

@@ -21,7 +21,7 @@ impl SpecklePattern {
         &self.values
     }
 
-    /// Returns the intensity, without the pattern around it.
+    /// Converts the pattern into its intensity.
     pub fn into_values(self) -> Grid<f32> {
         self.values
     }
@@ -40,7 +40,8 @@ impl SpecklePattern {
 /// The complex amplitude of a speckle field on W × H samples, periodic in both axes.
 ///
 /// Its band is centred on zero frequency, within half a lattice point, and its expected mean square
-/// is 1. Over the diameter C of the pupil the band is at most half the sampling frequency wide.
+/// is 1. The width of the band, the diameter C of the pupil, is at most half the sampling
+/// frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpeckleField {
     values: Grid<Complex<f32>>,

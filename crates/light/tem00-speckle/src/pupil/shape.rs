@@ -8,8 +8,8 @@ use crate::{SpeckleError, Transmission};
 /// The shape of the camera's pupil.
 ///
 /// Lengths are in units of the pupil diameter D, which is C lattice points: the outer diameter of
-/// an annulus and the width of a rectangle. A point at the position p from the pupil's centre, in
-/// diameters, belongs to it where
+/// an annulus or the width of a rectangle. A point at the position p from the pupil's centre, in
+/// diameters, belongs to the pupil if
 ///
 /// ```text
 /// circle, Gaussian:  |p| ≤ ½
@@ -18,13 +18,13 @@ use crate::{SpeckleError, Transmission};
 /// sampled:           |x| ≤ ½,  |y| ≤ ½
 /// ```
 ///
-/// Points on the rim belong to the pupil, those within 10⁻¹² of a diameter of it too.
+/// Points on the rim, and points within 10⁻¹² of a diameter of it, belong to the pupil.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Pupil {
     /// A full disc.
     #[default]
     Circle,
-    /// A disc with a central obstruction, as of a mirror telescope.
+    /// A disc with a central obstruction, as in a mirror telescope.
     Annulus {
         /// Diameter of the obstruction in units of the outer diameter, inside (0, 1).
         inner: f64,
@@ -40,17 +40,19 @@ pub enum Pupil {
         /// positive and finite.
         radius: f64,
     },
-    /// Any amplitude transmission over the bounding square, with phase if there are aberrations.
+    /// An arbitrary amplitude transmission over the bounding square, with a phase if there are
+    /// aberrations.
     Sampled(Transmission),
 }
 
 impl Pupil {
-    /// Factor by which a radius on the rim may exceed it: the rounding of coordinates.
+    /// Factor by which the radius of a point on the rim may exceed the radius of the pupil: the
+    /// rounding of coordinates.
     pub(crate) const RIM: f64 = 1.0 + 1e-12;
 
     /// Returns the overlap of the pupil with itself, displaced by `shift` diameters, in [0, 1].
     ///
-    /// It is the common power of both over the power of one: the amplitude correlation of two
+    /// It is the common power of both divided by the power of one: the amplitude correlation of two
     /// speckle fields whose pupils are displaced by `shift`.
     ///
     /// ```text
@@ -90,7 +92,7 @@ impl Pupil {
     ///
     /// # Errors
     ///
-    /// Returns an error if one lies outside the range that its variant states.
+    /// Returns an error if a proportion lies outside the range that its variant states.
     pub fn check(&self) -> Result<(), SpeckleError> {
         match *self {
             Self::Annulus { inner } if !(inner > 0.0 && inner < 1.0) => {
@@ -151,13 +153,13 @@ impl Pupil {
 /// The overlap of two apodised discs of diameter 1 at the distance `rho`.
 ///
 /// About the middle between the centres the product of both transmissions is a Gaussian again, and
-/// the rim of the lens they share lies at b(φ) = √(¼ − ¼ρ² sin²φ) − ½ρ cos φ. In polar coordinates
-/// the radial integral is elementary; the quadrants are alike.
+/// the rim of their overlap lies at b(φ) = √(¼ − ¼ρ² sin²φ) − ½ρ cos φ. In polar coordinates the
+/// radial integral is elementary; all quadrants contribute equally.
 fn gaussian_overlap(rho: f64, radius: f64) -> f64 {
     if rho >= 1.0 || rho.is_nan() {
         return 0.0;
     }
-    // (1 − exp(−2b²/R²)) / (2/R²), in a form that neither a wide nor a narrow Gaussian spoils.
+    // (1 − exp(−2b²/R²)) / (2/R²), in a form that is accurate for wide and narrow Gaussians.
     let wide = radius > 1.0;
     let radial = |b: f64| {
         let x = 2.0 * (b / radius).powi(2);
@@ -172,12 +174,13 @@ fn gaussian_overlap(rho: f64, radius: f64) -> f64 {
         let rim = 0.5 * (1.0 - (rho * sin).powi(2)).sqrt() - 0.5 * rho * cos;
         radial(rim.max(0.0))
     };
-    // The corner of the lens sharpens towards ρ = 1; eight panels leave 1e−10 of the overlap.
+    // The corner of the overlap sharpens towards ρ = 1; eight panels have an error of 1e−10 of the
+    // overlap.
     let shared = integrate(along, [0.0, FRAC_PI_2], FRAC_PI_2 / 8.0);
     (-0.5 * (rho / radius).powi(2)).exp() * shared / (radial(0.5) * FRAC_PI_2)
 }
 
-/// The common area of discs of diameters 1 and `inner` < 1 at the distance `rho`, over π/4.
+/// The common area of discs of diameters 1 and `inner` < 1 at the distance `rho`, divided by π/4.
 fn lens(inner: f64, rho: f64) -> f64 {
     // Radii 1 and e and the distance d in units of the larger radius.
     let (e, d) = (inner, 2.0 * rho);
@@ -199,7 +202,7 @@ pub enum Phasors {
     /// Magnitude 1 and uniform phase, as in the paper.
     ///
     /// By Parseval the mean intensity of every pattern is exactly 1. The squared contrast is
-    /// `1 − 1/N` and the autocovariance `|μ|² − 1/N` for N phasors of equal weight, in general for
+    /// `1 − 1/N` and the autocovariance `|μ|² − 1/N` for N phasors of equal weight; in general N is
     /// the effective count [`PupilField::effective_phasor_count`].
     ///
     /// [`PupilField::effective_phasor_count`]: crate::PupilField::effective_phasor_count
@@ -208,7 +211,7 @@ pub enum Phasors {
     /// Circular complex Gaussian with mean square 1.
     ///
     /// Every sample is exactly exponential and the autocovariance exactly `|μ|²` over the ensemble
-    /// of seeds. Patterns are normalised by the *expected* mean: the mean of a single one
+    /// of seeds. Patterns are normalised by the *expected* mean: the mean of a single pattern
     /// fluctuates by `1/√N`.
     Gaussian,
 }
@@ -236,8 +239,9 @@ mod tests {
             for shift in [[0, 0], [60, 0], [300, 100], [0, 90], [420, -30], [550, 0]] {
                 let diameters = shift.map(|s| s as f64 / DIAMETER);
                 let share = mask.overlap(shift).re / mask.power();
-                // A rectangle of 151 rows instead of 150 is off by 1/150; rims of discs average
-                // out. So much more so against the area of a thin ring.
+                // A rectangle of 151 rows instead of 150 has an error of 1/150; for the rims of
+                // discs the errors average out. Relative to the area of a thin ring the error is
+                // larger.
                 let tolerance = match pupil {
                     Pupil::Rectangle { .. } => 1.0 / 150.0,
                     Pupil::Annulus { inner } => 2e-4 / (1.0 - inner * inner),
@@ -251,12 +255,12 @@ mod tests {
     #[test]
     fn the_overlap_of_a_gaussian_pupil_has_its_limits() {
         for shift in [0.0, 0.1, 0.35, 0.7, 0.99, 1.0, 2.0] {
-            // A wide one is a disc but for 1/R² of its transmission.
+            // A wide Gaussian is a disc except for 1/R² of its transmission.
             let wide = Pupil::Gaussian { radius: 1e4 }.overlap([0.0, shift]);
             let disc = Pupil::Circle.overlap([shift, 0.0]);
-            // Simpson's rule leaves 1e-9 where the corner of the lens is sharp.
+            // Simpson's rule has an error of 1e-9 where the corner of the overlap is sharp.
             assert!((wide - disc).abs() < 2e-8, "{wide} | {disc} at {shift}");
-            // A narrow one never meets the rim.
+            // A narrow Gaussian never meets the rim.
             let narrow = Pupil::Gaussian { radius: 0.05 }.overlap([shift, 0.0]);
             let gaussian = (-0.5 * (shift / 0.05_f64).powi(2)).exp();
             assert!((narrow - gaussian).abs() < 1e-9, "{narrow} | {gaussian}");
@@ -271,7 +275,7 @@ mod tests {
     #[test]
     fn the_overlap_of_an_annulus_with_a_vanishing_hole_is_that_of_a_disc() {
         for shift in [0.0, 0.1, 0.4999, 0.5, 0.7, 1.0, 1.3] {
-            // The hole takes and gives at most 2 ε² = 2e−8.
+            // The hole changes the overlap by at most 2 ε² = 2e−8.
             let annulus = Pupil::Annulus { inner: 1e-4 }.overlap([shift, 0.0]);
             let disc = Pupil::Circle.overlap([shift, 0.0]);
             assert_absolute(annulus, disc, 3e-8);

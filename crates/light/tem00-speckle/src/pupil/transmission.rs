@@ -9,11 +9,11 @@ use tem00_numerics::{
 
 use crate::SpeckleError;
 
-/// The amplitude transmission of a pupil of any shape, on a grid over the pupil's bounding square.
+/// Amplitude transmission of a pupil of any shape, on a grid over the pupil's bounding square.
 ///
-/// Column x of n holds for the strip from x/n to (x + 1)/n of the pupil's diameter, and so do the
-/// rows; between the centres of its cells the transmission is not interpolated. A grid at least as
-/// fine as the pupil's lattice loses nothing. Copies share the grid.
+/// Column x of n applies to the strip from x/n to (x + 1)/n of the pupil's diameter, and rows
+/// likewise; the transmission is not interpolated between the centres of the cells. A grid at least
+/// as fine as the pupil's lattice loses no detail. Copies share the grid.
 ///
 /// # Examples
 ///
@@ -61,13 +61,13 @@ impl Transmission {
         })
     }
 
-    /// Creates a transmission with a phase, as of a lens with aberrations.
+    /// Creates a transmission with a phase, as for a lens with aberrations.
     ///
     /// # Errors
     ///
     /// Returns an error unless all magnitudes lie in [0, 1], within the rounding of `f32`.
     pub fn from_complex(amplitude: Grid<Complex<f32>>) -> Result<Self, SpeckleError> {
-        // A phasor of cosine and sine may be longer than 1 by its rounding.
+        // A phasor of cosine and sine may exceed 1 by its rounding.
         let allowed = 1.0 + 2.0 * f32::EPSILON;
         let magnitude = |t: &Complex<f32>| t.re.hypot(t.im);
         let mut magnitudes = amplitude.values().iter().map(magnitude);
@@ -89,10 +89,11 @@ impl Transmission {
         self.values[(cell(x, self.values.width()), cell(y, self.values.height()))]
     }
 
-    /// |∫ t(p) t*(p − shift)| / ∫ |t|², exactly: cells are constant, so that their overlap is linear
-    /// in the shift from one whole number of cells to the next.
+    /// |∫ t(p) t*(p − shift)| / ∫ |t|², exactly: cells are constant, so that their overlap is
+    /// linear in the shift between two integer numbers of cells.
     pub(crate) fn overlap(&self, [x, y]: [f64; 2]) -> f64 {
-        // Beyond the square nothing is shared; negated so that NaN counts as no overlap, too.
+        // Beyond the square there is no overlap; the condition is negated so that NaN counts as no
+        // overlap, too.
         if !(x.abs() < 1.0 && y.abs() < 1.0) {
             return 0.0;
         }
@@ -133,7 +134,7 @@ fn amplifies(amplitude: f32) -> SpeckleError {
     SpeckleError::refused("amplitude", amplitude as f64, "between 0 and 1")
 }
 
-/// The cell of `count` in which x ∈ [−½, ½] lies; the rim belongs to the outermost.
+/// The cell of `count` in which x ∈ [−½, ½] lies; the rim belongs to the outermost cell.
 fn cell(x: f64, count: usize) -> usize {
     to_usize((x + 0.5) * count as f64).min(count - 1)
 }
@@ -167,7 +168,8 @@ mod tests {
             [-0.6, 0.33],
             [0.0, -0.97],
         ] {
-            // The rim of 200 cells per diameter errs by half a cell, at random along the rim.
+            // With 200 cells per diameter the rim has errors of half a cell, at random along the
+            // rim.
             assert_absolute(sampled.overlap(shift), Pupil::Circle.overlap(shift), 1e-3);
         }
         for beyond in [[1.0, 0.0], [0.0, -3.0], [1e300, 1e300], [f64::NAN, 0.0]] {
@@ -180,7 +182,8 @@ mod tests {
         // Two columns, 1 and i/2: shifted by a quarter of the square, half a cell.
         let values = vec![Complex::new(1.0, 0.0), Complex::new(0.0, 0.5)];
         let pupil = Transmission::from_complex(Grid::from_vec(2, 1, values).unwrap()).unwrap();
-        // ½ (1 + ¼) of each with itself and ½ (i/2) of the second with the first.
+        // The products of each column with itself give ½ (1 + ¼), of the second with the first ½
+        // (i/2).
         let expected = (0.5 * 1.25_f64).hypot(0.5 * 0.5) / 1.25;
         assert_absolute(pupil.overlap([0.25, 0.0]), expected, 1e-15);
         assert_absolute(pupil.overlap([0.5, 0.0]), 0.4, 1e-15);

@@ -1,4 +1,4 @@
-//! Patterns and fields behind a pupil that stands anywhere and is out of focus.
+//! Patterns and fields behind a pupil at any position and defocus.
 
 use core::f64::consts::PI;
 
@@ -15,7 +15,7 @@ const ZERO: Complex<f32> = Complex::new(0.0, 0.0);
 /// Working memory of [`PupilField::pattern_into`] and [`PupilField::speckle_into`], kept between
 /// calls.
 ///
-/// It fits any field and grows to the largest.
+/// It fits any field and grows to the size of the largest.
 #[derive(Clone, Debug, Default)]
 pub struct SpeckleScratch {
     transform: Fft2Scratch,
@@ -30,8 +30,8 @@ impl PupilField {
     /// Returns the intensity behind the pupil displaced by `offset` diameters and out of focus by
     /// `defocus`, as the type [defines](Self#defocus) it.
     ///
-    /// Any displacement is exact, on a lattice point or between: the pupil selects its points anew,
-    /// and the sum over their squares normalises the pattern.
+    /// Any displacement is exact, on a lattice point or between points: the pupil selects its
+    /// points anew, and the sum over their squares normalises the pattern.
     ///
     /// # Panics
     ///
@@ -60,8 +60,8 @@ impl PupilField {
         SpecklePattern::new(values, self.speckle_size())
     }
 
-    /// Like [`pattern_at`](Self::pattern_at), into a grid and with working memory that already
-    /// exist.
+    /// Writes the intensity of [`pattern_at`](Self::pattern_at) into an existing grid, with
+    /// existing working memory.
     ///
     /// # Panics
     ///
@@ -91,9 +91,9 @@ impl PupilField {
     /// Returns the complex amplitude behind the pupil displaced by `offset` diameters and out of
     /// focus by `defocus`: the exact field, by one Fourier transform.
     ///
-    /// It is seen in the pupil's own frame, its band about zero frequency. The fields of two
-    /// displacements are compared in the frame of the lattice, `U(r) exp(−2πi c₀·r / Q)` with the
-    /// lattice point c₀ nearest to `offset · C`.
+    /// The field is given in the pupil's own frame, with its band centred on zero frequency. To
+    /// compare the fields of two displacements, use the frame of the lattice,
+    /// `U(r) exp(−2πi c₀·r / Q)` with the lattice point c₀ nearest to `offset · C`.
     ///
     /// # Panics
     ///
@@ -119,7 +119,8 @@ impl PupilField {
         SpeckleField::new(values, self.speckle_size())
     }
 
-    /// Like [`speckle`](Self::speckle), into a grid and with working memory that already exist.
+    /// Writes the amplitude of [`speckle`](Self::speckle) into an existing grid, with existing
+    /// working memory.
     ///
     /// # Panics
     ///
@@ -153,7 +154,7 @@ impl PupilField {
     }
 
     /// The field in the pupil about a lattice point, over the box of its mask. The squares of an
-    /// external field sum to 1, or to 0 where there is no light.
+    /// external field sum to 1, or to 0 if the pupil contains no light.
     pub(crate) fn seen(&self, centre: [i64; 2]) -> Grid<Complex<f32>> {
         let aperture = self.aperture_of_point(centre, None);
         let [width, height] = aperture.extent();

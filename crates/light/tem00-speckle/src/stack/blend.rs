@@ -7,15 +7,15 @@ use tem00_numerics::cast::to_signed;
 
 use crate::SpeckleStack;
 
-/// The centre of a pupil, as seen from the first one of a blend, and its weight.
+/// The centre of a pupil relative to the first pupil of a blend, and its weight.
 type Part = ([i64; 2], f64);
 
 impl SpeckleStack {
-    /// Returns the correlation γ of the intensities looked up at the samples at two coordinates u
-    /// and v, on slices or between: by the counted overlaps of their pupils, exactly.
+    /// Returns the exact correlation γ of the intensities looked up at the samples at two
+    /// coordinates u and v, on slices or between them, from the counted overlaps of their pupils.
     ///
-    /// Both have the period of the stack; for a still stack it is 1. Coordinates that are not
-    /// finite have nothing in common: 0.
+    /// It is periodic in both coordinates with the period of the stack; for a still stack it is 1.
+    /// For coordinates that are not finite it is 0.
     ///
     /// # Examples
     ///
@@ -60,9 +60,9 @@ impl SpeckleStack {
         }
     }
 
-    /// The covariances of the amplitudes of two blends. Where the lattice closes early their pupils
-    /// may meet from both sides, as waves that the tile averages apart unless they are periods of
-    /// it apart.
+    /// The covariances of the amplitudes of two blends. Where the lattice closes early, the pupils
+    /// may overlap from both sides. The two overlaps are waves that average out over the tile
+    /// unless they differ by periods of it.
     fn covariances(&self, a: &[Part], b: &[Part]) -> BTreeMap<[i64; 2], Complex<f64>> {
         let nearest = self.field.shift(a[0].0, b[0].0);
         let way = [0, 1].map(|axis| nearest[axis] - (b[0].0[axis] - a[0].0[axis]));

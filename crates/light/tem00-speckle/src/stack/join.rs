@@ -1,4 +1,4 @@
-//! The slices of a stack, and how each joins the next.
+//! Slices of a stack, and their joins to the next slice.
 
 use num_complex::Complex;
 use tem00_numerics::{Grid, cast::to_c64, cast::to_signed};
@@ -12,7 +12,7 @@ use crate::{
     stack::workers::map_with_scratch,
 };
 
-/// The interpolation's coefficients of one slice, and how it joins the next.
+/// The interpolation coefficients of one slice, and its join to the next.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Slice<C = Grid<Complex<f32>>> {
     pub(crate) coefficients: C,
@@ -22,7 +22,7 @@ pub(crate) struct Slice<C = Grid<Complex<f32>>> {
     pub(crate) join: Join,
 }
 
-/// The way from one slice to the next.
+/// The join of one slice to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Join {
     /// Displacement of the next slice's pupil.
@@ -31,7 +31,7 @@ pub(crate) struct Join {
     pub(crate) turns: [f64; 2],
     /// Overlap of both pupils.
     pub(crate) overlap: f64,
-    /// The covariance of the interpolated amplitudes: the overlap, but for what interpolation does.
+    /// The covariance of the interpolated amplitudes: the overlap, modified by the interpolation.
     pub(crate) covariance: Covariance,
 }
 
@@ -44,7 +44,7 @@ struct Joiner<'a> {
 }
 
 /// Joins the coefficients of the slices of `field`, and returns the variances: one for all slices
-/// of random phasors, one for each of external light.
+/// with random phasors, one for each slice of an external field.
 pub(super) fn join_all<C: Send>(
     field: &PupilField,
     path: SlicePath,
@@ -76,8 +76,8 @@ pub(super) fn join_all<C: Send>(
 }
 
 impl Joiner<'_> {
-    /// The join from the slice of the pupil at `centre` to that at `next`, and the variance of the
-    /// first.
+    /// The join from the slice of the pupil at `centre` to the slice at `next`, and the variance of
+    /// the first.
     fn join(&self, centre: [i64; 2], next: [i64; 2]) -> (Join, Variance) {
         let shift = self.field.shift(centre, next);
         if self.field.samples().is_none() {

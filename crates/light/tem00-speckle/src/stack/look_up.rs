@@ -1,4 +1,4 @@
-//! The look-up of a stack: at a point, at many, and as the mean over a box.
+//! Look-ups of a stack: at a point, at many points, and as the mean over a box.
 
 use core::f64::consts::TAU;
 
@@ -20,9 +20,8 @@ const LANES: usize = 16;
 impl SpeckleStack {
     /// Returns the intensity, with mean 1, at (x, y) in samples and u in slices.
     ///
-    /// A coordinate that is not finite, as that of a degenerate ray, is no place of the pattern.
-    /// Nothing is known of the speckle there but its mean, 1, which is returned: light that is
-    /// multiplied by it stays as it is.
+    /// For a coordinate that is not finite, as from a degenerate ray, the result is the mean
+    /// intensity, 1, so that the light it multiplies does not change.
     #[inline(always)]
     pub fn intensity_at(&self, x: f64, y: f64, u: f64) -> f64 {
         if !is_place([x, y, u]) {
@@ -37,11 +36,12 @@ impl SpeckleStack {
     }
 
     /// Returns the amplitude, of mean square 1, whose squared magnitude
-    /// [`intensity_at`](Self::intensity_at) returns: for light whose fields add.
+    /// [`intensity_at`](Self::intensity_at) returns: for light whose fields add up.
     ///
-    /// It is the field in the frame of the pupil of the slice at u or before it. Stacks along one
-    /// path have one frame, so that their amplitudes add at one place; those of other places and
-    /// slices add after [`ramp_at`](Self::ramp_at). It is 1 where a coordinate is not finite.
+    /// It is the field in the frame of the pupil of the slice at or before u. Stacks along one path
+    /// share this frame, so that their amplitudes at one position can be added; amplitudes of other
+    /// positions and slices can be added after [`ramp_at`](Self::ramp_at). The amplitude is 1 if a
+    /// coordinate is not finite.
     pub fn amplitude_at(&self, x: f64, y: f64, u: f64) -> Complex<f64> {
         if !is_place([x, y, u]) {
             return Complex::new(1.0, 0.0);
@@ -54,15 +54,15 @@ impl SpeckleStack {
         Complex::new(f64::from(re[0]), f64::from(im[0])) / f64::from(mean_square[0]).sqrt()
     }
 
-    /// Returns the phase, in radians, that takes the [`amplitude_at`](Self::amplitude_at) a
-    /// position into the frame of the first slice of all: `exp(−i ramp)` times the amplitude goes
-    /// on from slice to slice.
+    /// Returns the phase, in radians, that transforms the [`amplitude_at`](Self::amplitude_at) a
+    /// position into the frame of slice 0: `exp(−i ramp)` times the amplitude is continuous from
+    /// slice to slice.
     ///
     /// ```text
     /// ramp = 2π (x c_x / Q_x + y c_y / Q_y)     c the lattice point about which the pupil of the slice stands
     /// ```
     ///
-    /// It is 0 where a coordinate is not finite.
+    /// The phase is 0 if a coordinate is not finite.
     pub fn ramp_at(&self, x: f64, y: f64, u: f64) -> f64 {
         let centre = self.path().centre(to_i64(u.floor()), &self.field);
         let [width, height] = self.size().map(|samples| samples as f64);
@@ -70,12 +70,12 @@ impl SpeckleStack {
         if turns.is_finite() { TAU * turns } else { 0.0 }
     }
 
-    /// Writes the intensities at many points into `intensity`, the same bits as
+    /// Writes the intensities at many points into `intensity`, with the same bits as from
     /// [`intensity_at`](Self::intensity_at) one by one.
     ///
-    /// Points between the same two slices, one after the other, are looked up together, and those
-    /// that also lie close to each other fastest. The feature `simd` takes the widest vector
-    /// instructions of the processor, for the same bits.
+    /// Consecutive points between the same two slices are looked up together; points that also lie
+    /// close to each other are fastest. The feature `simd` uses the widest vector instructions of
+    /// the processor, with the same bits.
     ///
     /// # Panics
     ///
@@ -104,18 +104,18 @@ impl SpeckleStack {
         self.batch([x, y, u], intensity);
     }
 
-    /// Returns the mean of the intensity over a box of `size` samples about `centre`, at u: what a
-    /// pixel sees with its full area.
+    /// Returns the mean of the intensity over a box of `size` samples about `centre`, at u: the
+    /// value of a pixel with its full area.
     ///
     /// For renderers that multiply speckle onto a finished image, and for pixels that are not much
     /// smaller than a speckle: looked up at its centre, such a pixel would show too much contrast.
     ///
-    /// The mean is a sum over 5 × 5 points of Gauss and Legendre for each speckle of the box, and
-    /// over at most one period of the pattern along each axis, however large the box. It errs by
-    /// less than 4e−5 of the amplitude of the finest fringes, those at the intensity's cut-off, and
-    /// by far less of all others. The images that cubic splines leave of the finest fringes, (2s −
-    /// 1)⁻⁴ of them for speckles of s samples, are met by such a sum by chance. It is 1 where
-    /// `centre`, `size` or `u` is not finite.
+    /// The mean is a sum over 5 × 5 Gauss–Legendre points for each speckle of the box, and over at
+    /// most one period of the pattern along each axis for a box of any size. Its error is below
+    /// 4e−5 of the amplitude of the finest fringes, at the intensity's cut-off, and far smaller for
+    /// all other fringes. The cubic spline leaves images of the finest fringes, with the relative
+    /// amplitude (2s − 1)⁻⁴ for speckles of s samples, which such a sum samples at random. The mean
+    /// is 1 if `centre`, `size` or `u` is not finite.
     ///
     /// # Panics
     ///

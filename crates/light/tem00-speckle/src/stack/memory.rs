@@ -1,4 +1,4 @@
-//! The memory of a stack: asked for before it is used.
+//! Memory of a stack, which is checked before it is used.
 
 use num_complex::Complex;
 use tem00_numerics::{Grid, available_memory};
@@ -8,12 +8,12 @@ use crate::{SlicePath, SpeckleError, pupil::too_large};
 /// Options of a [`SpeckleStack`](crate::SpeckleStack).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StackOptions {
-    /// The bytes that the slices may take, [`u64::MAX`] by default.
+    /// The memory limit of the slices, in bytes; [`u64::MAX`] by default.
     ///
-    /// Many systems grant any memory that is asked for and end the program when it is used. Where
-    /// the system says what it has available (Linux), more is an error without a limit too;
-    /// elsewhere, and in a container that may have less, only a limit keeps a stack that is too
-    /// large from that.
+    /// Many systems grant any request for memory and end the program when it uses the memory. Where
+    /// the system reports its available memory (Linux), a stack that needs more is an error even
+    /// without a limit. Elsewhere, and in a container that may have less memory, only a limit
+    /// prevents a stack that is too large.
     pub memory_limit: u64,
 }
 
@@ -32,9 +32,10 @@ pub(crate) const fn check_limit(needed: u64, limit: u64) -> Result<(), SpeckleEr
     Ok(())
 }
 
-/// Room for the slices along `path`, or an error if there is none for all of them.
+/// Reserves memory for the slices along `path`, or returns an error if it does not suffice for all
+/// of them.
 ///
-/// It is only used, and taken from the machine, when the slices are filled in.
+/// The memory is only used, and taken from the machine, when the slices are filled.
 pub(crate) fn reserve(
     path: SlicePath,
     size: [usize; 2],

@@ -10,23 +10,23 @@ use crate::{Pupil, PupilField, SpeckleError, pupil::lattice::Lattice};
 /// Path of the pupil over the lattice from slice to slice of a stack.
 ///
 /// `half_period` is the number M of slices to the first uncorrelated one; the stack is cyclic with
-/// 2M slices. More slices cost memory and buy a smaller error of the blend between them.
+/// 2M slices. More slices need more memory and reduce the error of the blend between them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SlicePath {
     /// Single slice: the pattern moves, but does not change.
     Still,
-    /// A circle of diameter C about the lattice's origin, as in the paper. Slices i and i + M stand
-    /// on opposite sides and just cease to overlap.
+    /// A circle of diameter C about the lattice's origin, as in the paper. The pupils of slices i
+    /// and i + M lie on opposite sides and just cease to overlap.
     ///
-    /// The correlation depends on the distance of two slices alone for pupils of rotational
-    /// symmetry; behind a rectangle it also depends on the direction.
+    /// For pupils with rotational symmetry the correlation depends on the distance of two slices
+    /// alone; behind a rectangle it also depends on the direction.
     Circle {
         /// Half the number of slices, M.
         half_period: usize,
     },
     /// A straight line along x over a lattice that closes after `length` pupil diameters. Slices
     /// are uncorrelated from `2M / length` slices on, which is M for a length of 2, until `length`
-    /// − 1 diameters: a motion over so many diameters never returns to speckle it has left.
+    /// − 1 diameters: a motion up to this length never returns to speckle that it has left.
     Straight {
         /// Half the number of slices, M.
         half_period: usize,
@@ -51,7 +51,7 @@ impl SlicePath {
         }
     }
 
-    /// Returns the slices that a motion of the pupil by its diameter passes.
+    /// Returns the number of slices per motion of the pupil by its diameter.
     pub const fn slices_per_diameter(self) -> f64 {
         match self {
             Self::Still => 1.0,
@@ -63,8 +63,8 @@ impl SlicePath {
         }
     }
 
-    /// Returns the largest motion of the pupil that the slices tell apart from every smaller one,
-    /// in its diameters: the length of their path less the diameter of the pupil itself.
+    /// Returns the largest motion of the pupil, in pupil diameters, that the slices distinguish
+    /// from every smaller motion: the length of their path minus the diameter of the pupil.
     pub const fn reach(self) -> f64 {
         match self {
             Self::Still => 0.0,
@@ -73,7 +73,8 @@ impl SlicePath {
         }
     }
 
-    /// Returns the bytes of a stack of W × H samples along this path: 8 per sample.
+    /// Returns the memory, in bytes, of a stack of W × H samples along this path: 8 bytes per
+    /// sample.
     ///
     /// # Examples
     ///
@@ -95,7 +96,7 @@ impl SlicePath {
     /// # Errors
     ///
     /// Returns an error if the half period is zero or above
-    /// [`MAX_HALF_PERIOD`](Self::MAX_HALF_PERIOD), or the length below 2 or above
+    /// [`MAX_HALF_PERIOD`](Self::MAX_HALF_PERIOD), or if the length is below 2 or above
     /// [`MAX_LENGTH`](Self::MAX_LENGTH).
     pub fn check(self) -> Result<(), SpeckleError> {
         match self {
@@ -113,13 +114,13 @@ impl SlicePath {
         }
     }
 
-    /// The pupil's centre for slice `index`, in its diameters.
+    /// The pupil's centre for slice `index`, in pupil diameters.
     pub(crate) fn offset(self, index: usize, field: &PupilField) -> [f64; 2] {
         let centre = self.centre(to_signed(index), field);
         [0, 1].map(|axis| centre[axis] as f64 / field.diameter()[axis])
     }
 
-    /// The field on the lattice that the path closes on.
+    /// The field on the lattice on which the path is closed.
     pub(crate) fn close(self, field: &PupilField) -> PupilField {
         match self {
             Self::Still | Self::Circle { .. } => field.clone(),
@@ -202,8 +203,8 @@ pub(crate) struct PathLaw {
 /// overlap(f) = [(1 − f) a + f b] / √(1 − 2 f (1 − f) (1 − ρ))
 /// ```
 ///
-/// with the overlaps a and b of that slice with each of the two, and their own, ρ: the blend is
-/// divided by its root mean square.
+/// with the overlaps a and b of the earlier slice with the two slices, and the overlap ρ of the
+/// two: the blend is divided by its root mean square.
 struct Blend {
     overlaps: [f64; 2],
     /// 1 − ρ.
@@ -217,8 +218,9 @@ impl Blend {
         (a + fraction * (b - a)) / power.sqrt()
     }
 
-    /// The fraction at which the overlap has fallen to `overlap`, which lies between those of both
-    /// slices: the smaller root of A f² + 2 B f + C, whose discriminant has the factor `overlap`².
+    /// The fraction at which the overlap has fallen to `overlap`, a value between the overlaps of
+    /// both slices: the smaller root of A f² + 2 B f + C, whose discriminant has the factor
+    /// `overlap`².
     fn fraction(&self, overlap: f64) -> f64 {
         let ([a, b], k, g) = (self.overlaps, self.apart, overlap);
         let step = b - a;
@@ -226,7 +228,7 @@ impl Blend {
         let rest = ((a - g) * (a + g)).max(0.0);
         let inner = step * step + 2.0 * k * a * b - k * (2.0 - k) * g * g;
         let root = g * inner.max(0.0).sqrt();
-        // Both are zero where nothing has fallen.
+        // Both are zero where the overlap has not fallen.
         (rest / (root - half_slope + f64::MIN_POSITIVE)).clamp(0.0, 1.0)
     }
 }
@@ -259,10 +261,10 @@ impl PathLaw {
         self.blend_after(to_usize(u)).overlap(u.fract())
     }
 
-    /// Puts the smallest u ≥ 0 at which the overlap has fallen to each of `overlaps` in its place;
-    /// NaN counts as no overlap.
+    /// Replaces each of `overlaps` by the smallest u ≥ 0 at which the overlap has fallen to its
+    /// value; NaN counts as no overlap.
     pub(crate) fn coordinates_of(&self, overlaps: &mut [f64]) {
-        // The blend in which the last one was found, and the overlaps to which it falls.
+        // The blend in which the previous coordinate was found, and the overlaps to which it falls.
         let (mut before, mut blend) = (0, self.blend_after(0));
         let mut range = self.fall_after(0);
         for overlap in overlaps {
@@ -291,7 +293,7 @@ impl PathLaw {
         [self.lowest[index], next.copied().unwrap_or(f64::INFINITY)]
     }
 
-    /// The blend of slice `index` and the next, beside slice 0.
+    /// The blend of slice `index` and the next, relative to slice 0.
     fn blend_after(&self, index: usize) -> Blend {
         let [here, to_next] = self.overlaps[index];
         let [next, _] = self.overlaps[index + 1];

@@ -2,41 +2,42 @@ use tem00_numerics::cast::to_usize;
 
 use crate::{PupilField, SlicePath, SpeckleError, SpeckleStack, StackOptions};
 
-/// Requirements on a stack: the look-ups that it is for.
+/// Requirements of the look-ups on a stack.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StackNeeds {
     /// Width and height of the image, in pixels.
     pub image: [f64; 2],
-    /// Width and height of all that is looked up in any frame, in pixels: the image, and what lies
-    /// beyond its edges if motion brings it in.
+    /// Width and height of the region that is looked up in any frame, in pixels: the image, and the
+    /// parts beyond its edges that motion brings in.
     pub region: [f64; 2],
     /// The speckle size `h = λ d / D` on the sensor, in pixels.
     pub speckle_size: f64,
-    /// The largest motion of the pupil over the speckle, in its diameters, or `None` if the speckle
-    /// never changes.
+    /// The largest motion of the pupil over the speckle, in pupil diameters, or `None` if the
+    /// speckle never changes.
     pub motion: Option<f64>,
     /// The number of frames among which the speckle is compared.
     pub frames: u32,
-    /// The bytes that the slices may take.
+    /// The memory limit of the slices, in bytes.
     pub memory_limit: u64,
 }
 
-/// Sizes of a stack that repeats nothing where it is looked up and takes no more memory than that
-/// needs.
+/// Sizes of a stack that does not repeat within the looked-up region and takes no more memory than
+/// necessary.
 ///
-/// - The diameter of the pupil field is at least the region in speckles, along each axis, for the
-///   pattern repeats after so many: `C ≥ region / speckle_size`. It is rounded up to the next
-///   multiple of 8 without prime factors above 5, and is at least 32. If that takes too much
-///   memory, or more than a pattern can hold, the image alone repeats nothing.
-/// - The pattern has twice that size, `Q = 2 C`: the intensity's Nyquist limit.
-/// - The slices lie on a straight path. For two frames it is two diameters long: what has left the
-///   pupil is new, wherever it is looked up. More frames ask for a path that ends clear of its
+/// - The diameter of the pupil field, the number of speckles after which the pattern repeats, is at
+///   least the size of the region in speckles along each axis: `C ≥ region / speckle_size`. It is
+///   rounded up to the next multiple of 8 without prime factors above 5, and is at least 32. If
+///   such a pattern takes too much memory, or exceeds the largest pattern, it covers the image
+///   alone without repetition.
+/// - The pattern has twice this size, `Q = 2 C`: the Nyquist limit of the intensity.
+/// - The slices lie on a straight path. For two frames it is two diameters long: speckle that has
+///   left the pupil is new at any look-up. More frames need a path whose end does not overlap its
 ///   start.
-/// - Their number is the largest of 32, 16, 8 or 4 per diameter that fits the memory. Blended
-///   look-ups exceed the correlation law by up to 0.04, 0.08, 0.14 or 0.23.
+/// - The number of slices per diameter is the largest of 32, 16, 8 or 4 that fits the memory.
+///   Blended look-ups exceed the correlation law by up to 0.04, 0.08, 0.14 or 0.23.
 ///
-/// What does not fit so is shortened: a path that is too short for the motion gives speckle of some
-/// late frames to others, which [`holds_motion`](Self::holds_motion) tells.
+/// If even this does not fit, the path is shortened: with a path that is too short for the motion,
+/// some late frames share their speckle, which [`holds_motion`](Self::holds_motion) reports.
 ///
 /// # Examples
 ///
@@ -67,11 +68,11 @@ pub struct StackPlan {
     path: SlicePath,
 }
 
-/// Slices per pupil diameter that are tried, the best first.
+/// Numbers of slices per pupil diameter that are tried, the best first.
 const SLICES_PER_DIAMETER: [usize; 4] = [32, 16, 8, 4];
 
-/// The longest path that is tried, in pupil diameters: with the fewest slices it has the largest
-/// period.
+/// The longest path that is tried, in pupil diameters: with the fewest slices per diameter it has
+/// the largest period.
 const LONGEST_PATH: usize = 2 * SlicePath::MAX_HALF_PERIOD / SLICES_PER_DIAMETER[3];
 
 /// The smallest pupil field that is chosen: about 800 phasors.
@@ -84,14 +85,14 @@ impl StackPlan {
     /// # Errors
     ///
     /// Returns an error if a side or the speckle size of `needs` is not positive and finite, or its
-    /// motion negative or not finite, if the image holds more speckles than the largest pattern, or
-    /// if not even the smallest stack fits the memory.
+    /// motion is negative or not finite, if the image holds more speckles than the largest pattern,
+    /// or if even the smallest stack does not fit the memory.
     pub fn new(needs: &StackNeeds) -> Result<Self, SpeckleError> {
         Self::first_within(Self::candidates(needs)?, needs.memory_limit)
     }
 
-    /// Creates the plan of known sizes: of the pattern in samples, of the pupil in lattice points
-    /// along each axis, and of the path.
+    /// Creates a plan from known sizes: the pattern in samples, the pupil in lattice points along
+    /// each axis, and the path.
     ///
     /// [`field`](Self::field) returns an error if a pattern cannot have them.
     pub const fn from_sizes(size: [usize; 2], diameter: [usize; 2], path: SlicePath) -> Self {
@@ -102,13 +103,13 @@ impl StackPlan {
         }
     }
 
-    /// Returns the plans for `needs` in the order of their worth, whatever memory they take: all
-    /// that is asked for with fewer and fewer slices, then for the image alone, then on a shorter
-    /// path.
+    /// Returns the plans for `needs` from the best to the worst, without regard to memory: first
+    /// plans that meet all needs with fewer and fewer slices, then plans for the image alone, then
+    /// plans with a shorter path.
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new), the memory aside.
+    /// Returns the errors of [`new`](Self::new), except for the memory.
     pub fn candidates(needs: &StackNeeds) -> Result<Vec<Self>, SpeckleError> {
         needs.check()?;
         let sizes = needs.sizes();
@@ -142,7 +143,8 @@ impl StackPlan {
     ///
     /// # Errors
     ///
-    /// Returns an error if there is none: that of the sizes, if a plan fits the memory.
+    /// Returns an error if there is no such plan: the error of the sizes if a plan fits the memory,
+    /// the memory limit otherwise.
     pub fn first_within(
         plans: impl IntoIterator<Item = Self>,
         memory_limit: u64,
@@ -238,9 +240,9 @@ impl StackPlan {
         self.path.reach()
     }
 
-    /// Returns the largest motions to either side of the reference that the slices tell apart, in
-    /// pupil diameters, for motions of which the largest are `shifts`: where both sides move, each
-    /// gets its part of the [reach](Self::reach).
+    /// Returns the largest motions to either side of the reference that the slices distinguish, in
+    /// pupil diameters, for motions whose largest shifts are `shifts`: with motion to both sides,
+    /// each side gets its part of the [reach](Self::reach).
     pub fn reaches(&self, shifts: [f64; 2]) -> [f64; 2] {
         let [before, after] = shifts;
         if before == 0.0 || after == 0.0 {
@@ -249,9 +251,9 @@ impl StackPlan {
         shifts.map(|part| self.reach() * part / (before + after))
     }
 
-    /// Returns the place in a stack of pattern `number` of several that share it, in periods along
-    /// x and y: the points of the sequence of Roberts (2018), far apart from each other. The first
-    /// is at the origin.
+    /// Returns the position of pattern `number` in a stack that several patterns share, in periods
+    /// along x and y. The positions are the points of the sequence of Roberts (2018), far apart
+    /// from each other, and the first is the origin.
     pub fn place(number: usize) -> [f64; 2] {
         /// The plastic ratio: the root of x³ = x + 1.
         const PLASTIC: f64 = 1.324_717_957_244_746;
@@ -259,20 +261,20 @@ impl StackPlan {
         [PLASTIC, PLASTIC * PLASTIC].map(|step| (number / step).fract())
     }
 
-    /// Returns whether a pupil diameter has the 16 slices from which a stack of one's own is worth
-    /// more than a place in one with more slices: the blend between fewer exceeds the correlation
-    /// law by up to 0.11.
+    /// Returns whether a pupil diameter has at least 16 slices. From this number on a separate
+    /// stack is better than a position in a shared stack with more slices; with fewer slices the
+    /// blend exceeds the correlation law by up to 0.11.
     pub fn blends_closely(&self) -> bool {
         self.slices_per_diameter() >= 16.0
     }
 
-    /// Returns whether the pattern repeats nothing within the region.
+    /// Returns whether the pattern does not repeat within the region.
     pub fn holds_region(&self, needs: &StackNeeds) -> bool {
         (0..2).all(|axis| self.diameter[axis] as f64 >= needs.region[axis] / needs.speckle_size)
     }
 
-    /// Returns whether each frame has the speckle of its own motion. With two frames it always has:
-    /// speckle beyond the reach is new.
+    /// Returns whether each frame has the speckle of its own motion. With two frames this is always
+    /// the case, since speckle beyond the reach is new.
     pub fn holds_motion(&self, needs: &StackNeeds) -> bool {
         needs.frames <= 2 || needs.motion.is_none_or(|motion| motion <= self.reach())
     }
@@ -281,8 +283,8 @@ impl StackPlan {
     ///
     /// # Errors
     ///
-    /// Returns an error if its sizes are out of range; those that [`new`](Self::new) chooses never
-    /// are.
+    /// Returns an error if its sizes are out of range; the sizes that [`new`](Self::new) chooses
+    /// are always in range.
     pub fn field(&self, seed: u64) -> Result<PupilField, SpeckleError> {
         if self.size[0] == self.size[1] {
             return PupilField::new(self.size[0], self.diameter[0], seed);
@@ -295,7 +297,7 @@ impl StackPlan {
     ///
     /// # Errors
     ///
-    /// As [`field`](Self::field) and [`SpeckleStack::generate_with`].
+    /// Returns the errors of [`field`](Self::field) and [`SpeckleStack::generate_with`].
     pub fn stack(&self, seed: u64, options: StackOptions) -> Result<SpeckleStack, SpeckleError> {
         SpeckleStack::generate_with(&self.field(seed)?, self.path, options)
     }
@@ -323,7 +325,7 @@ impl StackNeeds {
         }
     }
 
-    /// Returns plans of one slice, for the region and for the image.
+    /// Returns plans with one slice, for the region and for the image.
     fn sizes(&self) -> [StackPlan; 2] {
         [self.region, self.image].map(|sides| {
             let diameter = sides.map(|side| diameter_for(side / self.speckle_size));
@@ -337,9 +339,9 @@ impl StackNeeds {
 }
 
 /// The smallest multiple of 8 without prime factors above 5 that covers `speckles` speckles: a size
-/// that Fourier transforms like.
+/// for which Fourier transforms are fast.
 fn diameter_for(speckles: f64) -> usize {
-    // What is too large is refused by the pupil field.
+    // The pupil field refuses sizes that are too large.
     let smallest = to_usize(speckles.ceil()).max(SMALLEST_DIAMETER);
     let multiples = smallest.div_ceil(8)..=PupilField::MAX_SIZE / 8;
     multiples
@@ -357,8 +359,8 @@ fn is_smooth(mut number: usize) -> bool {
     number == 1
 }
 
-/// The length of a straight path, in pupil diameters, that ends clear of its start after a motion
-/// of `motion` diameters.
+/// The length of a straight path, in pupil diameters, whose end does not overlap its start after a
+/// motion of `motion` diameters.
 fn length_for(motion: f64) -> usize {
     to_usize((1.0 + motion).ceil()).clamp(2, LONGEST_PATH)
 }

@@ -1,4 +1,4 @@
-//! The mean of a band-limited, periodic function over an interval of any length.
+//! Mean of a band-limited, periodic function over an interval of any length.
 
 use tem00_numerics::quadrature::gauss_legendre;
 
@@ -15,7 +15,7 @@ const GAUSS: [(f64, f64); 5] = gauss_legendre();
 /// Nodes for the mean over the interval of `size` about `centre` of a function with the period
 /// `period` and without frequencies above 1/`finest`.
 ///
-/// Whole periods are summed by the trapezoidal rule, which is exact there, and what is left of the
+/// Whole periods are summed by the trapezoidal rule, which is exact for them, and the rest of the
 /// interval by panels of at most one period of the finest waves.
 pub(crate) fn mean_nodes(centre: f64, size: f64, period: f64, finest: f64) -> Vec<Node> {
     let rest = size % period;
@@ -34,7 +34,7 @@ pub(crate) fn mean_nodes(centre: f64, size: f64, period: f64, finest: f64) -> Ve
         nodes.extend(counted(count).map(node));
     }
     if whole < 1.0 {
-        // Reduced first, so that nodes far out keep their distances.
+        // The centre is reduced first, so that nodes far out keep their distances.
         let middle = centre.rem_euclid(period) - (0.5 * size).rem_euclid(period) + 0.5 * rest;
         let count = (rest / finest).ceil().max(1.0);
         let width = rest / count;
@@ -79,7 +79,7 @@ mod tests {
         let (period, finest) = (64.0, 3.2);
         let mut worst = 0.0_f64;
         for size in [0.0, 0.5, 3.2, 3.3, 17.0, 63.9, 64.0, 64.1, 128.0, 1000.3] {
-            // The last is 5.25 after 2⁴⁰ periods, where numbers lie 2⁻⁶ apart.
+            // The last centre is 5.25 after 2⁴⁰ periods, where numbers are 2⁻⁶ apart.
             for centre in [0.0, 5.3, -700.25, 5.25 + 64.0 * 2.0_f64.powi(40)] {
                 let nodes = mean_nodes(centre, size, period, finest);
                 let weights: f64 = nodes.iter().map(|n| n.weight).sum();

@@ -7,12 +7,12 @@ use crate::{
     stack::Slice,
 };
 
-/// The closed forms of a slice, for look-ups that run where no library can be called.
+/// Closed forms of a slice, for look-ups where no library can be called.
 ///
 /// A kernel on a GPU, or of a renderer that compiles its own, interpolates the
 /// [`coefficients`](crate::SpeckleStack::coefficients) of the slice i and of the next in one plane.
-/// With the fraction f of the way between them and the fractions `fx`, `fy` of the way between the
-/// samples, the intensity is
+/// With the fraction f of the distance between the slices and the fractions `fx`, `fy` of the
+/// distance between the samples, the intensity is
 ///
 /// ```text
 /// U = (1 − f) U_i + f U_{i+1} exp(2πi (turns[0] x + turns[1] y))
@@ -23,7 +23,7 @@ use crate::{
 /// s(f) = 1, p, p², p³, o, o p          p = f (1 − f),  o = p (1 − 2 f)
 /// ```
 ///
-/// as [`intensity_at`](crate::SpeckleStack::intensity_at) has it. On a slice, where f is 0, it is
+/// as in [`intensity_at`](crate::SpeckleStack::intensity_at). On a slice, where f is 0, it is
 /// |`U_i`|² / `v_i`. x and y lie in one period, from 0 to the [size](crate::SpeckleStack::size).
 ///
 /// # Examples
@@ -47,8 +47,8 @@ pub struct SliceLaw {
     pub mean_square: [[f32; EVEN]; EVEN],
     /// The covariance w with the next slice: coefficients `[ny][nx]` of all shapes.
     pub covariance: [[f32; SHAPES]; SHAPES],
-    /// The turns of phase per sample, along x and y, from the frame of the next slice to that of
-    /// this one.
+    /// The turns of phase per sample, along x and y, from the frame of the next slice to the frame
+    /// of this one.
     pub turns: [f64; 2],
 }
 

@@ -34,8 +34,8 @@ impl StackSource {
     ///
     /// # Errors
     ///
-    /// Returns an error if the half period of `path` is zero or too large, if its length is, or if
-    /// the slices take more than the memory limit.
+    /// Returns an error if the half period or the length of `path` is zero or too large, or if the
+    /// slices take more than the memory limit.
     pub fn new(
         field: &PupilField,
         path: SlicePath,
@@ -52,8 +52,8 @@ impl StackSource {
         })
     }
 
-    /// Returns the field that the slices are cut from. That of a straight path closes on itself
-    /// after the length of the path.
+    /// Returns the field from which the slices are cut. For a straight path the field closes on
+    /// itself after the length of the path.
     pub const fn field(&self) -> &PupilField {
         &self.field
     }
@@ -67,8 +67,8 @@ impl StackSource {
         self.path
     }
 
-    /// Returns what slice `index` is transformed from, prefiltered for the interpolation: its
-    /// amplitudes are the coefficients of the stack.
+    /// Returns the aperture of slice `index`, prefiltered for the interpolation: the amplitudes of
+    /// its transform are the coefficients of the stack.
     pub fn slice(&self, index: usize) -> Aperture<'_> {
         let centre = self.path.centre(to_signed(index), &self.field);
         self.field.aperture_of_point(centre, Some(&self.filters))

@@ -1,8 +1,9 @@
-//! Work on slices, by all threads where the feature `parallel` allows it.
+//! Work on slices, by all threads with the feature `parallel`.
 
 use crate::SpeckleScratch;
 
-/// Maps every item of a list, with one working memory per thread; items never depend on each other.
+/// Maps every item of a list, with one working memory per thread; items are independent of each
+/// other.
 pub(crate) fn map_with_scratch<T: Send, R: Send>(
     items: Vec<T>,
     map: impl Fn(usize, T, &mut SpeckleScratch) -> R + Sync + Send,

@@ -1,4 +1,4 @@
-//! Look-ups on a slice, or between two.
+//! Look-ups on a slice, or between two slices.
 
 use crate::{
     SpeckleStack,
@@ -18,7 +18,7 @@ pub(super) struct Layer<'a> {
     next: Option<&'a Slice>,
 }
 
-/// Positions of coordinates u: the slice, whether they lie beyond it, and the fraction to the next.
+/// Positions of coordinates u: the slice, whether u lies beyond it, and the fraction to the next.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Positions<const L: usize> {
     pub(super) slices: [usize; L],
@@ -56,8 +56,8 @@ impl SpeckleStack {
 }
 
 impl Layer<'_> {
-    /// The period of the finest fringes along an axis. Between two slices these are finer than a
-    /// speckle: the pupils together are wider than one.
+    /// The period of the finest fringes along an axis. Between two slices the fringes are finer
+    /// than a speckle, since two pupils together are wider than one.
     pub(super) fn finest(&self, axis: usize, period: f64, speckle_size: f64) -> f64 {
         let step = self.next.map_or(0.0, |_| self.here.join.step[axis]);
         period / (period / speckle_size + step.abs())
@@ -147,8 +147,8 @@ impl Layer<'_> {
     reason = "the bits of complete turns are dropped on purpose"
 )]
 fn phase(turns: f64) -> u32 {
-    // Between 2²⁰ and 2²¹ the last bit of a number is worth 2⁻³², so that the lower half of them
-    // counts the fraction.
+    // Between 2²⁰ and 2²¹ the last bit of a number is worth 2⁻³², so that the lower half of the
+    // bits holds the fraction.
     const UNITS: f64 = 1.5 * (1_u64 << 20) as f64;
     (turns + UNITS).to_bits() as u32
 }

@@ -1,19 +1,19 @@
-//! Look-ups of many points in single precision, as renderers keep them.
+//! Look-ups of many points in single precision, the format of renderers.
 
 use crate::SpeckleStack;
 
-/// Points that are widened at a time: they stay in the cache.
+/// Number of points that are widened together, small enough for the cache.
 const POINTS: usize = 512;
 
 impl SpeckleStack {
-    /// Writes the intensities at many points into `intensity`: those of
+    /// Writes the intensities at many points into `intensity`: the results of
     /// [`intensity_at`](Self::intensity_at) at these coordinates, rounded.
     ///
     /// # Validity
     ///
-    /// Rounding the intensity costs 6e−8 of it. Coordinates are exact where they are kept in `f32`
-    /// alone; a place that is rounded to it moves by up to 3e−8 of its distance from 0, half of
-    /// 2.4e−4 samples beyond 2048. Whole periods taken off before cost nothing.
+    /// Rounding changes the intensity by 6e−8 of its value. Coordinates that are `f32` from the
+    /// start are exact; a coordinate rounded to `f32` moves by up to 3e−8 of its distance from 0,
+    /// half of 2.4e−4 samples beyond 2048. Whole periods can be subtracted beforehand without loss.
     ///
     /// # Panics
     ///
@@ -37,8 +37,8 @@ impl SpeckleStack {
         });
     }
 
-    /// Writes the means over boxes of `size` samples about many points into `average`: those of
-    /// [`average_over`](Self::average_over) at these coordinates, rounded.
+    /// Writes the means over boxes of `size` samples about many points into `average`: the results
+    /// of [`average_over`](Self::average_over) at these coordinates, rounded.
     ///
     /// # Panics
     ///
@@ -58,7 +58,7 @@ impl SpeckleStack {
     }
 }
 
-/// Has `f` answer in double precision, and rounds.
+/// Evaluates `f` in double precision and rounds the results.
 #[expect(clippy::cast_possible_truncation, reason = "rounding is the purpose")]
 fn widened(coordinates: [&[f32]; 3], out: &mut [f32], mut f: impl FnMut([&[f64]; 3], &mut [f64])) {
     let lengths = coordinates.map(<[f32]>::len);

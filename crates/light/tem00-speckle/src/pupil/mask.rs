@@ -24,8 +24,8 @@ pub(crate) struct Mask {
     sums: Sums,
 }
 
-/// The columns of a row of the box that belong to the pupil: an outer span without a hole in the
-/// middle.
+/// The columns of a row of the box that belong to the pupil: an outer span minus the hole in
+/// its middle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Row {
     pub(crate) outer: Span,

@@ -8,14 +8,14 @@ use tem00_beam::{GaussianBeam, LaserLine};
 /// E(x, y, z) / P = 2 / (π w²) · exp(−2 (x′² + y²) / w²)
 /// ```
 ///
-/// The text writes one z for two distances. Here `w(z)` takes it from the waist, as eq. (1) does,
-/// and `T z` from the emitter, as a line of the angle α must have it.
+/// The text writes one z for two distances. Here z in `w(z)` is measured from the waist, as in eq.
+/// (1), and z in `T z` from the emitter, as a line of the angle α requires.
 ///
 /// # Validity
 ///
-/// The factor `w / (T z)` that a change of variable brings is missing, so that the power on a plane
-/// is [`power_per_watt`](Self::power_per_watt) instead of 1, and z → 0 is singular.
-/// [`LaserLine`] has neither fault.
+/// The factor `w / (T z)` of the change of variable is missing, so that the power on a plane is
+/// [`power_per_watt`](Self::power_per_watt) instead of 1, and z → 0 is singular. [`LaserLine`] has
+/// neither error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrintedFan {
     focus: GaussianBeam,
@@ -24,7 +24,7 @@ pub struct PrintedFan {
 }
 
 impl PrintedFan {
-    /// Returns the printed form of a line, with the emitter for its lens.
+    /// Returns the printed form of a line, with the emitter at the position of its lens.
     pub const fn new(line: &LaserLine) -> Self {
         Self {
             focus: *line.focus(),
@@ -36,7 +36,8 @@ impl PrintedFan {
     /// Returns the printed irradiance per watt, in m⁻², of a plane of constant z at `point`; 0
     /// unless `point.z` is positive.
     ///
-    /// The frame is that of the emitter: +z travel, z = 0 the emitter, the line along x.
+    /// The frame is the frame of the emitter: light travels along +z, z = 0 is the emitter, and the
+    /// line is along x.
     pub fn irradiance_per_watt(&self, point: DVec3) -> f64 {
         if point.z <= 0.0 {
             return 0.0;
@@ -46,15 +47,15 @@ impl PrintedFan {
         self.focus.irradiance_per_watt(x.hypot(point.y), from_waist)
     }
 
-    /// Returns the power, per watt of the laser, that the printed irradiance adds up to on the
+    /// Returns the integral of the printed irradiance, in watts per watt of the laser, over the
     /// plane at the distance `z`, in metres, from the emitter.
     ///
     /// ```text
     /// T z / w(z)
     /// ```
     ///
-    /// It is the ratio of the half-length of the line to its half-thickness: hundreds, and 1 if all
-    /// were right.
+    /// It is the ratio of the half-length of the line to its half-thickness, some hundreds; the
+    /// correct value is 1.
     pub fn power_per_watt(&self, z: f64) -> f64 {
         self.half_slope * z / self.focus.radius_at(z - self.focus_distance)
     }
@@ -96,7 +97,8 @@ mod tests {
         const NODES: i32 = 64;
         let fan = fan();
         for z in [0.1, 0.2, 0.4] {
-            // The trapezoidal rule on four radii converges beyond rounding; 1e−14 lies outside.
+            // The trapezoidal rule on four radii converges to rounding; 1e−14 of the power lies
+            // outside.
             let h = 4.0 * 0.25_f64.tan() * z / f64::from(NODES);
             let v = 4.0 * focus().radius_at(z - 0.2) / f64::from(NODES);
             let mut power = 0.0;
@@ -122,8 +124,8 @@ mod tests {
             let from_lens = from_apex - DVec3::Z * apex_offset;
             let printed = fan.irradiance_per_watt(from_apex) / fan.power_per_watt(z);
             let ratio = printed / line.irradiance_per_watt(from_lens);
-            // The printed form takes the width on the plane, not on the circle: to first order
-            // w changes by w'(r − z) = 2e−3 x² / 2z, 6e−8 m beside 2.3e−4 m.
+            // The printed form takes the width on the plane, not on the circle: to first order w
+            // changes by w'(r − z) = 2e−3 x² / 2z, 6e−8 m compared with 2.3e−4 m.
             assert!((ratio - 1.0).abs() < 4e-4, "x = {x}: {ratio}");
         }
     }

@@ -13,7 +13,7 @@
 //! | §6.4, linear blend of slices | [`BilinearStack`] | `SpeckleStack` | contrast 0.885 half-way between 2M = 16 slices |
 //! | §6.3 and §6.4, wraps at Q − 1 and 2M − 1 | [`BilinearStack`] | `SpeckleStack` | a jump in the pattern and in time |
 //!
-//! Of those on moving speckle the last column has the worst values, printed and correct:
+//! For the errors on moving speckle the last column gives the worst values, printed and correct:
 //!
 //! | printed | here | instead of | printed, correct |
 //! |---|---|---|---|

@@ -21,7 +21,7 @@ impl BilinearStack {
     /// # Errors
     ///
     /// Returns an error unless `1 ≤ half_period ≤ SlicePath::MAX_HALF_PERIOD`, or if the memory, 4
-    /// bytes per sample, is refused.
+    /// bytes per sample, cannot be allocated.
     pub fn generate(field: &PupilField, half_period: usize) -> Result<Self, SpeckleError> {
         let path = SlicePath::Circle { half_period };
         path.check()?;
@@ -55,8 +55,8 @@ impl BilinearStack {
     }
 
     /// Returns the intensity at (x, y) in samples and u in slices, as printed: bilinear in the
-    /// plane, linear between slices, x and y wrapped into [0, Q − 1] and u into [0, 2M − 1]. It is
-    /// the mean, 1, where a coordinate is not finite.
+    /// plane, linear between slices, x and y wrapped into [0, Q − 1] and u into [0, 2M − 1]. If a
+    /// coordinate is not finite, the result is the mean, 1.
     pub fn intensity_at(&self, x: f64, y: f64, u: f64) -> f64 {
         if ![x, y, u].iter().all(|coordinate| coordinate.is_finite()) {
             return 1.0;
@@ -67,8 +67,8 @@ impl BilinearStack {
         (1.0 - f) * here + f * next
     }
 
-    /// Returns the contrast that bilinear interpolation of the intensity leaves at the fractions
-    /// `fx` and `fy` between samples.
+    /// Returns the contrast after bilinear interpolation of the intensity at the fractions `fx` and
+    /// `fy` between samples.
     ///
     /// ```text
     /// C² = a_x a_y + b_x a_y ρ₁₀ + a_x b_y ρ₀₁ + b_x b_y ρ₁₁ − 1/N
@@ -86,8 +86,8 @@ impl BilinearStack {
         (squared - self.fixed_mean()).max(0.0).sqrt()
     }
 
-    /// Returns the contrast that the linear blend leaves at the fraction `f` between the slices
-    /// `index` and `index + 1`.
+    /// Returns the contrast after the linear blend at the fraction `f` between the slices `index`
+    /// and `index + 1`.
     ///
     /// ```text
     /// C² = (1 − f)² + f² + 2 f (1 − f) ρ² − 1/N [(1 − f)² + f² + 2 f (1 − f) ρ]
@@ -114,7 +114,7 @@ impl BilinearStack {
             .sqrt()
     }
 
-    /// The variance that a pattern lacks because its mean is fixed.
+    /// The variance that is missing from a pattern because its mean is fixed.
     fn fixed_mean(&self) -> f64 {
         match self.field.phasors() {
             Some(Phasors::Gaussian) => 0.0,
@@ -219,7 +219,7 @@ mod tests {
             let [fx, fy] = fractions;
             let expected = stack(size, 32, 1, 0).contrast_between_samples(fx, fy);
             // The spread of a tile's squared contrast is 1.53/C; α = 6e−5. The row and the column
-            // that the printed wrap leaves out shift the mean by some 1/64 · 2/√(2C).
+            // that the printed wrap omits shift the mean by about 1/64 · 2/√(2C).
             let tolerance = 4.0 * 1.53 / 32.0 / f64::from(SEEDS).sqrt();
             assert_absolute(variance, expected * expected, tolerance);
             assert!((mean - 1.0).abs() < 0.01, "{fractions:?}: mean {mean}");
@@ -241,11 +241,12 @@ mod tests {
         for f in [0.25, 0.5] {
             let (_, variance) = moments([64, 32, 8], [0.0, 0.0], 2.0 + f, SEEDS.into());
             let expected = stack(64, 32, 8, 0).contrast_between_slices(2, f);
-            // As above.
+            // The same tolerance as above.
             let tolerance = 4.0 * 1.53 / 32.0 / f64::from(SEEDS).sqrt();
             assert_absolute(variance, expected * expected, tolerance);
         }
-        // √(1 − ½ (1 − γ₁)) with γ₁ = 0.5673 for M = 8, of a pupil large enough to be a disc.
+        // √(1 − ½ (1 − γ₁)) with γ₁ = 0.5673 for M = 8, for a pupil large enough to count as a
+        // disc.
         let got = stack(1_024, 512, 8, 0).contrast_between_slices(0, 0.5);
         assert!((got - 0.885).abs() < 2e-3, "contrast {got}");
     }
@@ -268,10 +269,10 @@ mod tests {
         };
         let first = pattern(0);
         let at = |x, y, u| printed.intensity_at(x, y, u);
-        // Sample Q − 1 is never shown: the look-up is back at sample 0.
+        // Sample Q − 1 is never reached: the look-up is back at sample 0.
         assert_absolute(at(31.0, 5.0, 0.0), f64::from(first[(0, 5)]), 1e-12);
         assert_absolute(at(5.0, 31.0, 0.0), f64::from(first[(5, 0)]), 1e-12);
-        // Just before, it was at sample Q − 1: a jump.
+        // Just before, the look-up was at sample Q − 1, so that the value jumps.
         let (last, jump) = (f64::from(first[(31, 5)]), at(31.0 - 1e-9, 5.0, 0.0));
         assert!((jump - last).abs() < 1e-6, "{jump} before the wrap");
         // The same for slice 2M − 1 = 5.

@@ -1,8 +1,8 @@
 use glam::{DMat3, DVec2, DVec3};
 use tem00_decorrelation::{CameraFrame, ImagingGeometry};
 
-/// The sine of the smallest angle between two directions that have a common normal: the square root
-/// of the rounding unit.
+/// The sine of the smallest angle between two directions for which a common normal is computed: the
+/// square root of the rounding unit.
 const SMALLEST_SINE: f64 = 1.0 / 67_108_864.0;
 
 /// The two angles, in radians, by which the paper relates the camera to the surface: `q1` about n2,
@@ -26,8 +26,8 @@ impl EulerAngles {
     /// the columns of a matrix, so that its transpose takes world vectors to surface coordinates.
     ///
     /// Two angles cannot express every rotation. The axes in the surface are free, however, and
-    /// there is a choice for which two suffice: n2 across both the normal and b1, on the side that
-    /// keeps q1 within ±90°.
+    /// there is a choice for which two suffice: n2 perpendicular to both the normal and b1, on the
+    /// side that keeps q1 within ±90°.
     ///
     /// Returns `None` if the normal is zero or not finite.
     pub fn between(camera: &CameraFrame, normal: DVec3) -> Option<(DMat3, Self)> {
@@ -59,15 +59,15 @@ impl EulerAngles {
     }
 }
 
-/// Position of the light source as the paper takes it.
+/// Position of the light source in the description of the paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emitter {
     /// Unit vector from the surface to the laser emitter, in surface coordinates.
     pub direction: DVec3,
     /// Distance `d_SL` from the surface to the emitter, in metres; infinite for collimated light.
     ///
-    /// The pair is right if this is the radius of the *wavefront*. For a Gaussian beam the two
-    /// differ by any factor and in sign, and a laser line has two radii.
+    /// The printed pair is correct if this is the radius of the *wavefront*. For a Gaussian beam
+    /// distance and radius may differ by any factor and in sign, and a laser line has two radii.
     pub distance: f64,
 }
 
@@ -80,9 +80,9 @@ pub struct Emitter {
 ///           ⎝ sin q1 sin q2  cos q2   cos q1 sin q2 ⎠
 /// ```
 ///
-/// The rows of a rotation are orthogonal; these are not, unless q1 or q2 is zero: the entry at the
-/// top right must be −sin q1. The error is `2 m |a_z sin q1|` along b1. At q1 = 30° a motion along
-/// the normal goes the wrong way.
+/// The rows of a rotation are orthogonal; the printed rows are not, unless q1 or q2 is zero: the
+/// entry at the top right must be −sin q1. The error is `2 m |a_z sin q1|` along b1. At q1 = 30°
+/// the displacement for a motion along the normal has the wrong direction.
 pub fn image_displacement(magnification: f64, angles: EulerAngles, a: DVec3) -> DVec2 {
     let (s1, c1) = angles.q1.sin_cos();
     let (s2, c2) = angles.q2.sin_cos();
@@ -95,10 +95,10 @@ pub fn image_displacement(magnification: f64, angles: EulerAngles, a: DVec3) -> 
 /// displacement `a`, in metres and surface coordinates, at the distance `surface_to_pupil`, in
 /// metres: the pair of §6.4 as printed, after Sjödahl 1995.
 ///
-/// It is right where the line of sight is the optical axis and the emitter's distance is the radius
-/// of a spherical wavefront; the test suite compares it with the general law. Off the axis it takes
-/// b3 for the direction to the pupil, and misses that a motion along b3 then goes sideways. Returns
-/// `None` where the printed fractions have no value, in a grazing view.
+/// It is correct where the line of sight is the optical axis and the emitter's distance is the
+/// radius of a spherical wavefront; the test suite compares it with the general law. Off the axis
+/// it uses b3 as the direction to the pupil, and neglects that a motion along b3 then has a lateral
+/// component. Returns `None` where the printed fractions have no value, at grazing view.
 pub fn pupil_displacement(
     angles: EulerAngles,
     emitter: Emitter,
@@ -127,18 +127,18 @@ pub fn pupil_displacement(
 /// Returns the sum `a_P^C + a_P^S` of a camera motion in the pupil plane and the displacement of
 /// the speckle there, both in metres, as §6.4 combines them.
 ///
-/// If both are displacements in one frame, the camera moving *with* the speckle must see nothing
+/// If both are displacements in one frame, a camera that moves *with* the speckle must see no
 /// change: the sign of the camera motion must be negative.
 pub fn relative_pupil_displacement(camera: DVec2, surface: DVec2) -> DVec2 {
     camera + surface
 }
 
-/// Returns the axial displacement `d_z⁰ = λ [2 (1 + 1/m) F]²`, in metres, at which §6.4 takes the
-/// pattern for decorrelated.
+/// Returns the axial displacement `d_z⁰ = λ [2 (1 + 1/m) F]²`, in metres, at which §6.4 considers
+/// the pattern decorrelated.
 ///
-/// The formula of Li and Chiang leaves `(2/π)² = 0.405` there; the first zero lies at twice this
-/// length. `(1 + 1/m) F` is `L/D` for a thin lens only; in general that is `(1/m_p + 1/m) F`, with
-/// the pupil magnification `m_p`.
+/// By the formula of Li and Chiang the correlation at this displacement is `(2/π)² = 0.405`; the
+/// first zero lies at twice this length. `(1 + 1/m) F` equals `L/D` for a thin lens only; in
+/// general `L/D` is `(1/m_p + 1/m) F`, with the pupil magnification `m_p`.
 pub fn axial_decorrelation_length(geometry: &ImagingGeometry) -> f64 {
     let object_side = 2.0 * (1.0 + 1.0 / geometry.magnification()) * geometry.f_number();
     geometry.wavelength() * object_side * object_side
@@ -150,10 +150,10 @@ pub fn axial_decorrelation_length(geometry: &ImagingGeometry) -> f64 {
 /// u = (|a_P| / D + d_z / d_z⁰) M
 /// ```
 ///
-/// `pupil_displacement` and `axial_displacement` are in metres. On a circular stack this is wrong
-/// in γ by up to 0.195 for motion in the plane (at `|a_P|` = 0.273 D) and by up to 0.790 for motion
-/// along the axis (at `d_z` = 0.431 `d_z⁰`). As `d_z` has a sign, one motion can undo the
-/// decorrelation by the other, and as u is not limited to M, large motions bring the old pattern
+/// `pupil_displacement` and `axial_displacement` are in metres. On a circular stack the error of γ
+/// is up to 0.195 for motion in the plane (at `|a_P|` = 0.273 D) and up to 0.790 for motion along
+/// the axis (at `d_z` = 0.431 `d_z⁰`). Since `d_z` has a sign, one motion can undo the
+/// decorrelation by the other, and since u is not limited to M, large motions bring the old pattern
 /// back.
 pub fn slice_coordinate(
     geometry: &ImagingGeometry,
@@ -172,9 +172,10 @@ pub fn slice_coordinate(
 /// c = (h_p / h) a_I + (h_p / h_I) t
 /// ```
 ///
-/// Arguments are those of [`ImagingGeometry::pattern_coordinate`]. With `pixel` and
-/// `image_displacement` in the same axes the pattern moves by `−a_I`. The sign is right only where
-/// `image_displacement` is that of the inverted sensor and `pixel` a position on an upright screen.
+/// The arguments are as for [`ImagingGeometry::pattern_coordinate`]. With `pixel` and
+/// `image_displacement` in the same axes the pattern moves by `−a_I`. The sign is correct only if
+/// `image_displacement` is measured on the inverted sensor and `pixel` is a position on an upright
+/// screen.
 pub fn pattern_coordinate(
     geometry: &ImagingGeometry,
     pixel: DVec2,

@@ -3,10 +3,10 @@ use core::f64::consts::FRAC_2_PI;
 use glam::DVec3;
 use tem00_beam::{Axis, Emitter, GaussianBeam, LineLight, SpotLight};
 
-/// The printed next-event estimation: a point of the aperture and a radiance from there.
+/// The printed next-event estimation: a point of the aperture and the radiance from this point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrintedEvent {
-    /// Point `s` of the aperture, by the ratio of beam radii.
+    /// Point `s` of the aperture, found by the ratio of beam radii.
     pub point: [f64; 3],
     /// Distance to `point`, in metres.
     pub distance: f64,
@@ -19,15 +19,15 @@ pub struct PrintedEvent {
 /// Returns the radiance of eq. (3), `L = E / cos θ_s`, in the unit of `irradiance`; `None` unless
 /// the cosine is positive.
 ///
-/// E is the irradiance of a plane across the beam, eq. (2), and `θ_s` the angle between the normal
-/// of the surface and the light.
+/// E is the irradiance of a plane perpendicular to the beam, eq. (2), and `θ_s` the angle between
+/// the normal of the surface and the light.
 ///
 /// # Validity
 ///
-/// L has the unit W/m², not W/(m² sr): it stands before a delta distribution over directions. The
-/// division makes a surface as bright as if it faced the beam whatever its tilt, so that it
-/// receives `P / cos θ_s`: 1.15, 2.00 and 3.86 times the power at 30°, 60° and 75°, without bound
-/// at grazing incidence. [`Emitter::next_event`] does not divide.
+/// L has the unit W/m², not W/(m² sr): it is the coefficient of a delta distribution over
+/// directions. Because of the division a surface of any tilt is as bright as if it faced the beam,
+/// so that it receives `P / cos θ_s`: 1.15, 2.00 and 3.86 times the power at 30°, 60° and 75°,
+/// without bound at grazing incidence. [`Emitter::next_event`] does not divide.
 ///
 /// # Examples
 ///
@@ -40,8 +40,8 @@ pub fn radiance(irradiance: f64, cos_surface: f64) -> Option<f64> {
     (cos_surface > 0.0).then(|| irradiance / cos_surface)
 }
 
-/// Returns the point of the aperture that belongs to `receiver`, by the ratio of beam radii
-/// (section 4, step 3); both in the frame of the beam with the waist at z = 0.
+/// Returns the point of the aperture for `receiver`, by the ratio of beam radii (section 4, step
+/// 3); both in the frame of the beam with the waist at z = 0.
 ///
 /// ```text
 /// (x w_A / w_R, y w_A / w_R, z_A)
@@ -49,9 +49,9 @@ pub fn radiance(irradiance: f64, cos_surface: f64) -> Option<f64> {
 ///
 /// # Validity
 ///
-/// It follows the streamline of energy, a hyperbola, exactly. The straight line between the two
-/// points is not the direction of the flow: with a waist between them, or at the receiver, it is
-/// off by up to the whole divergence. That matters to shadows, and hardly to reflection.
+/// The point lies exactly on the streamline of energy, a hyperbola. The straight line between the
+/// two points is not the direction of the flow: with a waist between them, or at the receiver, it
+/// deviates by up to the whole divergence. This matters for shadows, and hardly for reflection.
 pub fn streamline_point(beam: &GaussianBeam, receiver: DVec3, aperture_z: f64) -> DVec3 {
     let ratio = beam.radius_at(aperture_z) / beam.radius_at(receiver.z);
     DVec3::new(receiver.x * ratio, receiver.y * ratio, aperture_z)
@@ -60,7 +60,7 @@ pub fn streamline_point(beam: &GaussianBeam, receiver: DVec3, aperture_z: f64) -
 /// Returns the printed next-event estimation of a laser spot at `p`, a point of a surface with the
 /// unit normal `n`; `None` outside the cut-off, behind the aperture, or on the unlit side.
 ///
-/// See [`radiance`] and [`streamline_point`] for what is wrong with it.
+/// See [`radiance`] and [`streamline_point`] for its errors.
 pub fn spot_next_event(light: &SpotLight, p: [f64; 3], n: [f64; 3]) -> Option<PrintedEvent> {
     let irradiance = Some(light.irradiance(p)).filter(|&e| e > 0.0)?;
     let frame = Frame::new(light.origin, [light.ex, light.ey, light.ez]);
@@ -73,9 +73,9 @@ pub fn spot_next_event(light: &SpotLight, p: [f64; 3], n: [f64; 3]) -> Option<Pr
 /// Returns the printed next-event estimation of a laser line at `p`, a point of a surface with the
 /// unit normal `n`; `None` outside the cut-off, at or behind the lens, or on the unlit side.
 ///
-/// The fan is that of [`PrintedFan`](crate::PrintedFan), which knows only the Gaussian profile, and
-/// the scaled x′ is the coordinate that the ratio of beam radii is applied to: the unscaled one
-/// would end outside the aperture. See [`radiance`] for what else is wrong with it.
+/// The fan is a [`PrintedFan`](crate::PrintedFan), which has only the Gaussian profile. The ratio
+/// of beam radii is applied to the scaled coordinate x′: the unscaled coordinate would end outside
+/// the aperture. See [`radiance`] for its other errors.
 pub fn line_next_event(light: &LineLight, p: [f64; 3], n: [f64; 3]) -> Option<PrintedEvent> {
     let frame = Frame::new(light.origin, [light.ex, light.ey, light.ez]);
     let [x, y, z] = frame.local(p);
@@ -172,7 +172,7 @@ mod tests {
                     power += printed.unwrap() * cos * h * h / cos;
                 }
             }
-            // The beam widens along the surface, which adds the square of δ tan τ / 2.
+            // The beam widens along the surface, which adds an error of the square of δ tan τ / 2.
             let tolerance = (beam().divergence() * sin / cos).powi(2) / 2.0 + 1e-12;
             assert!((power * cos - 1.0).abs() < tolerance, "{degrees}°: {power}");
         }
@@ -180,7 +180,7 @@ mod tests {
 
     #[test]
     fn the_ratio_of_radii_follows_the_energy() {
-        // dx/dz = F_x / F_z from the receiver back to the aperture, by Runge and Kutta's method.
+        // dx/dz = F_x / F_z from the receiver back to the aperture, by the Runge–Kutta method.
         const STEPS: u32 = 2_000;
         let (start, end) = (0.12, -0.15);
         let h = (end - start) / f64::from(STEPS);
@@ -199,7 +199,8 @@ mod tests {
             x += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
         }
         let point = streamline_point(&beam(), receiver, end);
-        // (h / z_R)⁴ = 2e−8 per Rayleigh range, of which there are 20; most of it cancels.
+        // The error is (h / z_R)⁴ = 2e−8 per Rayleigh range, over 20 Rayleigh ranges; most of it
+        // cancels.
         assert!((x / point.x - 1.0).abs() < 1e-8, "{x:e}, {:e}", point.x);
     }
 

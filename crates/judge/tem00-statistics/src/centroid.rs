@@ -1,5 +1,4 @@
-//! Centroids of laser lines and spots under speckle, and the spectra of rows and columns of pixels
-//! that they take.
+//! Centroids of laser lines and spots under speckle, and the spectra of rows and columns of pixels.
 
 pub(crate) mod imaged;
 pub(crate) mod line;

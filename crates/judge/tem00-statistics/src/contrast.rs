@@ -1,4 +1,4 @@
-//! The contrast that pixels and exposures leave.
+//! Contrast of speckle averaged over pixels and exposures.
 
 pub(crate) mod exposure;
 pub(crate) mod pixel;

@@ -9,7 +9,7 @@ use crate::axis::Axis;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum StatisticsError {
-    /// An argument, or one value of many, is not allowed.
+    /// An argument, or one value of a list, is out of its allowed range.
     Refused(Refusal),
     /// A sample is zero or negative where its logarithm is taken.
     NotPositive {
@@ -20,7 +20,7 @@ pub enum StatisticsError {
     },
     /// There are too few samples.
     Samples {
-        /// The number of samples that were given.
+        /// The number of given samples.
         given: usize,
         /// The smallest number that determines the result.
         needed: usize,
@@ -29,21 +29,21 @@ pub enum StatisticsError {
     Transform(Fft2Error),
     /// The speckles are smaller than a pixel along one axis.
     Unresolved {
-        /// The axis along which they were measured.
+        /// The axis along which the speckles were measured.
         axis: Axis,
         /// The autocovariance of neighbouring pixels.
         neighbours: f64,
     },
     /// The autocovariance has not fallen to one half at the largest lag.
     TooCoarse {
-        /// The axis along which they were measured.
+        /// The axis along which the speckles were measured.
         axis: Axis,
         /// The largest lag, in pixels.
         largest_lag: usize,
     },
-    /// No degree of freedom is left.
+    /// No degree of freedom remains.
     DegreesOfFreedom {
-        /// The number of bins that are left after merging the sparse ones.
+        /// The number of bins that remain after merging the sparse ones.
         bins: usize,
         /// The number of constraints on the expected counts.
         constraints: usize,
@@ -51,9 +51,9 @@ pub enum StatisticsError {
 }
 
 impl StatisticsError {
-    /// Allowed for samples of which a spread is wanted.
+    /// Requirement on samples whose spread is computed.
     pub(crate) const VARIED: &'static str = "of more than one value";
-    /// Allowed for samples of which a ratio to the mean is wanted.
+    /// Requirement on samples whose ratio to the mean is computed.
     pub(crate) const MEAN: &'static str =
         "of a mean that is positive and above their rounding errors";
 
@@ -65,7 +65,7 @@ impl StatisticsError {
         Self::Refused(Refusal::new(parameter, value, allowed))
     }
 
-    /// Refuses one value of many.
+    /// Refuses one value of a list.
     pub(crate) fn refused_at(
         index: usize,
         parameter: &'static str,
@@ -88,10 +88,10 @@ impl StatisticsError {
         Self::refused("cumulative", value, allowed)
     }
 
-    /// Returns the name of the argument that was refused, as constructors and functions call it.
+    /// Returns the name of the refused argument, as constructors and functions call it.
     ///
-    /// The values of an image or a field are `samples`, those of a grid of lags `lags`, whatever
-    /// the function at hand calls them.
+    /// The values of an image or a field are `samples` and the values of a grid of lags `lags`,
+    /// independent of the argument names of the function.
     ///
     /// # Examples
     ///

@@ -1,4 +1,4 @@
-//! Estimators of what samples and images show.
+//! Estimators for samples and images.
 
 pub(crate) mod autocovariance;
 pub(crate) mod gamma_fit;

@@ -1,4 +1,4 @@
-//! Laws of the intensity: at one point, and at two.
+//! Distributions of the intensity at one point and at two points.
 
 pub(crate) mod background;
 pub(crate) mod bessel;

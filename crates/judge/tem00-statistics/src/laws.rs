@@ -1,5 +1,5 @@
-//! Closed forms: the laws of the intensity, of contrast, of speckle in space, and of lines and
-//! spots under speckle.
+//! Closed forms: the distributions of the intensity, and the laws of contrast, of speckle in space,
+//! and of lines and spots under speckle.
 
 pub use crate::{
     centroid::{

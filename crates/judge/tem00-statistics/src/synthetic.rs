@@ -1,4 +1,4 @@
-//! Speckle for the tests of this crate, from the definition and from nothing above it.
+//! Speckle for the tests of this crate, computed from the definition alone.
 
 use num_complex::Complex;
 use rand::{RngExt, SeedableRng};
@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use tem00_numerics::{Fft2, Grid};
 
 /// Returns a periodic speckle pattern of mean 1, `size` pixels wide, from unit phasors of random
-/// phase on a disc `diameter` lattice points across; and the number of the phasors.
+/// phase on a disc `diameter` lattice points across, and the number of phasors.
 ///
 /// The speckle size is `size / diameter` pixels. `diameter` is even.
 pub(crate) fn speckle_tile(size: usize, diameter: usize, seed: u64) -> (Grid<f32>, usize) {
@@ -18,7 +18,7 @@ pub(crate) fn speckle_tile(size: usize, diameter: usize, seed: u64) -> (Grid<f32
     (tile, usize::from(count))
 }
 
-/// Returns the complex field of such a pattern, but for a phase that is linear in x and y.
+/// Returns the complex field of such a pattern, up to a phase that is linear in x and y.
 pub(crate) fn field_tile(size: usize, diameter: usize, seed: u64) -> Grid<Complex<f32>> {
     let (aperture, _) = phasor_disc(diameter, seed);
     let side = aperture.width();

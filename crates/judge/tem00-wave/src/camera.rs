@@ -8,8 +8,8 @@ use crate::{
 /// A camera with an ideal lens: a round pupil, and one plane of the scene in perfect focus.
 ///
 /// The pupil plane is spanned by `right` and `up`; the third axis leads from the scene towards the
-/// camera. Image coordinates are those of an upright picture, to the right and upwards, in metres
-/// on the sensor: a point at the depth Z, seen at the offset (x, y) from the axis, appears at
+/// camera. Image coordinates refer to an upright picture, to the right and upwards, in metres on
+/// the sensor: a point at the depth Z, seen at the offset (x, y) from the axis, appears at
 ///
 /// ```text
 /// u = (x, y) · pupil_to_image / Z
@@ -55,7 +55,7 @@ impl Lens {
     }
 }
 
-/// Allowed for the point that a camera looks at.
+/// Condition on the point at which a camera looks.
 const VIEW: &str = "at a finite vector from the camera that is not zero, in metres";
 
 impl Camera {
@@ -64,9 +64,9 @@ impl Camera {
     ///
     /// # Errors
     ///
-    /// Returns an error if a component of the centre is not finite or above 10 km, the axes not
-    /// right-handed and orthonormal within 10⁻⁶, or a length of the lens not between 1 pm and
-    /// 10 km.
+    /// Returns an error if a component of the centre is not finite or above 10 km, if the axes are
+    /// not right-handed and orthonormal within 10⁻⁶, or if a length of the lens is not between 1 pm
+    /// and 10 km.
     pub fn new(pupil_centre: DVec3, axes: DMat3, lens: Lens) -> Result<Self, WaveError> {
         let gram = axes.transpose() * axes;
         let orthonormal = gram.abs_diff_eq(DMat3::IDENTITY, 1e-6) && axes.determinant() > 0.0;
@@ -89,9 +89,9 @@ impl Camera {
     ///
     /// # Errors
     ///
-    /// Returns an error if a component of the pupil's centre is not finite or above 10 km, the two
-    /// points coincide, `up` is zero, not finite or parallel to the axis, or a length of the lens
-    /// is not between 1 pm and 10 km.
+    /// Returns an error if a component of the pupil's centre is not finite or above 10 km, if the
+    /// two points coincide, if `up` is zero, not finite or parallel to the axis, or if a length of
+    /// the lens is not between 1 pm and 10 km.
     pub fn look_at(
         [pupil_centre, target]: [DVec3; 2],
         up: DVec3,
@@ -124,8 +124,8 @@ impl Camera {
         self.lens
     }
 
-    /// Returns where a point of the scene appears, in metres on the upright picture, or `None` if
-    /// it does not lie in front of the pupil.
+    /// Returns the image of a point of the scene, in metres on the upright picture, or `None` if
+    /// the point does not lie in front of the pupil.
     pub fn project(&self, point: DVec3) -> Option<DVec2> {
         let local = self.axes.transpose() * (point - self.pupil_centre);
         let image = local.truncate() * (self.lens.pupil_to_image / -local.z);
@@ -144,11 +144,11 @@ impl Camera {
     }
 
     /// Returns a square of samples in the pupil plane about the pupil's centre, with steps to the
-    /// right and upwards: for speckle as it falls on the lens.
+    /// right and upwards, for the speckle on the lens.
     ///
     /// # Errors
     ///
-    /// Returns an error if the step, in metres, is not between 1 pm and 10 km, or the number of
+    /// Returns an error if the step, in metres, is not between 1 pm and 10 km, or if the number of
     /// samples along a side is zero or above 2¹⁴.
     pub fn pupil_plane(&self, step: f64, samples: usize) -> Result<SamplePlane, WaveError> {
         let steps = [self.axes.x_axis * step, self.axes.y_axis * step];
@@ -185,7 +185,7 @@ mod tests {
         assert!((axes.determinant() - 1.0).abs() < 1e-15, "right-handed");
         let point = eye - 0.5 * axes.z_axis + 0.01 * axes.x_axis + 0.02 * axes.y_axis;
         let image = camera.project(point).expect("in front");
-        // Rounding of coordinates of 3 m, seen with a magnification of 0.12.
+        // The tolerance covers the rounding of coordinates of 3 m at a magnification of 0.12.
         assert!(
             (image - DVec2::new(1.2e-3, 2.4e-3)).length() < 1e-15,
             "{image}"
@@ -215,7 +215,7 @@ mod tests {
             .moved(&motion)
             .project(motion.point(point))
             .expect("in front");
-        // Rounding of coordinates of 2 m, seen with a magnification of 0.06.
+        // The tolerance covers the rounding of coordinates of 2 m at a magnification of 0.06.
         assert!((moved - still).length() < 1e-16, "{moved} {still}");
     }
 }

@@ -3,18 +3,18 @@ use tem00_numerics::Grid;
 
 use crate::field::largest_magnitude;
 
-/// A measured number and its statistical error.
+/// A measured value and its standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// The number.
+    /// The measured value.
     pub value: f64,
-    /// Its standard error.
+    /// The standard error of the value.
     pub standard_error: f64,
 }
 
 impl Estimate {
-    /// Returns the mean of repeated measurements and its standard error `s/√n`, or `None` for less
-    /// than two.
+    /// Returns the mean of repeated measurements and its standard error `s/√n`, or `None` for fewer
+    /// than two measurements.
     ///
     /// # Examples
     ///
@@ -46,12 +46,12 @@ impl Estimate {
 /// ```
 ///
 /// It equals the correlation of their intensities and needs fewer samples. The fields are compared
-/// sample by sample, phases included: a displacement of the pattern is not taken back, and a phase
-/// that runs across the field lowers the value.
+/// sample by sample, phases included: a displacement of the pattern is not compensated, and a phase
+/// that varies across the field lowers the value.
 ///
 /// # Validity
 ///
-/// With K independent speckles in all, the expected value is above γ by about `(1 − γ)² / K`.
+/// With K independent speckles in total, the expected value exceeds γ by about `(1 − γ)² / K`.
 ///
 /// # Examples
 ///
@@ -136,10 +136,10 @@ impl FieldCorrelation {
     }
 
     /// Returns the correlation with its standard error from the scatter of the repetitions, or
-    /// `None` if there are less than two or a field was dark throughout.
+    /// `None` if there are fewer than two repetitions or a field was dark throughout.
     ///
-    /// The error is that of the jackknife, which leaves out one repetition at a time (Efron and
-    /// Stein 1981).
+    /// The error is estimated by the jackknife, which leaves out one repetition at a time (Efron
+    /// and Stein 1981).
     pub fn estimate(&self) -> Option<Estimate> {
         let (total, count) = (self.total()?, self.repetitions.len() as f64);
         let without = |one: &Products| (total - *one).correlation();
@@ -155,16 +155,16 @@ impl FieldCorrelation {
         })
     }
 
-    /// Returns the correlation with the standard error that follows from the number of independent
-    /// speckles in all repetitions together, or `None` if that number is below one or a field was
-    /// dark throughout.
+    /// Returns the correlation with the standard error for the number of `independent` speckles in
+    /// all repetitions together, or `None` if this number is below one or a field was dark
+    /// throughout.
     ///
     /// ```text
     /// σ = (1 − γ) √(2γ/K + 1/K²)
     /// ```
     ///
-    /// The number of speckles is about the area of the field over that of a speckle, `(4/π) h²` for
-    /// a round pupil with the speckle size h.
+    /// The number of speckles is about the area of the field divided by the area of a speckle,
+    /// `(4/π) h²` for a round pupil with the speckle size h.
     pub fn estimate_from_speckles(&self, independent: f64) -> Option<Estimate> {
         let value = self.value().filter(|_| independent >= 1.0)?;
         let variance = 2.0 * value / independent + independent.powi(-2);

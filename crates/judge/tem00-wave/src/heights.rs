@@ -9,8 +9,8 @@ use crate::{
     random::{Purpose, Random},
 };
 
-/// Nodes of white noise per correlation length. The variance between nodes then ripples by
-/// exp(−π²) = 5e−5 before it is divided out.
+/// Nodes of white noise per correlation length. The variance between nodes then has a ripple of
+/// exp(−π²) = 5e−5 before normalisation.
 const NODES: f64 = 2.0;
 
 /// Reach of the kernel in nodes: it falls to exp(−2 · 2.5²) = 4e−6.
@@ -20,8 +20,8 @@ const TAPS: usize = 2 * REACH + 1;
 /// Displaces scatterers along the normal by heights of the given rms and correlation length.
 ///
 /// White noise on a lattice is smoothed by the kernel exp(−2d²/ℓ²), whose convolution with itself
-/// is the wanted autocorrelation exp(−d²/ℓ²). The weights are normalised where they are used, so
-/// that the variance is the same everywhere.
+/// is the wanted autocorrelation exp(−d²/ℓ²). The weights are normalised at each point, so that the
+/// variance is the same everywhere.
 pub(crate) fn add_heights(
     scatterers: &mut [Scatterer],
     frame: &PatchFrame,

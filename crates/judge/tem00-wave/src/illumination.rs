@@ -10,10 +10,11 @@ use crate::{
     phasor::phasor,
 };
 
-/// Monochromatic light on its way to a surface: a complex amplitude at every point of space.
+/// Monochromatic light that illuminates a surface: a complex amplitude at every point of space.
 ///
-/// The amplitude varies in time as `exp(−iωt)`, so that a wave going along z is `exp(+ikz)` and a
-/// diverging one `exp(+ikr)`. Irradiance is its squared magnitude, on a scale of its own:
+/// The amplitude varies in time as `exp(−iωt)`, so that a wave that travels along z is `exp(+ikz)`
+/// and a diverging wave `exp(+ikr)`. Irradiance is its squared magnitude, in a unit that the
+/// following amplitudes define:
 ///
 /// | wave | amplitude 1 |
 /// |---|---|
@@ -26,7 +27,8 @@ use crate::{
 ///
 /// Plane and spherical waves are exact solutions of the wave equation, with exact distances: no
 /// expansion about an axis. A beam is the paraxial TEM₀₀ mode, the accepted model of a laser.
-/// Within one wavelength of a point source or an apex, the amplitude is that at one wavelength.
+/// Within one wavelength of a point source or an apex, the amplitude equals the amplitude at one
+/// wavelength.
 ///
 /// # Examples
 ///
@@ -49,7 +51,7 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Illumination {
     wavelength: f64,
-    /// Source, waist or apex; for a plane wave, where its phase is zero.
+    /// Source, waist or apex; for a plane wave, the point where its phase is zero.
     origin: DVec3,
     /// Columns x, y, z of the wave: it travels along z, and a fan opens along x.
     axes: DMat3,
@@ -92,7 +94,8 @@ pub struct FanDescription {
     pub apex: DVec3,
     /// Central direction of travel, of any length.
     pub direction: DVec3,
-    /// Direction along which the fan opens, of any length; its part across `direction` counts.
+    /// Direction along which the fan opens, of any length; its component perpendicular to
+    /// `direction` is used.
     pub opening: DVec3,
     /// Half-angle of the fan at which irradiance has fallen to 1/e², in radians.
     pub half_angle: f64,
@@ -108,8 +111,8 @@ impl Illumination {
     ///
     /// # Errors
     ///
-    /// Returns an error if the wavelength is not between 0.1 nm and 1 m, or the direction zero or
-    /// not finite.
+    /// Returns an error if the wavelength is not between 0.1 nm and 1 m, or if the direction is
+    /// zero or not finite.
     pub fn plane(wavelength: f64, direction: DVec3) -> Result<Self, WaveError> {
         let z = checked_direction(direction, "direction")?;
         Ok(Self {
@@ -124,8 +127,8 @@ impl Illumination {
     ///
     /// # Errors
     ///
-    /// Returns an error if the wavelength is not between 0.1 nm and 1 m, or a component of the
-    /// position not finite or above 10 km.
+    /// Returns an error if the wavelength is not between 0.1 nm and 1 m, or if a component of the
+    /// position is not finite or above 10 km.
     pub fn point(wavelength: f64, position: DVec3) -> Result<Self, WaveError> {
         Ok(Self {
             wavelength: checked_wavelength(wavelength)?,
@@ -143,9 +146,9 @@ impl Illumination {
     ///
     /// # Errors
     ///
-    /// Returns an error if the wavelength is not between 0.1 nm and 1 m, the waist radius not
-    /// between the paraxial limit 2λ/π and 10 km, a component of the waist's position not finite or
-    /// above 10 km, or the direction zero or not finite.
+    /// Returns an error if the wavelength is not between 0.1 nm and 1 m, if the waist radius is not
+    /// between the paraxial limit 2λ/π and 10 km, if a component of the waist's position is not
+    /// finite or above 10 km, or if the direction is zero or not finite.
     pub fn gaussian_beam(beam: &BeamDescription) -> Result<Self, WaveError> {
         let wavelength = checked_wavelength(beam.wavelength)?;
         let z = checked_direction(beam.direction, "direction")?;
@@ -174,10 +177,11 @@ impl Illumination {
     ///
     /// # Errors
     ///
-    /// Returns an error if the wavelength is not between 0.1 nm and 1 m, the waist radius not
-    /// between the paraxial limit 2λ/π and 10 km, a component of the apex not finite or above 10
-    /// km, a direction zero or not finite, the opening parallel to the direction, the half-angle
-    /// not between 0 and π/2, or the waist distance not finite or above 10 km in magnitude.
+    /// Returns an error if the wavelength is not between 0.1 nm and 1 m, if the waist radius is not
+    /// between the paraxial limit 2λ/π and 10 km, if a component of the apex is not finite or above
+    /// 10 km, if a direction is zero or not finite, if the opening is parallel to the direction, if
+    /// the half-angle is not between 0 and π/2, or if the waist distance is not finite or above 10
+    /// km in magnitude.
     pub fn fan(fan: &FanDescription) -> Result<Self, WaveError> {
         let wavelength = checked_wavelength(fan.wavelength)?;
         checked_direction(fan.direction, "direction")?;
@@ -252,7 +256,7 @@ impl Illumination {
         }
     }
 
-    /// Returns the same light after a rigid motion of its source.
+    /// Returns the light after a rigid motion of its source.
     #[must_use]
     pub fn moved(&self, motion: &RigidMotion) -> Self {
         Self {
@@ -280,7 +284,7 @@ impl Illumination {
 struct Mode {
     /// `|1 / (1 + i z/z_R)|`.
     relative_amplitude: f64,
-    /// Minus the phase of the same, in radians.
+    /// Minus the phase of `1 / (1 + i z/z_R)`, in radians.
     gouy_phase: f64,
     /// `exp(ik r² / 2q)`.
     transverse: Complex<f64>,

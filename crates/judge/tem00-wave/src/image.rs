@@ -25,7 +25,7 @@ use crate::{
 ///
 /// The samples `p` of the pupil are J⁻¹ times a square lattice, so that a fast Fourier transform
 /// lands on a square lattice of the picture, on the axis and off it. A surface outside the plane of
-/// focus is blurred by itself: its waves arrive with another curvature.
+/// focus is blurred without further steps, as its waves arrive with another curvature.
 ///
 /// Column `x` and row `y` lie at `u₀ + ((x, y) − ⌊samples/2⌋) · step`, to the right and *upwards*
 /// in the upright picture. A source in focus whose field has the magnitude 1 in the pupil has an
@@ -37,7 +37,7 @@ use crate::{
 ///   blur, must fit: what lies outside appears at the opposite side.
 /// - Directions are linear in u about the window's centre. At a distance Δu from it and τ off the
 ///   axis, a point appears displaced by about `1.5 |τ| |Δu|² / pupil_to_image`.
-/// - Samples at the rim of the pupil count by the part of their cell inside it.
+/// - Samples at the rim of the pupil are weighted by the fraction of their cell inside it.
 ///
 /// # Examples
 ///
@@ -76,14 +76,14 @@ pub struct ImageWindow {
     transform: Fft2,
 }
 
-/// Position and fineness of the samples of an [`ImageWindow`].
+/// Position and spacing of the samples of an [`ImageWindow`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImageSampling {
     /// Wavelength λ of the light, in metres.
     pub wavelength: f64,
     /// Centre of the window on the upright picture, in metres on the sensor.
     pub centre: DVec2,
-    /// Distance of neighbouring samples, in metres on the sensor.
+    /// Distance between neighbouring samples, in metres on the sensor.
     pub step: f64,
     /// Number of samples along each side.
     pub samples: usize,
@@ -93,13 +93,13 @@ impl ImageWindow {
     /// Plans a window.
     ///
     /// The step may be as long as the speckle size `h = λ · pupil_to_image / D` for amplitudes, and
-    /// half of it for intensities, which hold twice the frequencies.
+    /// half as long for intensities, which contain twice the frequencies.
     ///
     /// # Errors
     ///
-    /// Returns an error if the wavelength is not between 0.1 nm and 1 m, the centre not finite or
-    /// more than 10 · `pupil_to_image` from the axis, the step not between 1 pm and the speckle
-    /// size, or the number of samples not between 2 and 2¹³.
+    /// Returns an error if the wavelength is not between 0.1 nm and 1 m, if the centre is not
+    /// finite or more than 10 · `pupil_to_image` from the axis, if the step is not between 1 pm and
+    /// the speckle size, or if the number of samples is not between 2 and 2¹³.
     pub fn new(camera: &Camera, sampling: &ImageSampling) -> Result<Self, WaveError> {
         let lens = camera.lens();
         let wavelength = checked_wavelength(sampling.wavelength)?;
@@ -144,12 +144,12 @@ impl ImageWindow {
         })
     }
 
-    /// Returns where and how finely the picture is sampled.
+    /// Returns the position and the spacing of the samples.
     pub const fn sampling(&self) -> &ImageSampling {
         &self.sampling
     }
 
-    /// Returns the samples of the pupil whose light makes the image.
+    /// Returns the samples of the pupil whose light forms the image.
     pub const fn pupil(&self) -> &SamplePlane {
         &self.pupil
     }
@@ -201,7 +201,7 @@ impl ImageWindow {
         (focused, weights)
     }
 
-    /// The part of the cell about sample `(x, y)` that lies inside the pupil.
+    /// The fraction of the cell about sample `(x, y)` that lies inside the pupil.
     fn weight(&self, x: usize, y: usize) -> f64 {
         let inside = self.pupil_radius - self.pupil.offset(x, y).length();
         (inside / self.cell + 0.5).clamp(0.0, 1.0)
@@ -210,7 +210,8 @@ impl ImageWindow {
     /// The image of a field behind the lens, times `scale`.
     fn transformed(&self, focused: &Grid<Complex<f32>>, scale: f64) -> Field {
         let size = self.sampling.samples;
-        // The transform takes the corner of the pupil for its origin: that is a phase of the image.
+        // The transform has its origin at the corner of the pupil, which gives a phase in the
+        // image.
         let shifts = [focused.width() / 2, focused.height() / 2].map(|middle| origin(middle, size));
         let spectrum = self.transform.forward(focused, |kx, ky, value| {
             let value = Complex::new(f64::from(value.re), f64::from(value.im));
@@ -230,7 +231,7 @@ struct PupilLattice {
     steps: DMat2,
     /// Side of the square with the area of a cell, in metres.
     cell: f64,
-    /// Radius within which samples count, in metres.
+    /// Radius within which samples are used, in metres.
     stop: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The range of lengths in which a phase in `f64` means something.
+//! The range of lengths in which a phase in `f64` is meaningful.
 
 use core::ops::RangeInclusive;
 
@@ -62,9 +62,10 @@ pub(crate) fn checked_direction(
 }
 
 /// Returns right-handed axes whose third column is `third` and whose first is `first` without its
-/// part along the third, or `None` if the two are parallel.
+/// component along the third, or `None` if the two are parallel.
 pub(crate) fn axes_from(first: DVec3, third: DVec3) -> Option<DMat3> {
-    /// The square root of the rounding unit: below it, the part across is mostly rounding.
+    /// The square root of the rounding unit: below it, the perpendicular component is mostly
+    /// rounding.
     const PARALLEL: f64 = 1.0 / 67_108_864.0;
     let third = third.try_normalize()?;
     let second = third.cross(first.try_normalize()?);

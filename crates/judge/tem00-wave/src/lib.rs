@@ -5,9 +5,9 @@
 //! - SI units and radians; amplitudes vary in time as `exp(−iωt)`, so that a diverging wave is
 //!   `exp(+ikr)/r`.
 //! - Lengths lie between 1 pm and 10 km and wavelengths between 0.1 nm and 1 m, so that every phase
-//!   means something in `f64`.
-//! - Image coordinates are those of the upright picture: to the right and upwards, in metres on the
-//!   sensor. Columns and rows of a [`Grid`] count in the same directions.
+//!   is meaningful in `f64`.
+//! - Image coordinates refer to the upright picture: to the right and upwards, in metres on the
+//!   sensor. Columns and rows of a [`Grid`] increase in the same directions.
 //!
 //! # Main types
 //!
@@ -16,17 +16,17 @@
 //! | scatterers with random phases or random heights | [`RoughSurface`] |
 //! | plane wave, point source, Gaussian beam, laser line | [`Illumination`] |
 //! | both together, ready to be summed | [`LitSurface`] |
-//! | points at which the field is asked for | [`SamplePlane`] |
+//! | points at which the field is computed | [`SamplePlane`] |
 //! | pupil, lens and picture | [`Camera`], [`ImageWindow`] |
 //! | a field, and its intensity | [`Field`] |
 //! | motion of surface, light or camera | [`RigidMotion`] |
-//! | how far a pattern moved, how much of it is left | [`displacement_between`], [`FieldCorrelation`] |
+//! | displacement of a pattern, remaining correlation | [`displacement_between`], [`FieldCorrelation`] |
 //!
 //! # Scope and non-goals
 //!
-//! One scattering per light path, one polarisation, no shadowing, no diffraction by the edges of
-//! the scene, no aberrations. The brightness of a surface is on a scale of its own: there is no
-//! reflectance model.
+//! The crate models one scattering per light path and one polarisation, without shadowing,
+//! diffraction by the edges of the scene, or aberrations. The brightness of a surface is relative:
+//! there is no reflectance model.
 //!
 //! # References
 //!

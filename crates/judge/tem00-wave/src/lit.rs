@@ -17,14 +17,14 @@ use crate::{Field, Illumination, RoughSurface, SamplePlane, sum::Sources};
 ///
 /// # Cost
 ///
-/// One *term* for each scatterer and sample, some tens of millions per second and core. With the
-/// feature `parallel` the rows of a plane are shared by the threads of the current rayon pool; the
-/// result is the same bits for any number of them.
+/// The sum has one *term* for each scatterer and sample, and computes some tens of millions of
+/// terms per second and core. With the feature `parallel` the threads of the current rayon pool
+/// share the rows of a plane; the result has the same bits for any number of threads.
 ///
 /// # Validity
 ///
-/// A phase is off by about `2π r/λ · 2⁻⁵²`: 10⁻⁹ rad at half a metre. Within one wavelength of a
-/// scatterer, the amplitude is that at one wavelength.
+/// The error of a phase is about `2π r/λ · 2⁻⁵²`: 10⁻⁹ rad at half a metre. Within one wavelength
+/// of a scatterer, the amplitude equals the amplitude at one wavelength.
 ///
 /// # Examples
 ///
@@ -52,12 +52,12 @@ pub struct LitSurface {
 pub struct Progress {
     /// Terms summed so far.
     pub done: u64,
-    /// Terms altogether.
+    /// Total number of terms.
     pub total: u64,
 }
 
 impl Progress {
-    /// Returns how much longer the sum will take, from how long it has taken: all terms cost alike.
+    /// Returns the remaining computing time from the elapsed time: all terms cost the same.
     ///
     /// # Examples
     ///
@@ -75,7 +75,7 @@ impl Progress {
 }
 
 impl RoughSurface {
-    /// Returns the surface under a light, ready to be seen.
+    /// Returns the surface under a light, whose scattered field can then be computed.
     pub fn lit_by(&self, illumination: &Illumination) -> LitSurface {
         LitSurface::new(self, illumination)
     }
@@ -114,7 +114,8 @@ impl LitSurface {
         self.field_with_progress(plane, |_| ())
     }
 
-    /// Like [`field_on`](Self::field_on), and calls `report` after each row of samples.
+    /// Computes the field like [`field_on`](Self::field_on), and calls `report` after each row of
+    /// samples.
     ///
     /// Rows are finished in any order, by several threads with the feature `parallel`.
     pub fn field_with_progress(

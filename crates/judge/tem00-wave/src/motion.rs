@@ -8,8 +8,8 @@ use crate::{WaveError, length::checked_position};
 /// x' = Ω (x − c) + c + t
 /// ```
 ///
-/// Surfaces, illuminations and cameras are [`moved`](crate::RoughSurface::moved) by it, alone or
-/// together. Nothing is taken to be small.
+/// Surfaces, illuminations and cameras can be [`moved`](crate::RoughSurface::moved), alone or
+/// together. No motion is assumed to be small.
 ///
 /// # Examples
 ///
@@ -32,7 +32,7 @@ pub struct RigidMotion {
 }
 
 impl RigidMotion {
-    /// The motion that leaves everything where it is.
+    /// The identity motion.
     pub const IDENTITY: Self = Self {
         rotation: DMat3::IDENTITY,
         translation: DVec3::ZERO,
@@ -51,12 +51,12 @@ impl RigidMotion {
     }
 
     /// Creates a rotation about an axis of any length through the point `centre`, by an angle in
-    /// radians, counter-clockwise when looked at against the axis.
+    /// radians, counter-clockwise when seen against the axis.
     ///
     /// # Errors
     ///
-    /// Returns an error if the axis is zero or not finite, the angle not finite, or a component of
-    /// the centre not finite or above 10 km.
+    /// Returns an error if the axis is zero or not finite, if the angle is not finite, or if a
+    /// component of the centre is not finite or above 10 km.
     pub fn rotation(axis: DVec3, angle: f64, centre: DVec3) -> Result<Self, WaveError> {
         let unit =
             axis.try_normalize()
@@ -81,17 +81,17 @@ impl RigidMotion {
         }
     }
 
-    /// Returns where a point goes, in metres.
+    /// Returns the position of a point after the motion, in metres.
     pub fn point(&self, point: DVec3) -> DVec3 {
         self.rotation * point + self.translation
     }
 
-    /// Returns how a direction is turned.
+    /// Returns a direction after the rotation.
     pub fn direction(&self, direction: DVec3) -> DVec3 {
         self.rotation * direction
     }
 
-    /// Returns how a set of axes, the columns of a matrix, is turned.
+    /// Returns a set of axes, the columns of a matrix, after the rotation.
     pub fn axes(&self, axes: DMat3) -> DMat3 {
         self.rotation * axes
     }
@@ -112,7 +112,7 @@ mod tests {
         let point = DVec3::new(0.4, 1.5, -0.8);
         let apart = third.point(second.point(first.point(point)));
         let together = first.then(&second).then(&third).point(point);
-        // A dozen roundings of numbers of order one.
+        // The tolerance covers a dozen roundings of numbers of order one.
         assert!((apart - together).length() < 4e-15, "{apart} {together}");
         let (a, b) = (DVec3::X, DVec3::new(0.0, 0.6, 0.8));
         assert_absolute(first.direction(a).dot(first.direction(b)), a.dot(b), 1e-15);
@@ -122,7 +122,7 @@ mod tests {
     fn a_rotation_keeps_its_centre() {
         let centre = DVec3::new(0.3, -0.2, 5.0);
         let turn = RigidMotion::rotation(DVec3::ONE, 1.0, centre).expect("a rotation");
-        // Rounding of coordinates of up to 5 m.
+        // The tolerance covers the rounding of coordinates of up to 5 m.
         assert!((turn.point(centre) - centre).length() < 4e-15, "moved");
     }
 }

@@ -23,7 +23,8 @@ pub struct PatchDescription {
     pub centre: DVec3,
     /// Normal, of any length.
     pub normal: DVec3,
-    /// Direction of the first side, of any length; its part across the normal counts.
+    /// Direction of the first side, of any length; its component perpendicular to the normal is
+    /// used.
     pub along: DVec3,
     /// Lengths of the sides, in metres: `along`, and along normal × `along`.
     pub size: [f64; 2],
@@ -31,7 +32,7 @@ pub struct PatchDescription {
     pub scatterers: [usize; 2],
     /// Arrangement of the scatterers.
     pub arrangement: Arrangement,
-    /// Cause of their random phases.
+    /// Cause of the random phases of the scatterers.
     pub roughness: Roughness,
     /// Seed of all randomness. The same seed gives the same surface.
     pub seed: u64,
@@ -40,12 +41,12 @@ pub struct PatchDescription {
 /// Arrangement of scatterers on a patch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Arrangement {
-    /// In the centre of each cell of a lattice.
+    /// One scatterer in the centre of each cell of a lattice.
     #[default]
     Lattice,
     /// One scatterer at random in each cell of a lattice.
     Stratified,
-    /// Anywhere, independent of each other.
+    /// Scatterers at independent random positions.
     Random,
 }
 
@@ -59,8 +60,8 @@ pub enum Roughness {
     /// Scatterers of equal amplitude, displaced along the normal by a Gaussian random height with
     /// the autocorrelation `exp(−d² / correlation_length²)`.
     ///
-    /// The phases are those of the paths, so that they change with wavelength and direction. A
-    /// correlation length below half the spacing of the scatterers means independent heights.
+    /// The phases follow from the paths, so that they change with wavelength and direction. A
+    /// correlation length below half the spacing of the scatterers gives independent heights.
     Heights {
         /// Root mean square height, in metres.
         rms: f64,
@@ -69,10 +70,10 @@ pub enum Roughness {
     },
 }
 
-/// Random amplitudes of independent scatterers, and the bias that comes with a finite number.
+/// Random amplitudes of independent scatterers, and the bias of a finite number of scatterers.
 ///
 /// With N scatterers in a resolution cell, the squared contrast of the speckle, and with it every
-/// correlation of intensities, is off by
+/// correlation of intensities, has the error
 ///
 /// | amplitudes | [`Lattice`](Arrangement::Lattice) | [`Random`](Arrangement::Random) |
 /// |---|---|---|
@@ -80,7 +81,7 @@ pub enum Roughness {
 /// | `Unit` | −1/N | +1/N |
 ///
 /// For [`Stratified`](Arrangement::Stratified) positions the random offsets add some 2/N² to the
-/// values of the lattice. N counts by the amplitude `h` of a point's image, with n scatterers
+/// values of the lattice. N follows from the amplitude `h` of a point's image, with n scatterers
 /// per area: `1/N = ∫|h|⁴ / (n (∫|h|²)²)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Amplitudes {
@@ -93,7 +94,7 @@ pub enum Amplitudes {
 
 /// The largest number of scatterers.
 const MAX_SCATTERERS: usize = 1 << 28;
-/// Allowed for numbers of scatterers.
+/// Condition on numbers of scatterers.
 pub(crate) const COUNT: &str = "from 1 to 2²⁸ in all";
 
 /// The checked frame of a patch.
@@ -102,7 +103,7 @@ pub(crate) struct PatchFrame {
     /// Columns: along the first side, along the second, normal.
     pub(crate) axes: DMat3,
     pub(crate) size: [f64; 2],
-    /// Distance of neighbouring scatterers along each side.
+    /// Distance between neighbouring scatterers along each side.
     pub(crate) spacing: [f64; 2],
 }
 

@@ -7,7 +7,7 @@ use crate::{
     length::{LENGTHS, checked_length, checked_position},
 };
 
-/// Points on a plane at which a field is asked for: a lattice, optionally behind a round stop.
+/// Points on a plane at which a field is computed: a lattice, optionally behind a round stop.
 ///
 /// Sample `(x, y)` lies at `centre + (x − ⌊width/2⌋) steps[0] + (y − ⌊height/2⌋) steps[1]`. The
 /// steps need not be perpendicular.
@@ -39,8 +39,8 @@ impl SamplePlane {
     ///
     /// # Errors
     ///
-    /// Returns an error if a component of the centre is not finite or above 10 km, a step not
-    /// between 1 pm and 10 km long, or the number of samples zero or above 2²⁸.
+    /// Returns an error if a component of the centre is not finite or above 10 km, if a step is not
+    /// between 1 pm and 10 km long, or if the number of samples is zero or above 2²⁸.
     pub fn new(centre: DVec3, steps: [DVec3; 2], samples: [usize; 2]) -> Result<Self, WaveError> {
         const MAX: usize = 1 << 28;
         let count = samples[0].checked_mul(samples[1]);
@@ -68,7 +68,7 @@ impl SamplePlane {
         })
     }
 
-    /// A plane inside a stop, made from numbers that were checked before.
+    /// A plane inside a stop, created from numbers that were checked before.
     pub(crate) const fn stopped(
         centre: DVec3,
         steps: [DVec3; 2],
@@ -96,7 +96,7 @@ impl SamplePlane {
         })
     }
 
-    /// Returns the same samples around another centre, which was checked before.
+    /// Returns the same samples about another centre, which was checked before.
     pub(crate) const fn about(self, centre: DVec3) -> Self {
         Self { centre, ..self }
     }
@@ -130,7 +130,7 @@ impl SamplePlane {
             + from_middle(y, self.samples[1]) * self.steps[1]
     }
 
-    /// The samples of row `y` inside the stop. A stop is convex: they are a range.
+    /// The samples of row `y` inside the stop. They are a range, since a stop is convex.
     pub(crate) fn open_in_row(&self, y: usize) -> Range<usize> {
         let columns = 0..self.samples[0];
         let Some(radius) = self.radius else {

@@ -72,8 +72,8 @@ mod tests {
             fourth += g.norm_sqr().powi(2) / f64::from(COUNT);
             pseudo += g * g / f64::from(COUNT);
         }
-        // Standard deviations of the means are √(1, 20, 1)/√n = 0.0022, 0.010, 0.0022; four of
-        // them are exceeded with probability 6e−5.
+        // The standard deviations of the means are √(1, 20, 1)/√n = 0.0022, 0.010, 0.0022; four
+        // standard deviations are exceeded with probability 6e−5.
         assert!((second - 1.0).abs() < 0.009, "⟨|g|²⟩ = {second}");
         assert!((fourth - 2.0).abs() < 0.040, "⟨|g|⁴⟩ = {fourth}");
         assert!(pseudo.norm() < 0.011, "⟨g²⟩ = {pseudo}");

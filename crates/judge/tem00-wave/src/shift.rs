@@ -4,38 +4,39 @@ use glam::{DMat2, DVec2};
 use num_complex::Complex;
 use tem00_numerics::{Fft2, Grid, cast::to_signed};
 
-/// Displacement of a pattern, and its remaining correlation.
+/// Displacement of a pattern and its remaining correlation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shift {
     /// Displacement of the features of the first pattern in the second, in samples.
     pub offset: DVec2,
-    /// Pearson correlation of the two patterns after the movement is taken back.
+    /// Pearson correlation of the two patterns after compensation of the displacement.
     pub correlation: f64,
 }
 
-/// Returns how far the second pattern is displaced against the first.
+/// Returns the displacement of the second pattern relative to the first.
 ///
-/// The displacement is where the cross-correlation of the two patterns has its maximum. It is found
-/// in whole samples by Fourier transform, over all displacements that leave a quarter of the width
-/// and height in common; then the common parts alone are correlated, and the maximum between the
-/// samples is that of the band-limited correlation function.
+/// The displacement is the position of the maximum of the cross-correlation of the two patterns. It
+/// is found in whole samples by Fourier transform, over all displacements that leave a quarter of
+/// the width and height in common; then only the common parts are correlated, and the maximum
+/// between the samples is the maximum of the band-limited correlation function.
 ///
 /// Returns `None` if a pattern is constant or not finite, or if the correlation has no maximum.
 ///
 /// # Validity
 ///
-/// The error on patterns that differ by a displacement alone is below 10⁻⁴ samples if a feature is
-/// wider than two samples and the common part many features wide. Partly decorrelated patterns have
-/// a statistical error on top. The answer for unrelated patterns is arbitrary.
+/// For patterns that differ only by a displacement the error is below 10⁻⁴ samples if a feature is
+/// wider than two samples and the common part is many features wide. Partly decorrelated patterns
+/// have an additional statistical error. The result for unrelated patterns is arbitrary.
 ///
-/// Whatever is in the patterns counts: a bright patch on a dark ground is correlated with itself.
-/// The edge of a lit patch that does not move with the speckle pulls the displacement by some per
-/// cent and raises the correlation. Those of speckle alone are found in parts cut out from where
-/// the light is even.
+/// The correlation includes everything in the patterns: a bright patch on a dark background is
+/// correlated with itself. The edge of a lit patch that does not move with the speckle changes the
+/// displacement by some per cent and raises the correlation. To measure the speckle alone, cut out
+/// parts in which the light is even.
 ///
-/// A pattern that stretches has no one displacement. What is found is that in the middle of the
-/// common part, off by the stretch times the distance from there to the point in question. Moving
-/// the window of the second pattern to where the first went, and measuring again, takes that away.
+/// A pattern that stretches has no single displacement. The result is the displacement in the
+/// middle of the common part; at another point its error is the stretch times the distance from the
+/// middle. To remove this error, move the window of the second pattern by the result and measure
+/// again.
 ///
 /// # Panics
 ///
@@ -64,7 +65,7 @@ pub fn displacement_between(first: &Grid<f32>, second: &Grid<f32>) -> Option<Shi
     );
     assert!(size.iter().all(|&n| n >= 16), "a pattern below 16 × 16");
     let mut whole = whole_displacement(first, second)?;
-    // Each pass may correct the whole displacement by what only the common part shows.
+    // Each pass may correct the whole displacement, using the common part alone.
     for _ in 0..PASSES {
         let correction = Common::new(first, second, whole, DVec2::ZERO)?.largest_nearby();
         if correction == [0, 0] {
@@ -86,10 +87,10 @@ pub fn displacement_between(first: &Grid<f32>, second: &Grid<f32>) -> Option<Shi
 
 const PASSES: usize = 6;
 
-/// Each refinement leaves about a hundredth of the error before it.
+/// Each refinement reduces the error to about a hundredth.
 const REFINEMENTS: usize = 3;
 
-/// Part of the width and height that two patterns must have in common.
+/// Reciprocal of the fraction of width and height that two patterns must have in common.
 const COMMON: usize = 4;
 
 fn limited(displacement: i64, size: usize) -> i64 {
@@ -97,8 +98,8 @@ fn limited(displacement: i64, size: usize) -> i64 {
     displacement.clamp(-max, max)
 }
 
-/// The whole displacement at which the correlation stands out most: its noise grows with the square
-/// root of the area in common.
+/// The whole displacement at which the correlation is most significant: its noise grows with the
+/// square root of the common area.
 fn whole_displacement(first: &Grid<f32>, second: &Grid<f32>) -> Option<[i64; 2]> {
     let size = [first.width(), first.height()];
     let padded = size.map(|n| 2 * n);
@@ -179,7 +180,7 @@ struct Common {
 impl Common {
     fn new(first: &Grid<f32>, second: &Grid<f32>, whole: [i64; 2], rest: DVec2) -> Option<Self> {
         let size = [first.width(), first.height()];
-        // Multiples of eight transform fast.
+        // Fourier transforms of multiples of eight are fast.
         let common = [0, 1].map(|i| {
             let common = size[i] - to_usize(whole[i].abs());
             if common >= 64 { common & !7 } else { common }
@@ -227,7 +228,7 @@ impl Common {
             if (lag - start).length() > 4.0 {
                 return None;
             }
-            // The rounding of f32 spectra leaves no more than this.
+            // The rounding of f32 spectra limits the accuracy to this step.
             if step.length() < 1e-7 {
                 break;
             }
@@ -306,7 +307,7 @@ impl Expansion {
         }
     }
 
-    /// The step to the maximum, or `None` where the function does not curve down.
+    /// The step to the maximum, or `None` where the function is not concave.
     fn newton_step(&self) -> Option<DVec2> {
         let determinant = self.xx * self.yy - self.xy * self.xy;
         if !(self.xx < 0.0 && determinant > 0.0) {
@@ -319,7 +320,8 @@ impl Expansion {
 
 /// A window that rises along a cosine over an eighth at either end, displaced by `moved` samples.
 ///
-/// Without it, what enters and leaves at the edges would pull the maximum towards zero.
+/// Without the taper, features that enter and leave at the edges would pull the maximum towards
+/// zero.
 fn taper(size: usize, moved: f64) -> Vec<f64> {
     let (size, rise) = (size as f64, (size as f64 / 8.0).max(1.0));
     let window = |x: f64| {
@@ -332,7 +334,7 @@ fn taper(size: usize, moved: f64) -> Vec<f64> {
         .collect()
 }
 
-/// An index, or zero for a negative number.
+/// Converts an index; a negative number gives zero.
 fn to_usize(n: i64) -> usize {
     usize::try_from(n).unwrap_or(0)
 }

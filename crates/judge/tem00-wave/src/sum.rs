@@ -9,7 +9,7 @@ use tem00_numerics::vectorised;
 /// Scatterers summed side by side: two AVX-512 or eight SSE2 registers of `f64`.
 const LANES: usize = 8;
 
-/// Point sources as separate arrays, filled up with dark ones to whole groups of [`LANES`].
+/// Point sources as separate arrays, padded with dark sources to whole groups of [`LANES`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Sources {
     x: Vec<f64>,
@@ -75,15 +75,16 @@ fn groups(values: &[f64]) -> slice::Iter<'_, [f64; LANES]> {
     values.as_chunks().0.iter()
 }
 
-/// Returns sine and cosine of `π t` for `0 ≤ t < 2⁵¹`, with an error below 1e−11 and that of `t`.
+/// Returns sine and cosine of `π t` for `0 ≤ t < 2⁵¹`, with an error below 1e−11 in addition to the
+/// error of `t`.
 ///
-/// Above, where a phase means nothing, some numbers between −1 and 1. There are no branches and
-/// only operations that vector units have.
+/// Above this range, where a phase is meaningless, the results are arbitrary numbers between −1 and
+/// 1. There are no branches and only operations that vector units have.
 #[inline(always)]
 fn sin_cos_half_turns(t: f64) -> (f64, f64) {
     use core::f64::consts::PI;
-    /// Added to a number below 2⁵¹, it leaves no bits for a fraction: the sum is rounded to a whole
-    /// number, whose parity is the last bit.
+    /// Added to a number below 2⁵¹, it leaves no bits for a fraction: the sum is rounded to an
+    /// integer, whose parity is the last bit.
     const WHOLE: f64 = 6_755_399_441_055_744.0;
     let shifted = t + WHOLE;
     let fraction = t - (shifted - WHOLE);
@@ -96,7 +97,7 @@ fn sin_cos_half_turns(t: f64) -> (f64, f64) {
     (turned(sin), turned(cos))
 }
 
-/// Taylor series on [−π/2, π/2]: the first term left out is (π/2)¹⁷/17! = 6e−12.
+/// Taylor series on [−π/2, π/2]: the first omitted term is (π/2)¹⁷/17! = 6e−12.
 #[inline(always)]
 fn sine(a: f64) -> f64 {
     let a2 = a * a;
@@ -109,7 +110,7 @@ fn sine(a: f64) -> f64 {
     a - a * a2 * sum
 }
 
-/// Taylor series on [−π/2, π/2]: the first term left out is (π/2)¹⁸/18! = 5e−13.
+/// Taylor series on [−π/2, π/2]: the first omitted term is (π/2)¹⁸/18! = 5e−13.
 #[inline(always)]
 fn cosine(a: f64) -> f64 {
     let a2 = a * a;
@@ -132,11 +133,11 @@ mod tests {
     #[test]
     fn the_series_are_sine_and_cosine() {
         for i in 0..400_000_u32 {
-            // Up to 4000 half turns in uneven steps.
+            // The test covers up to 4000 half turns in uneven steps.
             let t = f64::from(i) * 0.010_000_7;
             let (sin, cos) = sin_cos_half_turns(t);
             let angle = PI * (t - 2.0 * (0.5 * t).round());
-            // The first terms left out.
+            // The tolerances are the first omitted terms.
             assert!((sin - angle.sin()).abs() < 7e-12, "sin at {t}");
             assert!((cos - angle.cos()).abs() < 1e-12, "cos at {t}");
         }
@@ -169,7 +170,7 @@ mod tests {
         let sources: Sources = (0..1000).map(source).collect();
         let point = DVec3::new(1e-3, 2e-3, 0.3);
         let bits = |wave: Complex<f64>| [wave.re, wave.im].map(f64::to_bits);
-        // Outside `vectorised` the loop has the instructions that every processor of the target
+        // Outside `vectorised` the loop uses the instructions that every processor of the target
         // has.
         let plain = sources.sum_at(point, 650e-9);
         assert_eq!(bits(sources.wave_at(point, 650e-9)), bits(plain));
@@ -181,7 +182,7 @@ mod tests {
         for count in [1, 7, 8, 9] {
             let sources: Sources = core::iter::repeat_n(source, count).collect();
             assert_eq!(sources.x.len(), count.next_multiple_of(LANES));
-            // Two wavelengths away: all in phase.
+            // At a distance of two wavelengths all waves are in phase.
             let wave = sources.wave_at(DVec3::ZERO, 0.5);
             let expected = 2.0 * count as f64;
             assert!((wave - expected).norm() < 1e-10, "{wave} for {count}");

@@ -8,18 +8,18 @@ use crate::{
     random::{Purpose, Random},
 };
 
-/// A rough surface: many point scatterers.
+/// A rough surface, modelled as many point scatterers.
 ///
 /// The scattered field at a distance `r` is `amplitude · incident · exp(ikr) / r`. Multiple
-/// scattering, shadowing and polarisation are left out.
+/// scattering, shadowing and polarisation are not modelled.
 ///
 /// # Validity
 ///
-/// A resolution cell of the camera should hold many scatterers: [`Amplitudes`] says what too few
-/// do. A lattice with the spacing `d` repeats its speckle after λ/d in the sine of the angle, at
-/// the distance L after λL/d. That must be more than the pupil and all motion of the speckle across
-/// it; the random offsets of [`Arrangement::Stratified`](crate::Arrangement::Stratified) break the
-/// repetition.
+/// A resolution cell of the camera should hold many scatterers: [`Amplitudes`] states the bias of
+/// too few. A lattice with the spacing `d` repeats its speckle after λ/d in the sine of the angle,
+/// at the distance L after λL/d. This period must exceed the pupil and all motion of the speckle
+/// across it; the random offsets of [`Arrangement::Stratified`](crate::Arrangement::Stratified)
+/// break the repetition.
 ///
 /// # Examples
 ///
@@ -53,14 +53,14 @@ impl RoughSurface {
     /// the irradiance E scatters `E A` per steradian in every direction.
     ///
     /// A scatterer takes 40 bytes, and about as many again while it is lit; heights take up to 128
-    /// bytes more as they are made.
+    /// further bytes while they are generated.
     ///
     /// # Errors
     ///
-    /// Returns an error if a length is not between 1 pm and 10 km, a component of the centre not
-    /// finite or above 10 km, a direction zero or not finite, `along` parallel to the normal, the
-    /// number of scatterers zero or above 2²⁸, or a height or correlation length negative, not
-    /// finite or above 10 km.
+    /// Returns an error if a length is not between 1 pm and 10 km, if a component of the centre is
+    /// not finite or above 10 km, if a direction is zero or not finite, if `along` is parallel to
+    /// the normal, if the number of scatterers is zero or above 2²⁸, or if a height or correlation
+    /// length is negative, not finite or above 10 km.
     pub fn patch(patch: &PatchDescription) -> Result<Self, WaveError> {
         let frame = PatchFrame::new(patch)?;
         let mut scatterers = frame.arranged(patch);
@@ -98,8 +98,8 @@ impl RoughSurface {
     ///
     /// # Errors
     ///
-    /// Returns an error if there are none, or if a component of a position or amplitude is not
-    /// finite or above 10⁴ m in magnitude.
+    /// Returns an error if there are no scatterers, or if a component of a position or amplitude is
+    /// not finite or above 10⁴ m in magnitude.
     pub fn from_scatterers(scatterers: Vec<Scatterer>) -> Result<Self, WaveError> {
         if scatterers.is_empty() {
             return Err(WaveError::refused("scatterers", 0.0, COUNT));
@@ -130,7 +130,7 @@ impl RoughSurface {
     }
 }
 
-/// Allowed for the heights of a rough surface and their correlation length.
+/// Condition on the heights of a rough surface and their correlation length.
 const ZERO_OR_LENGTH: &str = "0 or from 1e-12 to 1e4, in metres";
 
 fn randomise(scatterers: &mut [Scatterer], amplitudes: Amplitudes, seed: u64) {

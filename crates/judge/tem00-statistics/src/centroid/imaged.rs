@@ -7,8 +7,8 @@ use tem00_numerics::quadrature::integrate;
 use crate::centroid::row_spectrum::Row;
 
 /// Returns the standard deviation of the centroid of a laser line on a rough surface that a lens
-/// images, first order in the fluctuations, for a line of the 1/e² half-width `radius` that is read
-/// in rows of `row_height`; all three are in units of the speckle size h in the image.
+/// images, to first order in the fluctuations, for a line with the 1/e² half-width `radius` that is
+/// read in rows of `row_height`; all three lengths are in units of the speckle size h in the image.
 ///
 /// ```text
 /// σ² = (1/2π⁴) ∫∫ sinc²(π p (x − x')/2) √π L erf L dx dx'      over [−1, 1]²
@@ -17,23 +17,23 @@ use crate::centroid::row_spectrum::Row;
 /// σ  = (√2/π) w      p = 0, w → 0
 /// ```
 ///
-/// The light of the line interferes in the image as waves do. x and x' are two places in the pupil
-/// along the line, in radii of the pupil; what they have in common across the line, the chord of
-/// the outer one, tells how much of the position of a scatterer on the line is left in the light
-/// from both. Already for lines as wide as a speckle this is the
+/// The light of the line interferes in the image. x and x' are two positions in the pupil along the
+/// line, in pupil radii; their common extent across the line, the chord of the outer one,
+/// determines how much of the position of a scatterer on the line remains in the light from both.
+/// For lines at least as wide as a speckle the result agrees with
 /// [`line_centroid_deviation`](crate::laws::line_centroid_deviation) within one per cent. A speckle
-/// pattern times the irradiance, [`SpeckledLine`](crate::laws::SpeckledLine), falls short of it, by
-/// 20 % at w = h, 7 % at 2 h and 2 % at 4 h: the lens blurs the line as well. The function is even
-/// in both.
+/// pattern times the irradiance, [`SpeckledLine`](crate::laws::SpeckledLine), gives less, by 20 %
+/// at w = h, 7 % at 2 h and 2 % at 4 h, because the lens blurs the line as well. The function is
+/// even in both arguments.
 ///
 /// # Validity
 ///
-/// Circular pupil, a Gaussian line in focus on a surface of many scatterers in a speckle, and a
-/// detector that sees all of the line's image; what it cuts off of the rings that a lens leaves
-/// beside a line has a long lever. Beyond the first order, the power of a row fluctuates:
-/// simulations of lines as wide as two speckles and more scatter by up to 3 % less than this law
-/// says. Lines narrower than a speckle scatter by far more, as the centroids of weak rows are
-/// nearly free: by a quarter at w = 0.4 h.
+/// The law holds for a circular pupil, a Gaussian line in focus on a surface with many scatterers
+/// in a speckle, and a detector that receives the whole image of the line: the rings that a lens
+/// forms beside a line have a long lever, so that cutting them off changes the result. Beyond the
+/// first order, the power of a row fluctuates: simulations of lines at least two speckles wide
+/// scatter by up to 3 % less than this law predicts. Lines narrower than a speckle scatter by far
+/// more, as the centroids of weak rows are nearly unconstrained: by a quarter at w = 0.4 h.
 ///
 /// # Examples
 ///
@@ -48,29 +48,29 @@ use crate::centroid::row_spectrum::Row;
 /// # References
 ///
 /// - Own derivation: the centroid as the mean of the operator i ∂/∂k over the light in the pupil,
-///   whose correlation at a distance of k is the Fourier transform of the line's irradiance.
+///   whose correlation over a distance in k is the Fourier transform of the line's irradiance.
 pub fn imaged_line_centroid_deviation(radius: f64, row_height: f64) -> f64 {
     defocused_line_centroid_deviation(radius, row_height, 0.0)
 }
 
-/// Returns the standard deviation of the centroid of a laser line that a lens images out of focus:
-/// that of [`imaged_line_centroid_deviation`] for a point that is spread over a disc of the
-/// diameter `blur` in the image, in units of the speckle size h as all lengths.
+/// Returns the standard deviation of the centroid of a laser line that a lens images out of focus,
+/// as in [`imaged_line_centroid_deviation`]; a point is spread over a disc of the diameter `blur`
+/// in the image. All lengths are in units of the speckle size h.
 ///
 /// ```text
 /// σ² = σ²(b = 0) + (2 b² / 3π²) ∫∫ sinc²(π p (x − x')/2) c⁴ Q(L) dx dx'      over [−1, 1]²
 /// Q(L) = ∫₀¹ exp(−L² t²) (1 − 3t + 2t³) dt      c = √(1 − max(x², x'²)), L = π w c, b = blur
 /// ```
 ///
-/// Out of focus the light through one half of the pupil lies beside that through the other. The
-/// line's centroid therefore moves by b times the centroid, in diameters, of the speckle that the
-/// line makes *in the pupil*, whose correlation length is h/w: a thinner line has larger grains
-/// there and more noise. The two parts are independent.
+/// Out of focus the light through one half of the pupil is displaced relative to the light through
+/// the other half. The line's centroid therefore moves by b times the centroid, in diameters, of
+/// the speckle that the line produces *in the pupil*, whose correlation length is h/w: a thinner
+/// line has larger speckles in the pupil and more noise. The two parts are independent.
 ///
 /// # Validity
 ///
-/// That of the line in focus; the blur may be of any size, and the sign of the defocus does not
-/// matter.
+/// The limits of the line in focus apply; the blur may have any size, and the sign of the defocus
+/// does not matter.
 ///
 /// # Examples
 ///
@@ -104,9 +104,9 @@ pub fn defocused_line_centroid_deviation(radius: f64, row_height: f64, blur: f64
         .sqrt()
 }
 
-/// Returns the contrast of the power that rows of `row_height` get of a laser line of the 1/e²
-/// half-width `radius`, in or out of focus: its standard deviation over its mean. Both lengths are
-/// in units of the speckle size h in the image.
+/// Returns the contrast, standard deviation over mean, of the power that rows of `row_height`
+/// receive from a laser line with the 1/e² half-width `radius`, in or out of focus. Both lengths
+/// are in units of the speckle size h in the image.
 ///
 /// ```text
 /// K² = (8/π²) ∫∫ sinc²(π p (x − x')/2) c² q(L) dx dx'      over [−1, 1]²
@@ -114,9 +114,10 @@ pub fn defocused_line_centroid_deviation(radius: f64, row_height: f64, blur: f64
 /// K² → ℓ(p) / (√π w)                     w → ∞, ℓ the speckle length
 /// ```
 ///
-/// A centroid divides by this power. Its part by defocus is a mean over the light in the pupil,
-/// whose variance is 1 + K² times smaller than to first order, as that of the mean place of 1/K²
-/// equal and independent modes; the part in focus is hardly changed.
+/// A centroid divides by this power. The part of the centroid due to defocus is a mean over the
+/// light in the pupil, whose variance is 1 + K² times smaller than to first order, like the
+/// variance of the mean position of 1/K² equal and independent modes; the part in focus hardly
+/// changes.
 ///
 /// # Examples
 ///
@@ -129,7 +130,7 @@ pub fn defocused_line_centroid_deviation(radius: f64, row_height: f64, blur: f64
 ///
 /// # References
 ///
-/// - Own derivation, as that of [`defocused_line_centroid_deviation`].
+/// - Own derivation, as for [`defocused_line_centroid_deviation`].
 pub fn imaged_line_power_contrast(radius: f64, row_height: f64) -> f64 {
     if radius.is_infinite() {
         return 0.0;
@@ -144,7 +145,7 @@ pub fn imaged_line_power_contrast(radius: f64, row_height: f64) -> f64 {
 }
 
 /// Returns ∫ exp(−L² t²) (1 − t) dt over [0, 1]: the variance of the power of speckle on a chord, L
-/// coherence lengths long, over twice the square of its mean.
+/// coherence lengths long, divided by twice the square of its mean.
 fn chord_power(length: f64) -> f64 {
     let squared = length * length;
     if squared < 1e-4 {
@@ -156,7 +157,7 @@ fn chord_power(length: f64) -> f64 {
 }
 
 /// Returns ∫ exp(−L² t²) (1 − 3t + 2t³) dt over [0, 1]: the variance of the centroid of speckle on
-/// a chord, L coherence lengths long, over (8/3) of the fourth power of half the chord.
+/// a chord, L coherence lengths long, divided by (8/3) of the fourth power of half the chord.
 fn chord_centroid(length: f64) -> f64 {
     let squared = length * length;
     if squared < 0.01 {
@@ -196,7 +197,7 @@ mod tests {
             let f = |m: f64| m * m * erf(PI * radius * m);
             let single = integrate(f, [0.0, 1.0], 0.25 / (1.0 + radius));
             let expected = (4.0 * radius * single / PI.powf(2.5)).sqrt();
-            // Quadratures of smooth functions.
+            // Both sides are quadratures of smooth functions.
             let deviation = imaged_line_centroid_deviation(radius, 0.0);
             assert_relative(deviation, expected, 1e-9);
         }
@@ -209,7 +210,8 @@ mod tests {
                 imaged_line_centroid_deviation(w, row_height)
                     / line_centroid_deviation(w, row_height)
             };
-            // Half of (∫ erfc) / ∫ = 1/(√π (πw)³) at p = 0, 7e-5 at 5 h; high rows see less of it.
+            // Half of (∫ erfc) / ∫ = 1/(√π (πw)³) at p = 0, 7e-5 at 5 h; for high rows the
+            // difference is smaller.
             assert!((0.0..8e-5).contains(&(1.0 - ratio(5.0))), "{}", ratio(5.0));
             assert_absolute(ratio(1e5), 1.0, 1e-8);
         }
@@ -243,7 +245,7 @@ mod tests {
         let in_pupil = (blur * 4.0 / PI * cell).powi(2) * sum;
         let expected = imaged_line_centroid_deviation(radius, row_height).hypot(in_pupil.sqrt());
         let deviation = defocused_line_centroid_deviation(radius, row_height, blur);
-        // The staircase of the rim is a hundredth of a chord.
+        // The staircase of the rim has an error of a hundredth of a chord.
         assert_relative(deviation, expected, 5e-3);
     }
 

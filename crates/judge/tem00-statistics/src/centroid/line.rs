@@ -10,30 +10,31 @@ use crate::{
     laws::speckle_length,
 };
 
-/// Returns the standard deviation of the centroid of a laser line under speckle, for a line of the
-/// 1/e² half-width `radius` that is much wider than a speckle and read in rows of `row_height`: how
-/// far the line seems to be from where it is. All three are in units of the speckle size h in the
-/// image.
+/// Returns the standard deviation of the centroid of a laser line under speckle, for a line with
+/// the 1/e² half-width `radius` that is much wider than a speckle and read in rows of `row_height`.
+/// It is the typical distance of the measured position from the true one. All three lengths are in
+/// units of the speckle size h in the image.
 ///
 /// ```text
 /// σ = √(w ℓ(p) / (8 √π))      w = radius, p = row_height along the line, ℓ the speckle length
 /// ```
 ///
-/// The function is even in both. The noise grows with the root of the line's width: a wider line
-/// averages over more speckles, but these have a longer lever. Sums of N equal patterns divide it
-/// by √N, light of the degree of polarisation P multiplies it by √((1 + P²)/2): it is proportional
-/// to the contrast.
+/// The function is even in both arguments. The noise grows with the square root of the line's
+/// width: a wider line averages over more speckles, but these have a longer lever. Sums of N equal
+/// patterns divide it by √N, and light with the degree of polarisation P multiplies it by √((1 +
+/// P²)/2): it is proportional to the contrast.
 ///
 /// # Validity
 ///
-/// A Gaussian line, weighed over all of its width by pixels much smaller than it; the limit of wide
-/// lines, first order in the fluctuations. How wide a line must be depends on what it is made of:
+/// The line is Gaussian and is weighted over its full width by pixels much smaller than the line;
+/// the law is the limit of wide lines, to first order in the fluctuations. The necessary width
+/// depends on the formation of the line:
 ///
 /// - a line on a rough surface that a lens images obeys the law within 1 % from w = h on, see
 ///   [`imaged_line_centroid_deviation`](crate::laws::imaged_line_centroid_deviation);
-/// - a speckle pattern times the irradiance, as renderers make it, scatters less: within 5 % of the
-///   law from w = 4.2 h on, within 5 % of the [`SpeckledLine`] from 2 h on, within 7 % of that from
-///   h on.
+/// - a speckle pattern times the irradiance, as in renderers, scatters less: within 5 % of the law
+///   from w = 4.2 h on, within 5 % of the [`SpeckledLine`] from 2 h on, within 7 % of the
+///   `SpeckledLine` from h on.
 ///
 /// # Examples
 ///
@@ -51,7 +52,7 @@ pub fn line_centroid_deviation(radius: f64, row_height: f64) -> f64 {
     (radius.abs() * speckle_length(row_height) / (8.0 * PI.sqrt())).sqrt()
 }
 
-/// A laser line of any width under speckle, as a row across it sees it: first order in the
+/// A laser line of any width under speckle, read by a row across it, to first order in the
 /// fluctuations.
 ///
 /// ```text
@@ -64,10 +65,10 @@ pub fn line_centroid_deviation(radius: f64, row_height: f64) -> f64 {
 ///
 /// # Validity
 ///
-/// The speckle pattern times a Gaussian irradiance, as renderers make it. It is exact for the
-/// moment `Σ y I` over the mean power. A centroid divides by a power that fluctuates itself and
-/// scatters less than first order says: by 7 % at most where w = h, 5 % where it is 2 h and 2.7 %
-/// where it is 4 h.
+/// The model is a speckle pattern times a Gaussian irradiance, as in renderers. It is exact for the
+/// moment `Σ y I` divided by the mean power. A centroid divides by a power that fluctuates itself,
+/// and scatters less than to first order: by 7 % at most at w = h, 5 % at w = 2 h and 2.7 % at w =
+/// 4 h.
 ///
 /// # Examples
 ///
@@ -86,17 +87,17 @@ pub struct SpeckledLine {
     /// Standard deviation of the Gaussian, w/2.
     spread: f64,
     row_height: f64,
-    /// Half the width of what is looked at.
+    /// Half the width of the window.
     window: f64,
 }
 
 impl SpeckledLine {
-    /// Creates a line of the 1/e² half-width `radius` that is read in rows of `row_height`.
+    /// Creates a line with the 1/e² half-width `radius` that is read in rows of `row_height`.
     ///
     /// # Errors
     ///
-    /// Returns an error if the half-width is below 0.01 or the height negative, or either above
-    /// 10⁶.
+    /// Returns an error if the half-width is below 0.01, if the height is negative, or if either is
+    /// above 10⁶.
     pub fn new(radius: f64, row_height: f64) -> Result<Self, StatisticsError> {
         check("radius", radius, [0.01, 1e6], "from 0.01 to 1e6")?;
         check("row_height", row_height, [0.0, 1e6], "from 0 to 1e6")?;
@@ -112,7 +113,7 @@ impl SpeckledLine {
     ///
     /// # Errors
     ///
-    /// Returns an error if the half-width is below a tenth of that of the line.
+    /// Returns an error if the half-width is below a tenth of the half-width of the line.
     pub fn with_window(self, half_width: f64) -> Result<Self, StatisticsError> {
         let min = 0.2 * self.spread;
         let allowed = "at least a tenth of the half-width of the line";
@@ -157,14 +158,15 @@ impl SpeckledLine {
         moments * s * (-half * half).exp() / (2.0 * PI)
     }
 
-    /// Returns the autocovariance of speckle that is averaged along the row, at a lag across it.
+    /// Returns the autocovariance of speckle that is averaged along the row, at a lag across the
+    /// row.
     ///
     /// ```text
     /// (2/p) ∫₀ᵖ (1 − x/p) c(√(lag² + x²)) dx
     /// ```
     fn row_autocovariance(&self, lag: f64) -> f64 {
         let p = self.row_height;
-        // The mean square distance in a row, p²/6, then no longer counts.
+        // The mean square distance in a row, p²/6, is then negligible.
         if p < 1e-8 {
             return autocovariance(lag);
         }
@@ -210,7 +212,7 @@ mod tests {
     use crate::centroid::row_spectrum::Row;
 
     /// The variance from the frequencies, for a line without a window: the spectrum of the weight
-    /// times that of the rows.
+    /// times the spectrum of the rows.
     fn by_spectrum(radius: f64, row_height: f64) -> f64 {
         let s = 0.5 * radius;
         let row = Row::of_height(row_height);
@@ -230,7 +232,7 @@ mod tests {
         for radius in [0.25, 1.0, 4.0, 60.0, 3e4] {
             for row_height in [0.0, 0.25, 4.0, 300.0] {
                 let line = SpeckledLine::new(radius, row_height).expect("a line");
-                // Both are quadratures; what is averaged beyond 128 speckles is some 1e-9.
+                // Both sides are quadratures; the part averaged beyond 128 speckles is about 1e-9.
                 assert_relative(
                     line.centroid_deviation(),
                     by_spectrum(radius, row_height),
@@ -242,8 +244,8 @@ mod tests {
 
     #[test]
     fn wide_lines_have_the_noise_of_the_closed_form() {
-        // The spectrum of a point of a row is ℓ (1 − (3/4) ln(1/f) f² …) near 0, and f² of the
-        // order of 1/w²: 1e-3 from 60 on.
+        // The spectrum of a point of a row is ℓ (1 − (3/4) ln(1/f) f² …) near 0, with f² of the
+        // order of 1/w²: 1e-3 from w = 60 on.
         for row_height in [0.0, 0.5, 2.0] {
             let exact = SpeckledLine::new(200.0, row_height).expect("a line");
             let wide = line_centroid_deviation(200.0, row_height);
@@ -253,7 +255,8 @@ mod tests {
 
     #[test]
     fn windows_cut_what_the_closed_form_of_wide_lines_says() {
-        // σ² = ℓ s/(4√π) (erf t − 2t e^(−t²)/√π) / erf²(t/√2), t the window in standard deviations.
+        // σ² = ℓ s/(4√π) (erf t − 2t e^(−t²)/√π) / erf²(t/√2), with t the window in standard
+        // deviations.
         for t in [0.5_f64, 1.0, 2.0, 3.0, 9.0] {
             let (radius, row_height) = (3e3, 0.7);
             let line = SpeckledLine::new(radius, row_height).expect("a line");

@@ -4,7 +4,7 @@ use tem00_numerics::{quadrature::for_each_node, sinc};
 
 use crate::{StatisticsError, centroid::row_spectrum::Row};
 
-/// A column of pixels that see speckle.
+/// A column of pixels in a speckle pattern.
 ///
 /// All lengths are in units of the speckle size h; behind an elliptical pupil, in units of the
 /// speckle size along the same axis. The first of two numbers is across the column, along the rows.
@@ -12,30 +12,30 @@ use crate::{StatisticsError, centroid::row_spectrum::Row};
 pub struct PixelColumn {
     /// The width and height of the light-sensitive part of a pixel.
     pub size: [f64; 2],
-    /// The distances of the pixels' centres.
+    /// The distances between the centres of neighbouring pixels.
     pub pitch: [f64; 2],
     /// The number of pixels in the column.
     pub pixels: usize,
-    /// The number of neighbouring columns whose mean is taken.
+    /// The number of neighbouring columns that are averaged.
     pub averaged_columns: usize,
 }
 
-/// Covariance of the speckle in the pixels of a column, for the mean intensity 1.
+/// Covariance of the speckle in the pixels of a column, for a mean intensity of 1.
 ///
 /// ```text
 /// c_k = ∫∫ (4/π) chat(|f|) T²(f_x) sinc²(π s f_y) cos(2π k d f_y) df_x df_y
 /// T(f) = sinc(π s_x f) sin(π N d_x f) / (N sin(π d_x f))      N averaged columns
 /// ```
 ///
-/// with the size s and the pitch d of the pixels. The variance of `Σ g_i E_i`, for pixels that see
-/// the irradiances `E_i` without speckle, is `Σ g_i E_i g_j E_j c_|i−j|`. N incoherent patterns of
-/// equal strength divide the covariance by N; light of the degree of polarisation P multiplies it
-/// by (1 + P²)/2.
+/// with the size s and the pitch d of the pixels. The variance of `Σ g_i E_i`, for pixels that
+/// receive the irradiances `E_i` without speckle, is `Σ g_i E_i g_j E_j c_|i−j|`. N incoherent
+/// patterns of equal strength divide the covariance by N; light with the degree of polarisation P
+/// multiplies it by (1 + P²)/2.
 ///
 /// # Validity
 ///
-/// Fully developed speckle behind a circular or elliptical pupil, irradiance that hardly changes
-/// within a pixel. The covariances are exact to 10⁻⁹.
+/// The speckle is fully developed behind a circular or elliptical pupil, and the irradiance hardly
+/// changes within a pixel. The covariances are exact to 10⁻⁹.
 ///
 /// # Examples
 ///
@@ -60,8 +60,7 @@ pub struct PixelAutocovariance {
     values: Vec<f64>,
 }
 
-/// The longest column and the widest average, in units of h: the time to integrate grows with
-/// either.
+/// The longest column and the widest average, in units of h: the computing time grows with both.
 const LONGEST: f64 = 4096.0;
 
 impl PixelAutocovariance {
@@ -69,8 +68,8 @@ impl PixelAutocovariance {
     ///
     /// # Errors
     ///
-    /// Returns an error if a pixel is larger than the pitch or a length negative or not finite, if
-    /// there are no pixels or no columns, or if they span more than 4096 speckle sizes.
+    /// Returns an error if a pixel is larger than the pitch, if a length is negative or not finite,
+    /// if there are no pixels or no columns, or if they span more than 4096 speckle sizes.
     pub fn new(column: &PixelColumn) -> Result<Self, StatisticsError> {
         check(column)?;
         let row = Row::of_pixels(
@@ -81,7 +80,7 @@ impl PixelAutocovariance {
         let [height, pitch] = [column.size[1], column.pitch[1]];
         let extent = pitch * (column.pixels - 1) as f64 + height;
         let mut values = vec![0.0; column.pixels];
-        // With f = t² the nodes gather where the spectrum has a kink. All lags share them.
+        // With f = t² the nodes concentrate at the kink of the spectrum. All lags share the nodes.
         let longest = (0.5 / extent).min(0.125);
         for_each_node([0.0, 1.0], longest, |t, weight| {
             let f = t * t;
@@ -92,8 +91,8 @@ impl PixelAutocovariance {
         Ok(Self { values })
     }
 
-    /// Returns the covariance of two pixels of the column that are `lag` apart; beyond the
-    /// column, 0.
+    /// Returns the covariance of two pixels of the column that are `lag` pixels apart; 0 beyond the
+    /// column.
     pub fn covariance(&self, lag: usize) -> f64 {
         self.values.get(lag).copied().unwrap_or(0.0)
     }
@@ -103,7 +102,7 @@ impl PixelAutocovariance {
         &self.values
     }
 
-    /// Returns the variance of `Σ amplitudes[i] s[i]`, s being the speckle in the pixels of the
+    /// Returns the variance of `Σ amplitudes[i] s[i]`, where s is the speckle in the pixels of the
     /// column.
     ///
     /// An amplitude is the irradiance of a pixel times the sensitivity of a result to it.
@@ -122,7 +121,7 @@ impl PixelAutocovariance {
         };
         let lags = 1..amplitudes.len();
         let beside: f64 = lags.map(|lag| products(lag) * self.values[lag]).sum();
-        // A variance of rounding errors may turn out negative.
+        // A variance that consists of rounding errors may be negative.
         (products(0) * self.values[0] + 2.0 * beside).max(0.0)
     }
 }
@@ -150,8 +149,8 @@ fn check(column: &PixelColumn) -> Result<(), StatisticsError> {
 
 /// Adds `amplitude · cos(k angle)` to the value k.
 fn add_cosines(values: &mut [f64], amplitude: f64, angle: f64) {
-    // cos((k + 1) a) = 2 cos a cos(k a) − cos((k − 1) a) loses k² roundings for small angles: each
-    // cosine stands for itself.
+    // cos((k + 1) a) = 2 cos a cos(k a) − cos((k − 1) a) accumulates k² roundings for small angles:
+    // each cosine is computed on its own.
     for (lag, value) in values.iter_mut().enumerate() {
         *value += amplitude * (lag as f64 * angle).cos();
     }
@@ -212,8 +211,9 @@ mod tests {
 
     #[test]
     fn pixels_average_the_autocovariance_over_their_area() {
-        // The midpoint rule over the differences of two points in two pixels errs by the second
-        // derivative, some 5, over 24 · 50² and less, as the triangles meet without a step.
+        // The midpoint rule over the differences of two points in two pixels has an error of the
+        // second derivative, about 5, divided by 24 · 50², or less, as the triangles meet without a
+        // step.
         const STEPS: u32 = 100;
         let difference = |step: u32| (f64::from(step) + 0.5) / 50.0 - 1.0;
         let speckle = of(&COLUMN);
@@ -262,7 +262,7 @@ mod tests {
         let power: f64 = places.clone().map(irradiance).sum();
         let amplitudes: Vec<_> = places.map(|y| y * irradiance(y) / power).collect();
         let line = SpeckledLine::new(radius, 1.0).expect("a line");
-        // Pixels hide (π 0.25 f)²/3 of what is of the frequency f: f² is some 3/(2π w)².
+        // Pixels hide the fraction (π 0.25 f)²/3 of the frequency f, where f² is about 3/(2π w)².
         let ratio = speckle.variance(&amplitudes).sqrt() / line.centroid_deviation();
         assert!((ratio - 1.0).abs() < 3e-3, "{ratio}");
     }

@@ -17,16 +17,17 @@ use crate::laws::airy_power_spectrum;
 /// ℓ(p) = (4/π) / p − (16/π⁴) (ln 4πp + γ) / p² + …      p → ∞
 /// ```
 ///
-/// What pixels of the height p see along a line across them fluctuates like a train of independent
-/// values, each ℓ(p) / C² long, C being their contrast. A detector that weighs the irradiance E(y)
-/// across a laser line with g(y) has, first order in the fluctuations and for lines much wider than
-/// a speckle, the variance `ℓ(p) ∫ g² E² dy`. The function is even, and falls from p = 0 on.
+/// The signal of pixels of the height p along a line across them fluctuates like a sequence of
+/// independent values, each ℓ(p) / C² long, where C is their contrast. A detector that weights the
+/// irradiance E(y) across a laser line with g(y) has, to first order in the fluctuations and for
+/// lines much wider than a speckle, the variance `ℓ(p) ∫ g² E² dy`. The function is even, and
+/// decreases from p = 0 on.
 ///
 /// # Validity
 ///
-/// Fully developed speckle behind a circular pupil. Behind an elliptical one, p is in units of the
-/// speckle size along the line and ℓ in units of that across it. The result is exact to 10⁻¹⁰ of
-/// itself.
+/// The speckle is fully developed behind a circular pupil. Behind an elliptical pupil, p is in
+/// units of the speckle size along the line and ℓ in units of the speckle size across it. The
+/// relative error is below 10⁻¹⁰.
 ///
 /// # Examples
 ///
@@ -42,7 +43,7 @@ use crate::laws::airy_power_spectrum;
 /// # References
 ///
 /// - R. G. Dorsch, G. Häusler, J. M. Herrmann, *Laser triangulation: fundamental uncertainty in
-///   distance measurement*, Appl. Opt. 33, 1306, 1994, for the noise of a spot that it leads to.
+///   distance measurement*, Appl. Opt. 33, 1306, 1994, for the resulting noise of a spot.
 pub fn speckle_length(row_height: f64) -> f64 {
     Row::of_height(row_height).spectrum(0.0)
 }
@@ -52,18 +53,18 @@ pub fn speckle_length(row_height: f64) -> f64 {
 pub(crate) struct Row {
     /// The width of the sensitive part of a pixel along the line, in units of h.
     size: f64,
-    /// The distance of the pixels along the line, in units of h.
+    /// The distance between pixels along the line, in units of h.
     pitch: f64,
     /// The number of pixels.
     pixels: f64,
 }
 
-/// The number of periods of the transfer function of one pixel after which only its mean counts: a
-/// zero of the integral of what is left out, which is some 10⁻¹¹ of the whole then.
+/// The number of periods of the transfer function of one pixel after which only its mean is used: a
+/// zero of the integral of the omitted part, which is then about 10⁻¹¹ of the total.
 const AVERAGED_FROM: f64 = 512.0;
 
 impl Row {
-    /// A pixel of a height along the line.
+    /// A pixel with a given height along the line.
     pub(crate) fn of_height(size: f64) -> Self {
         let size = size.abs();
         Self {
@@ -73,7 +74,7 @@ impl Row {
         }
     }
 
-    /// Equal pixels at equal distances, whose mean is taken.
+    /// Equal pixels at equal distances that are averaged.
     pub(crate) const fn of_pixels(size: f64, pitch: f64, pixels: f64) -> Self {
         Self {
             size,
@@ -96,8 +97,8 @@ impl Row {
 
     /// Returns 2 ∫ density(g) T²(g) dg over the frequencies g along the row from 0 to `end`.
     ///
-    /// The density has a kink at 0 that is `kink` wide, from where on the pieces grow, and a root
-    /// of the order 3/2 at the end.
+    /// The density has a kink of the width `kink` at 0, beyond which the pieces grow, and a root of
+    /// the order 3/2 at the end.
     pub(crate) fn weigh(&self, density: impl Fn(f64) -> f64, kink: f64, end: f64) -> f64 {
         if self.size.is_nan() {
             return f64::NAN;
@@ -114,7 +115,7 @@ impl Row {
             sum += if next < end {
                 integrate(f, [start, next], longest)
             } else {
-                // What is mirrored has its root at the start.
+                // The mirrored integrand has its root at the start.
                 let panel = longest / (2.0 * (end - start));
                 integrate_from_root(|u| f(start + end - u), [start, end], panel)
             };
@@ -138,8 +139,8 @@ impl Row {
         (self.pitch * (self.pixels - 1.0) + self.size).recip()
     }
 
-    /// Returns the squared transfer function of the pixels, that of one times the interference of
-    /// their places; or what is left of it if it is averaged over its oscillation.
+    /// Returns the squared transfer function of the pixels: the function of one pixel times the
+    /// interference of their positions. If `averaged`, it is averaged over its oscillation.
     fn transfer(&self, frequency: f64, averaged: bool) -> f64 {
         if averaged {
             return 0.5 * (PI * self.size * frequency).powi(-2);
@@ -191,8 +192,8 @@ mod tests {
             const EULER_GAMMA: f64 = 0.577_215_664_901_532_9;
             let logarithm = (4.0 * PI * p).ln() + EULER_GAMMA;
             let high = (4.0 / PI - 16.0 / PI.powi(4) * logarithm / p) / p;
-            // Next are the root of chat at its end, (2πp)^(−5/2)/p², and the cube of chat at 0,
-            // 1/p⁴.
+            // The next terms are the root of chat at its end, (2πp)^(−5/2)/p², and the cube of chat
+            // at 0, 1/p⁴.
             let tolerance = (2.0 * PI * p).powf(-2.5) / p + p.powi(-3) / 1e3 + 1e-10;
             assert_relative(speckle_length(p), high, tolerance);
         }
@@ -204,7 +205,7 @@ mod tests {
     fn the_spectrum_holds_the_contrast_of_the_row() {
         for p in [0.0, 0.3, 2.0, 17.0] {
             let row = Row::of_height(p);
-            // The nodes gather at the kink of S at 0.
+            // The nodes concentrate at the kink of S at 0.
             let spectrum = |t: f64| 4.0 * t * row.spectrum(t * t);
             let squared = integrate(spectrum, [0.0, 1.0], 0.05);
             let contrast = translation_contrast(p);

@@ -5,7 +5,7 @@ use tem00_numerics::{disc_overlap, quadrature::integrate};
 use crate::airy_autocovariance;
 
 /// Returns the contrast of an exposure during which the pattern changes, where `correlation(t)` is
-/// the correlation of the intensities at two moments the share t of the exposure apart.
+/// the correlation of the intensities at two times that differ by the fraction t of the exposure.
 ///
 /// ```text
 /// C² = 2 ∫₀¹ (1 − t) γ(t) dt
@@ -13,9 +13,9 @@ use crate::airy_autocovariance;
 ///
 /// # Validity
 ///
-/// Fully developed speckle, steady motion and light: γ depends on the difference of the two moments
-/// alone. The quadrature takes 1024 points; a γ that falls within much less than a hundredth of the
-/// exposure wants [`boiling_contrast`] or [`translation_contrast`].
+/// The speckle is fully developed, and motion and light are steady: γ depends only on the
+/// difference of the two times. The quadrature has 1024 points; for a γ that falls within much less
+/// than a hundredth of the exposure use [`boiling_contrast`] or [`translation_contrast`].
 ///
 /// # Examples
 ///
@@ -35,8 +35,8 @@ pub fn contrast_of_exposure(correlation: impl Fn(f64) -> f64) -> f64 {
     integrate(weighted, [0.0, 1.0], 1.0 / 64.0).max(0.0).sqrt()
 }
 
-/// Returns the contrast of an exposure during which speckle boils: the light shifts across a
-/// circular pupil by `drift` diameters while the image stands still.
+/// Returns the contrast of an exposure during which speckle boils: the light moves across a
+/// circular pupil by `drift` diameters while the image is at rest.
 ///
 /// ```text
 /// C² = 2 ∫₀¹ (1 − t) chat(t s)² dt          s = drift, chat the overlap of two discs
@@ -54,7 +54,7 @@ pub fn contrast_of_exposure(correlation: impl Fn(f64) -> f64) -> f64 {
 pub fn boiling_contrast(drift: f64) -> f64 {
     let drift = drift.abs();
     let weighted = |t: f64| 2.0 * (1.0 - t) * disc_overlap(t * drift).powi(2);
-    // Nothing is left of the pattern after one diameter.
+    // The pattern is completely decorrelated after one diameter.
     let end = drift.max(1.0).recip();
     integrate(weighted, [0.0, end], 0.25 * end).sqrt()
 }
@@ -66,8 +66,8 @@ pub fn boiling_contrast(drift: f64) -> f64 {
 /// C² = 2 ∫₀¹ (1 − t) c(t T) dt          T = drift, c the Airy autocovariance
 /// ```
 ///
-/// A drift of one speckle size lowers the contrast to 0.846. The function is even. It is the
-/// contrast of a pixel of that length and no width, too.
+/// A drift of one speckle size lowers the contrast to 0.846. The function is even. It is also the
+/// contrast of a pixel of this length and zero width.
 ///
 /// # Examples
 ///
@@ -85,9 +85,8 @@ pub fn translation_contrast(drift: f64) -> f64 {
     integrate(weighted, [0.0, 1.0], drift.max(1.0).recip()).sqrt()
 }
 
-/// The contrast for T → ∞, from the integrals of c and r c over all r and from what of (r − T) c
-/// lies beyond T, where c is 4/(π⁴ r³) on average. The terms left out oscillate and are below 10⁻⁹
-/// of C².
+/// The contrast for T → ∞, from the integrals of c and r c over all r and the integral of (r − T) c
+/// beyond T, where c is 4/(π⁴ r³) on average. The omitted terms oscillate and are below 10⁻⁹ of C².
 fn contrast_of_long_drift(drift: f64) -> f64 {
     let inverse = drift.recip();
     let line = 16.0 / (3.0 * PI * PI);
@@ -114,7 +113,8 @@ mod tests {
             assert_absolute(boiling_contrast(drift), contrast, 5e-4);
             assert_absolute(boiling_contrast(-drift), contrast, 5e-4);
         }
-        // Once the pattern is lost: 2/s ∫ chat² − 2/s² ∫ chat² ρ dρ, the latter 1/8 − 2/(3π²).
+        // After complete decorrelation C² is 2/s ∫ chat² − 2/s² ∫ chat² ρ dρ, where the second
+        // integral is 1/8 − 2/(3π²).
         let line = integrate(|rho| disc_overlap(rho).powi(2), [0.0, 1.0], 0.1);
         let kappa = 0.125 - 2.0 / (3.0 * PI * PI);
         for drift in [1.0, 3.0, 1e8] {
@@ -153,7 +153,7 @@ mod tests {
     #[test]
     fn an_exposure_is_the_mean_over_pairs_of_moments() {
         const MOMENTS: u32 = 400;
-        // Midpoints: 1/24n² of γ″ < 8 by each of two moments.
+        // Each of the two midpoint rules has an error of 1/24n² of γ″ < 8.
         for (drift, law) in [(0.8, true), (1.5, false)] {
             let gamma = |t: f64| {
                 if law {

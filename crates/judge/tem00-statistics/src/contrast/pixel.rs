@@ -1,7 +1,7 @@
 use crate::rectangular_pixel_contrast;
 
-/// Returns the contrast of fully developed speckle seen by square pixels that integrate over
-/// their whole area, `pixel_size` being their side in units of the speckle size h.
+/// Returns the contrast of fully developed speckle on square pixels that integrate over their whole
+/// area, where `pixel_size` is their side in units of the speckle size h.
 ///
 /// ```text
 /// C² = 4 ∫₀¹∫₀¹ (1−x)(1−y) c(q √(x²+y²)) dx dy      q = pixel_size, c the Airy autocovariance
@@ -9,12 +9,12 @@ use crate::rectangular_pixel_contrast;
 /// C² = (4/π) / q² − …       q → ∞
 /// ```
 ///
-/// Pixels as large as a speckle (q = 1) see the contrast 0.711, pixels twice as large 0.440. The
-/// function is even.
+/// For pixels as large as a speckle (q = 1) the contrast is 0.711, for pixels twice as large 0.440.
+/// The function is even.
 ///
 /// # Validity
 ///
-/// As [`rectangular_pixel_contrast`].
+/// The limits of [`rectangular_pixel_contrast`] apply.
 ///
 /// # Examples
 ///

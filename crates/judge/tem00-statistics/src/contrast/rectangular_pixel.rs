@@ -7,30 +7,30 @@ use tem00_numerics::{
 
 use crate::{airy_autocovariance, laws::translation_contrast};
 
-/// Returns the contrast of fully developed speckle seen by rectangular pixels that integrate over
-/// their area, `pixel_size` being their width and height in units of the speckle size h.
+/// Returns the contrast of fully developed speckle on rectangular pixels that integrate over their
+/// area, where `pixel_size` is their width and height in units of the speckle size h.
 ///
 /// ```text
 /// C² = 4 ∫₀¹∫₀¹ (1−x)(1−y) c(√(q_x²x² + q_y²y²)) dx dy      c the Airy autocovariance
 /// ```
 ///
-/// The size is that of the light-sensitive area: the pitch of the pixels and the gaps between them
-/// do not matter. Pixels of one speckle size by two see the contrast 0.559. The function is even in
-/// either size, and without a height it is the
+/// The size is the size of the light-sensitive area: the pitch of the pixels and the gaps between
+/// them do not matter. For pixels of one speckle size by two the contrast is 0.559. The function is
+/// even in both sizes, and for zero height it equals
 /// [`translation_contrast`](crate::laws::translation_contrast).
 ///
-/// The approximation that only looks at the coherence area `A_c = (4/π) h²`,
+/// The approximation that uses only the coherence area `A_c = (4/π) h²`,
 ///
 /// ```text
 /// C² ≈ G(q_x) G(q_y)      G(q) = √(A_c)/q erf(√π q/√A_c) − (A_c/πq²)(1 − exp(−πq²/A_c))
 /// ```
 ///
-/// which takes the autocovariance for a Gaussian, is larger by up to 11 % of C² for a square.
+/// which replaces the autocovariance by a Gaussian, is larger by up to 11 % of C² for a square.
 ///
 /// # Validity
 ///
-/// Circular pupil, uniform sensitivity within the rectangle, no diffusion in the sensor. The result
-/// is exact to 10⁻⁸ of itself.
+/// The pupil is circular, the sensitivity is uniform within the rectangle, and there is no
+/// diffusion in the sensor. The relative error is below 10⁻⁸.
 ///
 /// # Examples
 ///
@@ -50,7 +50,7 @@ pub fn rectangular_pixel_contrast(pixel_size: [f64; 2]) -> f64 {
         long: width.max(height),
         short: width.min(height),
     };
-    // The contrast is even in the short side, whose square no longer counts.
+    // The contrast is even in the short side, whose square is then negligible.
     if pixel.short < 1e-9 {
         return translation_contrast(pixel.long);
     }
@@ -67,13 +67,13 @@ struct Sides {
     short: f64,
 }
 
-/// From here on the autocovariance is replaced by its mean over its oscillation, at a zero of the
-/// integral of the oscillation.
+/// Distance from which the autocovariance is replaced by its mean over its oscillation, at a zero
+/// of the integral of the oscillation.
 pub(crate) const AVERAGED_FROM: f64 = 128.25;
 
 impl Sides {
     /// Returns ∫ c(r) r g(r) dr, where r g is the density of the distance of two random points of
-    /// the rectangle up to a factor 4 / (long · short): it has a root where r is either side.
+    /// the rectangle up to a factor 4 / (long · short). It has a root where r equals either side.
     fn integral(&self) -> f64 {
         let diagonal = self.long.hypot(self.short);
         let within = |r: f64| {
@@ -126,7 +126,7 @@ fn weigh(g: impl Fn(f64) -> f64, [start, end]: [f64; 2]) -> f64 {
     // One period of the oscillation per panel where r grows fastest, at t = 1.
     let panels = 2.0 * (near_end - start).max(0.0) + 2.0;
     let sum = integrate_from_root(near, [start, near_end], panels.recip());
-    // In the logarithm of r; what lies beyond e⁴⁵ is below 10⁻¹⁹ of the rest.
+    // The integral is in the logarithm of r; the part beyond e⁴⁵ is below 10⁻¹⁹ of the rest.
     let far_start = start.max(AVERAGED_FROM);
     let far = |s: f64| {
         let r = far_start * s.exp();
@@ -144,7 +144,7 @@ pub(crate) fn averaged_autocovariance(r: f64) -> f64 {
 }
 
 /// Returns the contrast of fully developed speckle behind a Gaussian filter: a sensor whose pixels
-/// weigh the intensity with a Gaussian of the standard deviation `spread` along either axis, in
+/// weight the intensity with a Gaussian of the standard deviation `spread` along both axes, in
 /// units of the speckle size h, or a renderer with such a reconstruction filter.
 ///
 /// ```text
@@ -154,7 +154,7 @@ pub(crate) fn averaged_autocovariance(r: f64) -> f64 {
 ///
 /// # Validity
 ///
-/// Circular pupil; a filter wide enough that its cut-off does not show. The function is even.
+/// The pupil is circular, and the cut-off of the filter is negligible. The function is even.
 ///
 /// # Examples
 ///
@@ -169,7 +169,7 @@ pub fn gaussian_filter_contrast(spread: f64) -> f64 {
     // exp(−6.5²) = 5e−19.
     let reach = steepness.min(6.5);
     let end = (6.5 / steepness).min(1.0);
-    // From the end on, where chat has its root if end is 1.
+    // The integration starts at the end, where chat has its root if `end` is 1.
     let integrand = |t: f64| {
         let share = 1.0 - t * t;
         let filter = (-(reach * share).powi(2)).exp();
@@ -232,7 +232,7 @@ mod tests {
 
     #[test]
     fn large_pixels_hold_their_area_in_coherence_areas() {
-        // C² → (4/π) / (q_x q_y), less by some ln q / q.
+        // C² → (4/π) / (q_x q_y), with a relative correction of about ln q / q.
         for size in [[1e8, 1e9], [1e30, 1e12], [1e200, 1e200]] {
             let [long, short] = size.map(f64::sqrt);
             let scaled = rectangular_pixel_contrast(size) * long * short;
@@ -257,7 +257,7 @@ mod tests {
             let z = 0.5 * (2.0 * PI * spread).powi(2);
             let squared = 2.0 / z * (1.0 - scaled_bessel_i0(z) - scaled_i1(z));
             let contrast = gaussian_filter_contrast(spread);
-            // The difference quotient errs by 1e−12, times 2/z = 10.
+            // The difference quotient has an error of 1e−12, times 2/z = 10.
             assert_absolute(contrast * contrast, squared, 3e-11);
         }
         let far = gaussian_filter_contrast(1e30) * 1e30;

@@ -24,27 +24,27 @@ pub enum Boundary {
 /// c(r) = ⟨ΔI(x) ΔI(x + r)⟩ / ⟨ΔI²⟩       ΔI = I − mean of the image
 /// ```
 ///
-/// The average goes over all pixels where the image is [`Periodic`](Boundary::Periodic), and the
-/// grid of lags is as large as the image. For a [`Finite`](Boundary::Finite) image it goes over the
-/// pairs of pixels that lie inside; the grid of lags is twice as large, and a lag of the full width
-/// or height, for which there is no pair, holds 0. Lag `(x, y)` stands at `(x, y)`, negative ones
-/// at the far end: take [`Grid::wrapped`].
+/// For a [`Periodic`](Boundary::Periodic) image the average runs over all pixels, and the grid of
+/// lags is as large as the image. For a [`Finite`](Boundary::Finite) image it runs over the pairs
+/// of pixels that lie inside; the grid of lags is twice as large, and a lag of the full width or
+/// height, for which there is no pair, holds 0. Lag `(x, y)` is stored at `(x, y)`, and negative
+/// lags at the far end: read them with [`Grid::wrapped`].
 ///
 /// # Bias
 ///
 /// The mean of the image is not the expectation of its pixels: all lags of a speckle pattern are
-/// too low by the coherence area over the area of the image, `4h² / πnₚ` for nₚ pixels. Where the
-/// tile was computed from N unit phasors this is 1/N.
+/// too low by the coherence area divided by the area of the image, `4h² / πnₚ` for nₚ pixels. For a
+/// tile computed from N unit phasors this is 1/N.
 ///
 /// # Independence
 ///
-/// None is assumed. The lags of one image are correlated with each other, and a lag near the full
-/// size of a finite image rests on few pairs.
+/// No independence is assumed. The lags of one image are correlated with each other, and a lag near
+/// the full size of a finite image is based on few pairs.
 ///
 /// # Validity
 ///
-/// The transforms are in `f32`: the result is off by some 10⁻⁶, times the pixels of the image per
-/// pair in the finite case. The memory needed is about 20 bytes per lag.
+/// The transforms are in `f32`: the error of the result is about 10⁻⁶, times the number of pixels
+/// per pair in the finite case. The memory needed is about 20 bytes per lag.
 ///
 /// # Errors
 ///
@@ -98,20 +98,21 @@ pub fn autocovariance(image: &Grid<f32>, boundary: Boundary) -> Result<Grid<f32>
 /// S(f) = |Σ ΔI(x) exp(−2πi f·x)|² / Σ ΔI²      f = (kx / width, ky / height) cycles per pixel
 /// ```
 ///
-/// Frequency `(kx, ky)` stands at `(kx, ky)`, negative ones at the far end. The mean of S over all
-/// frequencies is 1; that of speckle of the size h pixels is `h² S₁(|f| h)` with S₁ the
+/// Frequency `(kx, ky)` is stored at `(kx, ky)`, and negative frequencies at the far end. The mean
+/// of S over all frequencies is 1; for speckle of the size h pixels S is `h² S₁(|f| h)` with S₁ the
 /// [`airy_power_spectrum`](crate::laws::airy_power_spectrum).
 ///
 /// # Bias
 ///
-/// Zero frequency holds nothing, because the mean is taken from the image itself; the rest is that
-/// much too large. An image that does not repeat leaks: the jumps at its edges appear along the
-/// axes as if they were part of it.
+/// The value at zero frequency is 0, because the mean is taken from the image itself; the other
+/// values are too large by this amount. An image that is not periodic leaks: the jumps at its edges
+/// appear along the axes as if they were part of it.
 ///
 /// # Independence
 ///
-/// None is assumed. Each value is exponentially distributed about its expectation however large the
-/// image is, independently of the others but for S(−f) = S(f): take the [`radial_average`].
+/// No independence is assumed. For an image of any size each value is exponentially distributed
+/// with its expectation as the mean, independently of the others except for S(−f) = S(f): use the
+/// [`radial_average`].
 ///
 /// # Errors
 ///
@@ -148,13 +149,13 @@ pub struct Ring {
 ///
 /// # Bias
 ///
-/// The average over a ring is that of the function, not its value at the mean radius: on a parabola
-/// of the second derivative c″ they differ by `c″ step² / 24`.
+/// The average over a ring is the mean of the function, not its value at the mean radius: for a
+/// parabola with the second derivative c″ they differ by `c″ step² / 24`.
 ///
 /// # Independence
 ///
-/// None is assumed. An autocovariance or power spectrum has the same value at opposite cells: a
-/// ring holds half as many independent values as cells.
+/// No independence is assumed. An autocovariance or power spectrum has the same value at opposite
+/// cells: a ring holds half as many independent values as cells.
 ///
 /// # Errors
 ///
@@ -221,9 +222,9 @@ impl Ring {
 /// Returns every `stride`-th pixel of every `stride`-th row.
 ///
 /// Samples of a speckle pattern that are at least the first zero of the autocovariance apart, 1.22
-/// speckle sizes, correlate by less than 0.018 and pass as independent in the tests of this crate.
-/// The last, incomplete stride is left out, so that this also holds across the edges of a periodic
-/// pattern.
+/// speckle sizes, have a correlation below 0.018 and count as independent in the tests of this
+/// crate. The last, incomplete stride is left out, so that this also holds across the edges of a
+/// periodic pattern.
 ///
 /// # Errors
 ///
@@ -283,7 +284,7 @@ fn correlate(
     Ok(back.forward(&power, |_, _, sum| sum.re))
 }
 
-/// Returns how many pairs of `size` pixels are the lag at `index` apart, in a grid of 2 · `size`
+/// Returns the number of pairs among `size` pixels at the lag of `index`, in a grid of 2 · `size`
 /// lags.
 fn pairs_at(index: usize, size: usize) -> usize {
     size.abs_diff(index)
@@ -379,9 +380,9 @@ mod tests {
         }
         let (_, phasors) = speckle_tile(size, diameter, 0);
         let speckle_size = size as f64 / (2.0 * (phasors as f64 / core::f64::consts::PI).sqrt());
-        // One lag of one tile spreads by √(2 Σ chat² (cos − c)²) / N, 0.77 / C where c is small and
-        // less elsewhere; 48 lags at once and α = 0.001 in all are 4.3 σ. The mask's lattice adds
-        // 2e−4.
+        // The standard deviation of one lag of one tile is √(2 Σ chat² (cos − c)²) / N, 0.77 / C
+        // where c is small and less elsewhere; 48 lags at once and α = 0.001 in all are 4.3 σ. The
+        // mask's lattice adds 2e−4.
         let tolerance = 4.3 * 0.77 / diameter as f64 / f64::from(TILES).sqrt() + 2e-4;
         for (lag, value) in sums.iter().enumerate().take(48) {
             let theory = airy_autocovariance(lag as f64 / speckle_size) - 1.0 / phasors as f64;
@@ -404,10 +405,10 @@ mod tests {
             if ring.radius < 2.5 * step {
                 continue; // fewer than ten independent values
             }
-            // Exponential values, half of them independent: 4.6 σ are α = 0.001 for all rings, the
-            // sum of ten exponentials not being normal yet. Of chat itself, 8e−4 is 1.2 ε^(3/2)
-            // half a ring from its edge and 1.2e−3 what four of 3217 points of the mask's lattice
-            // amount to.
+            // Exponential values, half of them independent: 4.6 σ are α = 0.001 for all rings,
+            // since the sum of ten exponentials is not yet normal. For chat itself, 8e−4 is 1.2
+            // ε^(3/2) half a ring from its edge, and 1.2e−3 is the fraction of four of the 3217
+            // points of the mask's lattice.
             let spread = theory / (0.5 * ring.count as f64).sqrt();
             let chat = speckle_size.powi(2) * 4.0 / core::f64::consts::PI * 2e-3;
             assert_absolute(ring.mean, theory, 4.6 * spread + chat);

@@ -2,13 +2,14 @@ use statrs::function::gamma::digamma;
 
 use crate::{GammaIntensity, Moments, StatisticsError, estimate::moments::Scaled};
 
-/// A Gamma law fitted to samples: their mean and the shape M, the number of degrees of freedom.
+/// A Gamma distribution fitted to samples: their mean and the shape M, the number of degrees of
+/// freedom.
 ///
 /// # Independence
 ///
-/// Mean and shape hold for any samples, the standard error for independent ones of a Gamma law:
-/// take [`decorrelated_samples`](crate::estimate::decorrelated_samples). A hypothesis test of the
-/// samples against the law fitted to them overstates the agreement.
+/// Mean and shape are valid for any samples, the standard error for independent samples of a Gamma
+/// distribution: use [`decorrelated_samples`](crate::estimate::decorrelated_samples). A hypothesis
+/// test of the samples against the law fitted to them overstates the agreement.
 ///
 /// # Examples
 ///
@@ -44,7 +45,7 @@ impl GammaFit {
     ///
     /// # Bias
     ///
-    /// M is too large by the share `(2 + 3/M) / n`, in first order in 1/n.
+    /// M is too large by the fraction `(2 + 3/M) / n`, to first order in 1/n.
     ///
     /// # Errors
     ///
@@ -65,19 +66,20 @@ impl GammaFit {
         })
     }
 
-    /// Fits the law of the largest likelihood, which counts the dark samples for more than the
+    /// Fits the distribution by maximum likelihood, which gives dark samples more weight than the
     /// moments do: `ln M − ψ(M) = ln ⟨I⟩ − ⟨ln I⟩`, with ψ the digamma function.
     ///
     /// ```text
     /// standard error of M = 1 / √(n (ψ′(M) − 1/M))      for n → ∞
     /// ```
     ///
-    /// No unbiased fit has a smaller error; that of the moments is 1.6 times as large at M = 1.
+    /// No unbiased fit has a smaller error; the error of the fit by moments is 1.6 times as large
+    /// at M = 1.
     ///
     /// # Bias
     ///
-    /// M is too large by a share below 3/n, in first order in 1/n. A noise floor or a black level
-    /// that is off moves the logarithm of dark samples and with it M.
+    /// M is too large by a fraction below 3/n, to first order in 1/n. A noise floor or a wrong
+    /// black level changes the logarithm of dark samples and thereby M.
     ///
     /// # Errors
     ///
@@ -158,7 +160,8 @@ where
     Ok(scaled)
 }
 
-/// Returns the M at which ln M − ψ(M) is `excess`, by bisection in ln M: the function falls.
+/// Returns the M at which ln M − ψ(M) is `excess`, by bisection in ln M: the function is
+/// decreasing.
 fn shape_of_excess(excess: f64) -> f64 {
     // 1/2M < ln M − ψ(M) < 1/M.
     let (mut low, mut high) = (0.5 / excess, excess.recip());
@@ -173,7 +176,7 @@ fn shape_of_excess(excess: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// From here on the asymptotic series are exact to rounding.
+/// Argument from which the asymptotic series are exact to rounding.
 const ASYMPTOTIC_FROM: f64 = 20.0;
 
 /// Returns ln x − ψ(x), for large x without cancellation.
@@ -251,14 +254,15 @@ mod tests {
             }
             let by_moments = Moments::from_samples(&moments).unwrap();
             let by_likelihood = Moments::from_samples(&likelihood).unwrap();
-            // A spread from 1500 fits is known to 1.8 %, here 3.3 σ; the first order errs by 10/n.
+            // A spread from 1500 fits has a relative standard error of 1.8 %, here times 3.3; the
+            // first order has an error of 10/n.
             let tolerance = 3.3 * 0.018 + 10.0 / n;
             let spread = (2.0 * m * (m + 1.0) / n).sqrt();
             assert_relative(by_moments.standard_deviation(), spread, tolerance);
             let spread = (n * (trigamma(m) - m.recip())).sqrt().recip();
             assert_relative(by_likelihood.standard_deviation(), spread, tolerance);
             // ⟨u² − 2uv + v²⟩ of the relative errors u of the mean and v of the variance, which are
-            // 1/nM, 2/nM and (2 + 6/M)/n. The next order of the bias is some 20/n², 5e−4.
+            // 1/nM, 2/nM and (2 + 6/M)/n. The next order of the bias is about 20/n², 5e−4.
             let bias = (2.0 * m + 3.0) / n;
             let tolerance = 3.3 * by_moments.standard_error() + 20.0 * m / (n * n);
             assert_absolute(by_moments.mean(), m + bias, tolerance);

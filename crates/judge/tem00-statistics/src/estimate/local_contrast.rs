@@ -5,32 +5,32 @@ use crate::{
     estimate::moments::{Scaled, check_finite},
 };
 
-/// Returns the contrast of an image within a square window about every pixel: the map of laser
-/// speckle contrast imaging, where speckle that moves during the exposure shows as a low contrast.
+/// Returns the contrast of an image within a square window at every pixel: the map of laser speckle
+/// contrast imaging, in which speckle that moves during the exposure has a low contrast.
 ///
 /// ```text
 /// K = s / m         over window × window pixels, s² with the divisor n − 1
 /// ```
 ///
-/// The value at `(x, y)` belongs to the window whose first pixel is there; only windows inside the
-/// image count, so that the map is `window − 1` pixels smaller along either axis.
+/// The value at `(x, y)` belongs to the window whose first pixel is `(x, y)`; only windows inside
+/// the image are used, so that the map is `window − 1` pixels smaller along both axes.
 ///
 /// # Bias
 ///
-/// A window of few speckles does not see the whole contrast, because its own mean follows the
-/// pattern. The expectation of s² is
+/// A window of few speckles underestimates the contrast, because its own mean follows the pattern.
+/// The expectation of s² is
 ///
 /// ```text
 /// σ² (1 − c̄) n / (n − 1)         c̄ the mean autocovariance of two pixels of the window, n = window²
 /// ```
 ///
 /// where for pixels much smaller than a speckle c̄ is the squared
-/// [`pixel_contrast`](crate::pixel_contrast) of the window. K itself is lower still,
-/// because it is not the root of that expectation. Nothing is corrected.
+/// [`pixel_contrast`](crate::pixel_contrast) of the window. K itself is lower still, because its
+/// expectation is not the square root of this expectation. Nothing is corrected.
 ///
 /// # Independence
 ///
-/// None is assumed of the pixels. Windows that overlap share their pixels.
+/// No independence of the pixels is assumed. Windows that overlap share pixels.
 ///
 /// # Errors
 ///
@@ -129,7 +129,8 @@ mod tests {
         for seed in 0..TILES {
             let (tile, _) = speckle_tile(size, diameter, seed);
             let contrasts = local_contrast(&tile, usize::from(window)).unwrap();
-            // Windows apart by more than a speckle count as independent; K m is the deviation.
+            // Windows more than a speckle apart count as independent; K m is the standard
+            // deviation.
             for y in (0..contrasts.height()).step_by(12) {
                 for x in (0..contrasts.width()).step_by(12) {
                     let corner = Grid::from_fn(7, 7, |i, j| tile[(x + i, y + j)]);
@@ -141,11 +142,11 @@ mod tests {
         let measured = Moments::from_samples(&variances).unwrap();
         let n = f64::from(window).powi(2);
         let law = (1.0 - mean_covariance(u32::from(window), 4.0)) * n / (n - 1.0);
-        // 3.3 σ, and 1/N of the 800 phasors.
+        // The tolerance is 3.3 σ, plus 1/N for the 800 phasors.
         let tolerance = 3.3 * measured.standard_error() + 1.0 / 800.0;
         assert_absolute(measured.mean(), law, tolerance);
         assert!(law < 0.78 && tolerance < 0.15, "{law} ± {tolerance}");
-        // Small pixels: the window is a pixel of its own.
+        // For small pixels the window acts as one large pixel.
         let fine = mean_covariance(200, 100.0).sqrt();
         assert_relative(fine, pixel_contrast(2.0), 2e-4);
     }

@@ -11,7 +11,7 @@ use crate::{StatisticsError, space::second_order::pixels_per_contrast_sample};
 ///
 /// The mean is unbiased, whether the samples are independent or not. The variance, with the divisor
 /// n − 1, is unbiased for independent samples; for the pixels of one image it is too small by the
-/// share 4h² / πnₚ, where h is the speckle size and nₚ the number of pixels, both in pixels.
+/// fraction 4h² / πnₚ, where h is the speckle size and nₚ the number of pixels, both in pixels.
 ///
 /// # Examples
 ///
@@ -69,7 +69,7 @@ impl Moments {
     }
 }
 
-/// The contrast of samples, their standard deviation over their mean, and its uncertainty.
+/// Contrast of samples, their standard deviation divided by their mean, with its standard error.
 ///
 /// ```text
 /// C = s / m         1 for fully developed speckle
@@ -77,13 +77,13 @@ impl Moments {
 ///
 /// # Bias
 ///
-/// For n independent samples of fully developed speckle the expectation is 1 − 1/n in first order.
-/// Nothing is corrected. For an image, n is the number of pixels over that of
-/// [`with_speckle_size`](Self::with_speckle_size), in order of magnitude.
+/// For n independent samples of fully developed speckle the expectation is 1 − 1/n to first order.
+/// Nothing is corrected. For an image, n is in order of magnitude the number of pixels divided by
+/// the number of pixels per sample in [`with_speckle_size`](Self::with_speckle_size).
 ///
 /// # Independence
 ///
-/// The standard error holds for independent samples of any distribution. Neighbouring pixels are
+/// The standard error is valid for independent samples of any distribution. Neighbouring pixels are
 /// not independent: [`with_speckle_size`](Self::with_speckle_size) gives the error of an image.
 ///
 /// # Examples
@@ -138,8 +138,8 @@ impl Contrast {
         })
     }
 
-    /// Returns this contrast with the standard error of an image whose speckles are `speckle_size`
-    /// pixels large and all of whose pixels were given.
+    /// Returns this contrast with the standard error for all pixels of an image whose speckles are
+    /// `speckle_size` pixels large.
     ///
     /// ```text
     /// n pixels count as n / 0.585 h² independent samples
@@ -147,9 +147,9 @@ impl Contrast {
     ///
     /// # Validity
     ///
-    /// Fully developed speckle behind a circular pupil, in an image many speckles across, each
-    /// pixel a point sample. Below two pixels the factor 0.585 h² is replaced by the sum of the
-    /// squared Airy autocovariance over the pixels, which goes to 1.
+    /// The speckle is fully developed behind a circular pupil, the image is many speckles across,
+    /// and each pixel is a point sample. Below two pixels the factor 0.585 h² is replaced by the
+    /// sum of the squared Airy autocovariance over the pixels, which goes to 1.
     ///
     /// # Errors
     ///
@@ -168,20 +168,21 @@ impl Contrast {
         })
     }
 
-    /// Returns the interval that holds the contrast of the ensemble with the probability `level`,
-    /// from its lower to its upper end.
+    /// Returns the confidence interval of the ensemble's contrast at the confidence `level`, from
+    /// its lower to its upper end.
     ///
     /// ```text
     /// C exp(± z s_C / C)         s_C the standard error, z the normal quantile: 1.96 for 0.95
     /// ```
     ///
-    /// The logarithm of C is taken to be normal, which keeps the interval positive.
+    /// The logarithm of C is assumed to be normally distributed, which keeps the interval positive.
     ///
     /// # Validity
     ///
-    /// Many independent samples. Of fully developed speckle an interval of the level 0.95 holds the
-    /// contrast in 0.90 of all cases for a hundred samples, in 0.94 for a thousand: the error is
-    /// estimated from the same samples, and where these happen to lack bright ones both are small.
+    /// The interval needs many independent samples. For fully developed speckle an interval of the
+    /// level 0.95 contains the contrast in 0.90 of all cases with a hundred samples, and in 0.94
+    /// with a thousand: the error is estimated from the same samples, and if these happen to lack
+    /// bright ones, both contrast and error are too small.
     ///
     /// # Errors
     ///
@@ -232,12 +233,13 @@ impl Contrast {
 ///
 /// # Bias
 ///
-/// Of the order of 1/n for n independent pairs of samples; none where the grids are independent.
+/// The bias is of the order of 1/n for n independent pairs of samples, and zero if the grids are
+/// independent.
 ///
 /// # Independence
 ///
-/// None is assumed of the value. Where the two grids are independent speckle patterns of the size
-/// h, in pixels, its standard deviation is `√(0.585 h² / nₚ)` for nₚ pixels.
+/// No independence is assumed for the value. If the two grids are independent speckle patterns of
+/// the size h, in pixels, its standard deviation is `√(0.585 h² / nₚ)` for nₚ pixels.
 ///
 /// # Errors
 ///
@@ -323,7 +325,7 @@ impl Scaled {
         }
     }
 
-    /// Returns how many standard deviations a sample lies above the mean.
+    /// Returns the distance of a sample above the mean, in standard deviations.
     pub(crate) fn standardise(&self, sample: impl Into<f64>) -> f64 {
         (sample.into() / self.unit - self.mean) / self.standard_deviation
     }

@@ -1,5 +1,5 @@
-/// Returns the speckle size before square pixels without gaps widened it to `measured`, both in
-/// pixels; `None` if it was below 0.95 pixels, where the pixels hide it.
+/// Returns the speckle size before widening by square pixels without gaps, from the `measured`
+/// size, both in pixels; `None` if it was below 0.95 pixels, where the pixels hide it.
 ///
 /// ```text
 /// measured² = h² + 0.64 + 0.30 / h²
@@ -7,8 +7,8 @@
 ///
 /// # Validity
 ///
-/// Fitted to the autocovariance of a circular pupil behind such pixels, as sampled by them: h is
-/// off by 1 % at most.
+/// The formula is fitted to the autocovariance of a circular pupil behind such pixels, as sampled
+/// by them: the error of h is 1 % at most.
 ///
 /// # Examples
 ///
@@ -24,7 +24,7 @@ pub fn size_before_pixels(measured: f64) -> Option<f64> {
     let excess = measured * measured - 0.64;
     let root = (excess * excess - 4.0 * 0.30).sqrt();
     let size = (0.5 * (excess + root)).sqrt();
-    // Not so either where there is no root.
+    // The comparison is also false where there is no root.
     (size >= 0.95).then_some(size)
 }
 

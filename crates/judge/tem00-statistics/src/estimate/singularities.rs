@@ -11,27 +11,28 @@ pub struct Singularity {
     pub x: usize,
     /// The row of the cell.
     pub y: usize,
-    /// +1 where the phase grows by 2π on the way from the x to the y axis, −1 where it falls.
+    /// +1 if the phase grows by 2π in the sense from the x to the y axis, −1 if it falls.
     pub charge: i8,
 }
 
 /// Finds the phase singularities of a sampled field, cell by cell, in the order of its rows.
 ///
 /// The charge of a cell is the number of turns of the phase along its four corners. It is counted
-/// in integers, so that the charge inside any closed path is exactly the turns along that path;
-/// over a [`Periodic`](Boundary::Periodic) field the charges add up to exactly 0. Cells of a
+/// in integers, so that the charge inside any closed path is exactly the number of turns along the
+/// path; over a [`Periodic`](Boundary::Periodic) field the charges add up to exactly 0. Cells of a
 /// [`Finite`](Boundary::Finite) field have all corners inside.
 ///
 /// # Bias
 ///
-/// Where the field is nearly zero between two samples its phase seems to jump, and a pair of
-/// opposite charges in neighbouring cells appears that is not there: of speckles h ≥ 3 samples
-/// large too many are found by the share 1.5/h², by simulation. Two of opposite charge in one cell
-/// cancel.
+/// Where the field is nearly zero between two samples its phase seems to jump, and a spurious pair
+/// of opposite charges appears in neighbouring cells: for speckles of h ≥ 3 samples the count is
+/// too large by the fraction 1.5/h², by simulation. Two singularities of opposite charge in one
+/// cell cancel.
 ///
 /// # Independence
 ///
-/// None is assumed. Singularities of opposite charge are neighbours: charges screen each other.
+/// No independence is assumed. Singularities of opposite charge are neighbours: charges screen each
+/// other.
 ///
 /// # Errors
 ///
@@ -92,7 +93,7 @@ fn check_field(field: &Grid<Complex<f32>>) -> Result<(), StatisticsError> {
     }
 }
 
-/// Returns how often the phase turns on the way around four corners and back.
+/// Returns the number of turns of the phase around four corners and back.
 fn turns([a, b, c, d]: [Complex<f32>; 4]) -> i8 {
     crossing(a, b) + crossing(b, c) + crossing(c, d) + crossing(d, a)
 }
@@ -100,8 +101,9 @@ fn turns([a, b, c, d]: [Complex<f32>; 4]) -> i8 {
 /// Returns +1 where the straight line from `a` to `b` crosses the negative real axis
 /// counterclockwise, −1 where clockwise, and 0 where it does not.
 ///
-/// The way back gives exactly the opposite: products of two `f32` are exact in `f64`, so that the
-/// sign of their difference is, and a line through zero itself counts as no crossing either way.
+/// The line from `b` to `a` gives exactly the opposite: products of two `f32` are exact in `f64`,
+/// so that the sign of their difference is exact, and a line through zero itself counts as no
+/// crossing in either direction.
 fn crossing(a: Complex<f32>, b: Complex<f32>) -> i8 {
     let (from_above, to_above) = (a.im >= 0.0, b.im >= 0.0);
     let turn = f64::from(a.re) * f64::from(b.im) - f64::from(a.im) * f64::from(b.re);
@@ -122,14 +124,14 @@ fn crossing(a: Complex<f32>, b: Complex<f32>) -> i8 {
 ///
 /// # Bias
 ///
-/// As for [`phase_singularities`].
+/// The bias is the same as for [`phase_singularities`].
 ///
 /// # Independence
 ///
-/// Singularities repel like charges and attract opposite ones, and their number spreads less than
-/// that of independent points. The standard error, `√(0.56 count) / cells`, holds for fully
-/// developed speckle behind a circular pupil in a field many speckles across; the factor was found
-/// by simulation.
+/// Singularities repel like charges and attract opposite ones, and their number fluctuates less
+/// than the number of independent points. The standard error, `√(0.56 count) / cells`, is valid for
+/// fully developed speckle behind a circular pupil in a field many speckles across; the factor was
+/// found by simulation.
 ///
 /// # Examples
 ///
@@ -149,7 +151,7 @@ pub struct VortexDensity {
     cells: usize,
 }
 
-/// The variance of the number of singularities over its mean, 1 for independent points.
+/// The variance of the number of singularities divided by its mean, 1 for independent points.
 const NUMBER_VARIANCE: f64 = 0.56;
 
 impl VortexDensity {
@@ -191,8 +193,8 @@ impl VortexDensity {
         (NUMBER_VARIANCE * self.count as f64).sqrt() / self.cells as f64
     }
 
-    /// Returns the speckle size h that makes this density, in samples: `√(π / 8 density)`; `None`
-    /// where there is no singularity.
+    /// Returns the speckle size h with this density, in samples: `√(π / 8 density)`; `None` if
+    /// there is no singularity.
     pub fn speckle_size(&self) -> Option<f64> {
         (self.count > 0).then(|| (VORTEX_DENSITY / self.value()).sqrt())
     }

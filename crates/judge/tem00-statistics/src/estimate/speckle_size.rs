@@ -13,20 +13,21 @@ use crate::{
 /// h = (lag at which the autocovariance is 1/2) / 0.514497
 /// ```
 ///
-/// Between the pixels on either side of one half the lag is interpolated in the scale on which the
-/// autocovariance of a circular pupil is a straight line, so that for such a pupil it is exact at
-/// any size from one pixel on.
+/// Between the two pixels around the half value, the lag is interpolated on a scale on which the
+/// autocovariance of a circular pupil is a straight line, so that for such a pupil the size is
+/// exact from one pixel on.
 ///
 /// # Bias
 ///
-/// Pixels that integrate over their area widen the autocovariance: speckles of 1, 1.5, 2, 3, 4 and
-/// 8 pixels measure 39 %, 15 %, 8.6 %, 3.6 %, 2.0 % and 0.5 % too large. The mean taken from the
-/// image itself makes speckles too small by the share `0.86 h² / nₚ` for nₚ pixels.
+/// Pixels that integrate over their area widen the autocovariance: the measured size of speckles of
+/// 1, 1.5, 2, 3, 4 and 8 pixels is 39 %, 15 %, 8.6 %, 3.6 %, 2.0 % and 0.5 % too large. Because the
+/// mean is taken from the image itself, the measured size is too small by the fraction
+/// `0.86 h² / nₚ` for nₚ pixels.
 ///
 /// # Independence
 ///
-/// None is assumed. From image to image h spreads by the share 0.62 / n, where the image is n
-/// speckle sizes wide and high.
+/// No independence is assumed. The relative standard deviation of h from image to image is 0.62 /
+/// n, where the image is n speckle sizes wide and high.
 ///
 /// # Examples
 ///
@@ -62,9 +63,9 @@ impl SpeckleSize {
     ///
     /// # Errors
     ///
-    /// Returns an error if a value is not finite or the one at zero lag not positive, if speckles
-    /// are smaller than a pixel, or if the autocovariance does not fall to one half within half the
-    /// grid.
+    /// Returns an error if a value is not finite, if the value at zero lag is not positive, if
+    /// speckles are smaller than a pixel, or if the autocovariance does not fall to one half within
+    /// half the grid.
     pub fn from_autocovariance(lags: &Grid<f32>) -> Result<Self, StatisticsError> {
         Ok(Self {
             x: Self::along(Axis::X, lags)?,
@@ -73,11 +74,12 @@ impl SpeckleSize {
     }
 
     /// Measures the speckle size along one axis from an autocovariance, with zero lag at `(0, 0)`,
-    /// in pixels: also of speckle that the image does not resolve, or not hold, along the other.
+    /// in pixels. The image need not resolve or contain the speckle along the other axis.
     ///
     /// # Errors
     ///
-    /// As [`from_autocovariance`](Self::from_autocovariance), for this axis alone.
+    /// Returns the errors of [`from_autocovariance`](Self::from_autocovariance), for this axis
+    /// alone.
     pub fn along(axis: Axis, lags: &Grid<f32>) -> Result<f64, StatisticsError> {
         let zero = f64::from(lags[(0, 0)]);
         check_finite(lags.values())?;
@@ -106,7 +108,7 @@ impl SpeckleSize {
         self.y
     }
 
-    /// Returns the geometric mean of both sizes, in pixels: that of a round speckle of the same
+    /// Returns the geometric mean of both sizes, in pixels: the size of a round speckle of the same
     /// area.
     pub fn mean(&self) -> f64 {
         (self.x * self.y).sqrt()
@@ -203,8 +205,9 @@ mod tests {
                 sum += measured.x() + measured.y();
             }
             let mean = sum / (2 * TILES) as f64;
-            // One size spreads by the share 0.62 / C; the two axes count as one, 3.3 σ. The bias is
-            // 0.86 / C² and the square of the spread, and C of the lattice mask is 1e−3 off.
+            // One size has the relative standard deviation 0.62 / C; the two axes count as one, 3.3
+            // σ. The bias is 0.86 / C² and the square of the spread, and C of the lattice mask has
+            // an error of 1e−3.
             let spread = 0.62 / diameter as f64;
             let tolerance = 3.3 * spread / (TILES as f64).sqrt() + 1e-3 + 2.0 * spread * spread;
             assert_relative(mean, 4.0, tolerance);
@@ -225,8 +228,8 @@ mod tests {
             .unwrap()
             .standard_deviation()
             / 2.0;
-        // A spread from 100 samples is known to 1/√200 = 7 %, here 3.3 σ, in the first order of
-        // 1/C.
+        // A spread from 100 samples has a relative standard error of 1/√200 = 7 %, here 3.3 σ, to
+        // first order in 1/C.
         let tolerance = 3.3 * 0.07 + 2.0 / diameter as f64;
         assert_relative(spread, 0.62 / diameter as f64, tolerance);
     }

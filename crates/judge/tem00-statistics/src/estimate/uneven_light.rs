@@ -7,62 +7,64 @@ use tem00_numerics::{
 
 use crate::{SpeckleSize, StatisticsError, estimate::moments, laws::COHERENCE_AREA};
 
-/// The inner radius of the first ring of lags, in speckle sizes: beyond the speckle itself.
+/// The inner radius of the first ring of lags, in speckle sizes, outside the speckle itself.
 const FIRST_RING: f64 = 1.5;
 
 /// Number of standard deviations that count as chance.
 const SIGMAS: f64 = 4.5;
 
-/// Part of the side lobes of a pupil in the first ring; it falls with the radius. A circle leaves
-/// 0.005, an annulus with an opening of one half 0.03, of nine tenths 0.07.
+/// Autocovariance due to the side lobes of a pupil in the first ring; it falls with the radius. It
+/// is 0.005 for a circle, 0.03 for an annulus with an opening of one half, and 0.07 for an opening
+/// of nine tenths.
 const SIDE_LOBES: f64 = 0.08;
 
-/// Largest share of the variance that chance may hide where light is called even: that of some
-/// hundred speckles.
+/// Largest fraction of the variance that chance may hide for light to be called even: the value for
+/// about a hundred speckles.
 const HIDDEN: f64 = 0.25;
 
-/// Lag at which finer grains are looked for, in speckle sizes.
+/// Lag at which finer grains are detected, in speckle sizes.
 const FINE_LAG: f64 = 0.125;
 
-/// Share of the variance from which on grains are finer than the law of the speckle, which leaves
+/// Fraction of the variance above which grains are finer than the law of the speckle, which gives
 /// 0.008 at most.
 const FINE_SHARE: f64 = 0.02;
 
-/// Evenness of the light over an image, as far as its autocovariance tells.
+/// Evenness of the light over an image, judged by the autocovariance of the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Evenness {
-    /// The light is even: its shape makes less than `limit` of the variance.
+    /// The light is even: its shape contributes less than the fraction `limit` of the variance.
     Even {
-        /// The share of the variance that side lobes and chance may hide.
+        /// The fraction of the variance that side lobes and chance may hide.
         limit: f64,
     },
     /// The light is not even.
     Uneven(UnevenLight),
-    /// Too few speckles to tell their grains from the shape of the light, which may have set the
-    /// size.
+    /// There are too few speckles to distinguish their grains from the shape of the light, which
+    /// may have determined the measured size.
     FewSpeckles {
         /// The width and the height of the image, in speckle sizes.
         across: [f64; 2],
     },
-    /// Grains much finer than the speckle size: noise, or the speckle itself, where the light has
-    /// set the size.
+    /// There are grains much finer than the measured speckle size: noise, or the speckle itself if
+    /// the light has determined the size.
     FinerGrains {
-        /// The share of the variance that they make.
+        /// The fraction of the variance due to the finer grains.
         share: f64,
         /// The lag within which they decorrelate, in pixels.
         lag: usize,
     },
 }
 
-/// Light that is not even over an image: the autocovariance of the image does not fall to zero.
+/// Uneven light over an image: the autocovariance of the image does not fall to zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnevenLight {
-    /// The inner and the outer radius of the ring of lags that shows it most, in speckle sizes.
+    /// The inner and the outer radius of the ring of lags with the strongest evidence, in speckle
+    /// sizes.
     pub lags: [f64; 2],
-    /// The mean autocovariance over that ring, in units of the variance of the image: about the
-    /// share of the variance that the shape of the light makes.
+    /// The mean autocovariance over this ring, in units of the variance of the image: about the
+    /// fraction of the variance due to the shape of the light.
     pub covariance: f64,
-    /// The most that side lobes and chance make of speckle in even light there.
+    /// The largest covariance that even light may show in this ring, from side lobes and chance.
     pub limit: f64,
 }
 
@@ -70,21 +72,21 @@ impl Evenness {
     /// Judges the light by the autocovariance of a finite image, with zero lag at `(0, 0)`.
     ///
     /// The lags are averaged over rings from 1.5 to 3 speckle sizes, from 3 to 6, and so on up to
-    /// half of the image. In even light that average is 0, with the standard deviation
+    /// half of the image. In even light this average is 0, with the standard deviation
     ///
     /// ```text
     /// √2 (4/π) / √(n a)         n the speckle sizes h² in the image, a the ring's area in h²
     /// ```
     ///
-    /// and 4.5 of them count as chance, on top of what side lobes of a pupil may leave, 0.08 in the
-    /// first ring and half as much in each further one. `size` is the speckle size, or `None` where
-    /// pixels are larger than speckles.
+    /// and 4.5 standard deviations count as chance, in addition to the side lobes of a pupil, 0.08
+    /// in the first ring and half as much in each further ring. `size` is the speckle size, or
+    /// `None` if pixels are larger than speckles.
     ///
-    /// Light that makes more than half of the variance sets the speckle size itself, and no ring
-    /// shows it. A smooth profile is then no more than a few such sizes wide: below six along an
-    /// axis, or a hundred in all, there are too few. Finer structure leaves the speckle as a fall
-    /// of the autocovariance c near zero lag, where speckle of the size h ≥ 8 pixels has a
-    /// parabola:
+    /// If the light contributes more than half of the variance, it determines the measured speckle
+    /// size itself, and no ring shows it. A smooth profile is then no more than a few such sizes
+    /// wide: an image with fewer than six speckles along an axis, or a hundred in all, counts as
+    /// having too few. With finer structure the speckle appears as a fall of the autocovariance c
+    /// near zero lag, where speckle of the size h ≥ 8 pixels has a parabola:
     ///
     /// ```text
     /// share = 1 − (4 c(h/8) − c(h/4)) / 3        along x or y, the smaller
@@ -92,14 +94,14 @@ impl Evenness {
     ///
     /// # Validity
     ///
-    /// Speckle of one size all over the image.
+    /// The speckle must have one size all over the image.
     pub fn find(lags: &Grid<f32>, size: Option<SpeckleSize>) -> Self {
-        // Independent pixels have a coherence area of one of them.
+        // Independent pixels have a coherence area of one pixel.
         let size = size.map_or([COHERENCE_AREA.sqrt().recip(); 2], |s| [s.x(), s.y()]);
         // The grid of lags of a finite image is twice as large as the image.
         let image = [lags.width(), lags.height()].map(|lags| 0.5 * lags as f64);
         let speckles = image[0] * image[1] / (size[0] * size[1]);
-        // Farther than half of the image the average is that of pixels near its edges.
+        // At lags beyond half of the image the average contains only pixels near the edges.
         let farthest = (0.5 * image[0] / size[0]).min(0.5 * image[1] / size[1]);
         let across = [image[0] / size[0], image[1] / size[1]];
         let limit = |inner: f64| {
@@ -129,7 +131,7 @@ impl Evenness {
     }
 }
 
-/// Returns the share of the variance in grains finer than the speckle size, and the lag within
+/// Returns the fraction of the variance in grains finer than the speckle size, and the lag within
 /// which they decorrelate.
 fn finer_grains(lags: &Grid<f32>, size: [f64; 2]) -> Option<(f64, usize)> {
     let lag = size.map(|size| FINE_LAG * size);
@@ -144,11 +146,11 @@ fn finer_grains(lags: &Grid<f32>, size: [f64; 2]) -> Option<(f64, usize)> {
     (share > FINE_SHARE).then_some((share, x.max(y)))
 }
 
-/// Returns the mean over lags from `inner` to twice that, in speckle sizes.
+/// Returns the mean over lags from `inner` to twice `inner`, in speckle sizes.
 fn mean_over_ring(lags: &Grid<f32>, size: [f64; 2], inner: f64) -> f64 {
     let [reach_x, reach_y] = size.map(|size| whole(2.0 * inner * size));
     let (mut sum, mut cells) = (0.0, 0_u32);
-    // Opposite lags hold the same: half of the ring is enough.
+    // Opposite lags have the same value: half of the ring suffices.
     for y in 0..=reach_y {
         for x in -reach_x..=reach_x {
             let radius = (f64::from(x) / size[0]).hypot(f64::from(y) / size[1]);
@@ -169,8 +171,8 @@ const fn whole(lag: f64) -> i32 {
     lag as i32
 }
 
-/// An image divided by its mean over a square about each pixel: speckle in uneven light, without
-/// the light.
+/// An image divided by its mean over a square about each pixel, which removes uneven light from
+/// speckle.
 ///
 /// ```text
 /// R(x) = I(x) / m(x)        m the mean over window × window pixels about x, as far as they exist
@@ -178,32 +180,33 @@ const fn whole(lag: f64) -> i32 {
 ///
 /// # Bias
 ///
-/// The local mean follows the pattern, the more the smaller the window is, and takes from it the
-/// share
+/// The local mean follows the pattern, the more the smaller the window is, and removes from the
+/// variance the fraction
 ///
 /// ```text
 /// s = (4/π) h² ⟨1/n⟩        ⟨1/n⟩ the average over the image of 1 by the pixels in the window
 /// ```
 ///
-/// of the variance. With δ = I − 1 and η = m − 1 of a sum of fully developed patterns, whose
-/// cumulants are ⟨δη⟩ = ⟨η²⟩ = C² s and ⟨δ²η⟩ = 2 C⁴ s, the contrast of R is
+/// With δ = I − 1 and η = m − 1 for a sum of fully developed patterns, whose cumulants are ⟨δη⟩ =
+/// ⟨η²⟩ = C² s and ⟨δ²η⟩ = 2 C⁴ s, the contrast of R is
 ///
 /// ```text
 /// C' = C (1 − (1 + C²) s / 2)        to first order in s
 /// ```
 ///
-/// and its autocovariance falls from 1 to −s, which makes the speckle size too small by the share
-/// 0.675 s. [`contrast_before`](Self::contrast_before) and
+/// and its autocovariance falls from 1 to −s, which makes the speckle size too small by the
+/// fraction 0.675 s. [`contrast_before`](Self::contrast_before) and
 /// [`speckle_size_before`](Self::speckle_size_before) undo both.
 ///
 /// # Validity
 ///
-/// Windows of six speckle sizes and more, s ≤ 0.035, over which the light varies little: what it
-/// bends is left, `w² e″ / 24 e` along each axis for a light e and a window of the width w.
+/// Windows must be at least six speckle sizes wide, s ≤ 0.035, and the light must vary little over
+/// a window: the effect of its curvature remains, `w² e″ / 24 e` along each axis for a light e and
+/// a window of the width w.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlatImage {
     values: Grid<f32>,
-    /// The average of 1 by the pixels in the window.
+    /// The average of the reciprocal number of pixels in the window.
     inverse_count: f64,
     darkest: f64,
 }
@@ -226,7 +229,7 @@ impl FlatImage {
         let of =
             |pick: fn(f64, f64) -> f64, start| means.values().iter().copied().fold(start, pick);
         let (lowest, highest) = (of(f64::min, f64::INFINITY), of(f64::max, 0.0));
-        // A mean below the rounding of the sums is no mean.
+        // A mean below the rounding of the sums is not reliable.
         if lowest <= f64::EPSILON * highest * (size.0 + size.1) as f64 {
             return Err(StatisticsError::refused(
                 "samples",
@@ -247,28 +250,29 @@ impl FlatImage {
         &self.values
     }
 
-    /// Returns the smallest local mean by the largest.
+    /// Returns the smallest local mean divided by the largest.
     pub const fn darkest(&self) -> f64 {
         self.darkest
     }
 
-    /// Returns the share s of the variance that was taken, for a speckle size in pixels.
+    /// Returns the fraction s of the variance that was removed, for a speckle size in pixels.
     pub fn lost_share(&self, speckle_size: f64) -> f64 {
         COHERENCE_AREA * speckle_size * speckle_size * self.inverse_count
     }
 
-    /// Returns the contrast of evenly lit speckle that becomes `contrast` here.
+    /// Returns the contrast of evenly lit speckle from the `contrast` of this image.
     pub fn contrast_before(&self, contrast: f64, speckle_size: f64) -> f64 {
         contrast * (1.0 + 0.5 * (1.0 + contrast * contrast) * self.lost_share(speckle_size))
     }
 
-    /// Returns the speckle size that becomes `speckle_size` here, along one axis or both.
+    /// Returns the speckle size of evenly lit speckle from the `speckle_size` of this image, along
+    /// one axis or both.
     pub fn speckle_size_before(&self, speckle_size: f64) -> f64 {
         speckle_size * (1.0 + 0.675 * self.lost_share(speckle_size))
     }
 }
 
-/// Returns the means over squares that reach so many pixels to each side.
+/// Returns the means over squares that extend by `reach` pixels to each side.
 fn local_means(image: &Grid<f32>, reach: usize) -> Grid<f64> {
     let (width, height) = (image.width(), image.height());
     let mut means = Grid::filled(width, height, 0.0);
@@ -287,7 +291,7 @@ fn local_means(image: &Grid<f32>, reach: usize) -> Grid<f64> {
     means
 }
 
-/// Returns the means over neighbours up to `reach` away, as far as they exist.
+/// Returns the means over neighbours within `reach`, as far as they exist.
 fn running_means(values: &[f64], reach: usize) -> Vec<f64> {
     let mut sums = Vec::with_capacity(values.len() + 1);
     sums.push(0.0);
@@ -305,7 +309,7 @@ fn neighbours(index: usize, length: usize, reach: usize) -> [usize; 2] {
     [index.saturating_sub(reach), (index + reach + 1).min(length)]
 }
 
-/// Returns the average of 1 by the number of neighbours.
+/// Returns the average of the reciprocal number of neighbours.
 fn inverse_count(length: usize, reach: usize) -> f64 {
     let inverse = |index: usize| {
         let [start, end] = neighbours(index, length, reach);
@@ -341,7 +345,7 @@ mod tests {
         Grid::from_fn(width, height, |x, y| tile[(x, y)])
     }
 
-    /// A Gaussian spot of the 1/e² radius `radius` in the middle.
+    /// A Gaussian spot with the 1/e² radius `radius` in the middle.
     fn lit(image: &Grid<f32>, radius: f64) -> Grid<f32> {
         let middle = [image.width() as f64 / 2.0, image.height() as f64 / 2.0];
         Grid::from_fn(image.width(), image.height(), |x, y| {
@@ -362,7 +366,7 @@ mod tests {
             for seed in 0..seeds {
                 let (tile, _) = speckle_tile(size, diameter, seed);
                 let light = evenness(&window(&tile, part));
-                // 64 speckles are too few to call their light anything.
+                // 64 speckles are too few to judge their light.
                 let is_right = match light {
                     Evenness::Even { limit } => diameter > 8 && limit < HIDDEN,
                     Evenness::FewSpeckles { .. } => diameter == 8,
@@ -387,7 +391,7 @@ mod tests {
     #[test]
     fn light_that_falls_off_to_one_side_is_found() {
         let (tile, _) = speckle_tile(256, 128, 2);
-        // A ramp from 0.2 to 1 has 0.148 of the mean as its deviation squared.
+        // A ramp from 0.2 to 1 has a variance of 0.148 times the squared mean.
         let ramp = |x: usize| to_f32(0.2 + 0.8 * x as f64 / 256.0);
         let image = Grid::from_fn(256, 256, |x, y| tile[(x, y)] * ramp(x));
         let light = found(&image).expect("a ramp");
@@ -428,8 +432,8 @@ mod tests {
             ),
         ];
         for (name, light) in &lights {
-            // Grains of 1.5 pixels, as weak as in blood that flows: they make 0.2 to 7 % of the
-            // variance.
+            // Grains of 1.5 pixels, as weak as with flowing blood: they contribute 0.2 to 7 % of
+            // the variance.
             let image = Grid::from_fn(WIDTH, HEIGHT, |x, y| {
                 light[(x, y)] * (1.0 + 0.08 * (grains[(x, y)] - 1.0))
             });
@@ -447,7 +451,7 @@ mod tests {
         let (tile, _) = speckle_tile(384, 20, 4);
         let (fine, _) = speckle_tile(384, 256, 5);
         for (part, found) in [(0.0, false), (0.01, false), (0.03, true), (0.2, true)] {
-            // Two variances of 1, the coarse one times 1 − part.
+            // Two patterns of variance 1, the coarse one weighted with 1 − part.
             let [coarse, noise] = [1.0 - part, part].map(f64::sqrt).map(to_f32);
             let image = Grid::from_fn(384, 384, |x, y| {
                 coarse * tile[(x, y)] + noise * fine[(x, y)]
@@ -455,8 +459,8 @@ mod tests {
             match evenness(&image) {
                 Evenness::FinerGrains { share, lag } => {
                     assert!(found && lag == 2, "{part}: {share} within {lag}");
-                    // The variance of 20 speckles across spreads by 1.53 / 20, here 3.3 σ; they
-                    // leave 0.0013 at two pixels themselves.
+                    // The variance of 20 speckles across has the standard deviation 1.53 / 20, here
+                    // 3.3 σ; the speckles themselves contribute 0.0013 at two pixels.
                     let tolerance = 0.25 * part + 0.002;
                     assert!((share - part).abs() < tolerance, "{part}: {share}");
                 }
@@ -482,7 +486,7 @@ mod tests {
                         SpeckleSize::from_image(image, boundary).unwrap().mean(),
                     ]
                 };
-                // The whole tile knows its mean.
+                // For the whole tile the mean is exact.
                 let [contrast, size] = of(&image, Boundary::Periodic);
                 let [flat_contrast, flat_size] = of(flat.values(), Boundary::Finite);
                 changes[0].push(flat.contrast_before(flat_contrast, size) / contrast - 1.0);
@@ -495,7 +499,7 @@ mod tests {
             for change in changes {
                 let change = Moments::from_samples(&change).unwrap();
                 // Windows of 6 and 10 speckle sizes, cut at the edges: s is 0.045 and 0.019, and
-                // the second order some 2 s².
+                // the second order about 2 s².
                 let second_order = if window_size == 24 { 4e-3 } else { 1.5e-3 };
                 let tolerance = 4.0 * change.standard_error() + second_order;
                 assert!(
@@ -514,7 +518,7 @@ mod tests {
         let nine = [1, 2, 3, 2, 4, 6, 3, 6, 9].map(|xy| f64::from(1 + xy));
         let mean = nine.iter().sum::<f64>() / 9.0;
         assert_relative(f64::from(flat.values()[(2, 2)]), 5.0 / mean, 1e-6);
-        // In the corner four pixels are left, all 1 but the last.
+        // In the corner the window holds four pixels, all 1 except the last.
         assert_relative(flat.values()[(0, 0)].into(), 0.8, 1e-6);
         let ends = |n: f64| (2.0 / 2.0 + (n - 2.0) / 3.0) / n;
         assert_relative(
@@ -532,7 +536,7 @@ mod tests {
         assert!(found(&uneven).is_some(), "the light is not even");
         let flat = FlatImage::new(&uneven, 41).unwrap();
         assert!(is_even(flat.values()), "{:?}", evenness(flat.values()));
-        // Speckle of two pixels: 0.77 / 150 of it at 4 σ.
+        // For speckle of two pixels the standard deviation is 0.77 / 150, here 4 σ.
         let contrast = Contrast::from_samples(flat.values().values())
             .unwrap()
             .value();

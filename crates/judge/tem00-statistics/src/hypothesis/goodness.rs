@@ -8,20 +8,20 @@ const BINS: u32 = 20;
 
 /// Agreement of samples, rounded or not, with a law.
 ///
-/// Samples are compared on the scale of the law's distribution function, where they are even in [0,
-/// 1] if they follow it. Rounded samples lie evenly within the cell of their level, which law and
-/// samples therefore fill alike: what is compared are the shares of the samples up to the edges of
-/// the levels. Compared as they are, few grey levels would be a deviation from any continuous law.
+/// Samples are compared on the scale of the law's distribution function, where they are uniform in
+/// [0, 1] if they follow the law. Rounded samples are spread evenly within the cell of their level,
+/// as the law is, so that only the fractions of the samples up to the edges of the levels are
+/// compared. Without this spreading, few grey levels would be a deviation from any continuous law.
 ///
 /// # Independence
 ///
-/// The samples are independent: take
+/// The samples must be independent: use
 /// [`decorrelated_samples`](crate::estimate::decorrelated_samples).
 ///
 /// # Validity
 ///
-/// For rounded samples the p-values are on the high side: a step of the law between two edges goes
-/// unseen.
+/// For rounded samples the p-values are too high: a step of the law between two edges is not
+/// detected.
 ///
 /// # Examples
 ///
@@ -52,7 +52,7 @@ pub struct GoodnessOfFit {
 }
 
 impl GoodnessOfFit {
-    /// Compares samples that were not rounded with the law of the distribution function
+    /// Compares samples that were not rounded with the law that has the distribution function
     /// `cumulative`.
     ///
     /// # Errors
@@ -68,12 +68,13 @@ impl GoodnessOfFit {
         })
     }
 
-    /// Compares samples that were rounded to `levels` with the law of the distribution function
-    /// `cumulative`. It is asked for the edges of the levels, the last of which may be infinite.
+    /// Compares samples that were rounded to `levels` with the law that has the distribution
+    /// function `cumulative`. The function is evaluated at the edges of the levels, the last of
+    /// which may be infinite.
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new).
+    /// Returns the errors of [`new`](Self::new).
     pub fn of_rounded(
         samples: &[f64],
         levels: &GreyLevels,
@@ -91,25 +92,26 @@ impl GoodnessOfFit {
         })
     }
 
-    /// Tests after Kolmogorov and Smirnov, as [`kolmogorov_smirnov`](crate::kolmogorov_smirnov).
+    /// Applies the Kolmogorov–Smirnov test, as [`kolmogorov_smirnov`](crate::kolmogorov_smirnov)
+    /// does.
     ///
-    /// The distance of rounded samples is that at the edges of the levels, or larger by up to half
-    /// of one sample's fraction of its cell.
+    /// The distance of rounded samples is the distance at the edges of the levels, or larger by up
+    /// to half of one sample's fraction of its cell.
     ///
     /// # Errors
     ///
-    /// As [`kolmogorov_smirnov`](crate::kolmogorov_smirnov).
+    /// Returns the errors of [`kolmogorov_smirnov`](crate::kolmogorov_smirnov).
     pub fn kolmogorov_smirnov(&self) -> Result<TestOutcome, StatisticsError> {
         kolmogorov_smirnov(&self.places, |place| place)
     }
 
-    /// Tests after Pearson, as [`chi_squared`](crate::chi_squared), in up to 20 bins of about the
-    /// same probability. `constraints` counts 1 for the total and 1 for each parameter of the law
-    /// that was fitted.
+    /// Applies Pearson's test, as [`chi_squared`](crate::chi_squared) does, in up to 20 bins of
+    /// about the same probability. `constraints` is 1 for the total plus 1 for each fitted
+    /// parameter of the law.
     ///
     /// # Errors
     ///
-    /// Returns an error if the bins do not outnumber the constraints, as those of few levels or
+    /// Returns an error if the bins do not outnumber the constraints, as with few levels or
     /// samples.
     pub fn chi_squared(&self, constraints: usize) -> Result<TestOutcome, StatisticsError> {
         let edges = self.bin_edges();
@@ -150,7 +152,7 @@ fn check_samples(samples: &[f64]) -> Result<(), StatisticsError> {
     check_finite(samples)
 }
 
-/// The probability that a distribution function gave at a sample.
+/// Checks the probability that a distribution function returned at a sample.
 fn checked(sample: f64, value: f64) -> Result<f64, StatisticsError> {
     if (0.0..=1.0).contains(&value) {
         Ok(value)
@@ -172,7 +174,7 @@ mod tests {
 
     const MEAN: f64 = 3.0;
 
-    /// Quantiles of the exponential law of the mean 3.
+    /// Quantiles of the exponential distribution with the mean 3.
     fn quantiles(count: u32) -> Vec<f64> {
         let at = |i: u32| -MEAN * (1.0 - (f64::from(i) + 0.5) / f64::from(count)).ln();
         (0..count).map(at).collect()
@@ -229,7 +231,7 @@ mod tests {
         let even = |light: f64| (light / 2.5).min(1.0);
         let placed = GoodnessOfFit::of_rounded(&samples, &levels, even).expect("valid");
         // At 0.5 the law has 0.2 and the samples 0.1, at 1.5 they have 0.6 and 0.4. The places are
-        // those of continuous samples, whose distance is up to 1/2n larger.
+        // placed like continuous samples, whose distance is up to 1/2n larger.
         let distance = placed.kolmogorov_smirnov().expect("valid").statistic;
         assert!((0.2..=0.205).contains(&distance), "{distance}");
         // Bins of 0.2, 0.4 and 0.4: (10 − 20)²/20 + (30 − 40)²/40 + (60 − 40)²/40.

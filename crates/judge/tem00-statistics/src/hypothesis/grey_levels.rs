@@ -1,19 +1,20 @@
-/// Values nearer than this fraction of the greater are the same level: averages of colour channels
-/// are rounded to `f32`, 16 bits are 16 times as far apart.
+/// Values that differ by less than this fraction of the greater one are the same level: averages of
+/// colour channels are rounded to `f32`, and 16-bit values are 16 times as far apart.
 const SAME: f64 = 1.0 / (1 << 20) as f64;
 
-/// The most steps up to the largest value: averages over three channels of 16 bits.
+/// The largest number of steps up to the largest value: averages over three channels of 16 bits.
 const FINEST: f64 = 3.0 * 65_536.0;
 
 /// The values that the pixels of a rounded image take.
 ///
-/// Each level stands for the light from half way to the level below up to half way to the level
-/// above: its cell. The lowest begins at half a step below, but not below zero; the highest ends at
-/// half a step above, or never if so many pixels have it that the sensor must have clipped.
+/// Each level represents the light from half way to the level below up to half way to the level
+/// above, its cell. The lowest cell begins half a step below, but not below zero; the highest cell
+/// ends half a step above, or is unbounded if so many pixels have this level that the sensor must
+/// have clipped.
 ///
 /// # Examples
 ///
-/// Speckle of a mean of half a grey level, rounded to whole ones:
+/// Speckle with a mean of half a grey level, rounded to whole levels:
 ///
 /// ```
 /// use tem00_statistics::test::GreyLevels;
@@ -38,15 +39,16 @@ pub struct GreyLevels {
 }
 
 impl GreyLevels {
-    /// The fraction of the pixels at the largest level from which on an image counts as clipped.
+    /// The smallest fraction of the pixels at the largest level for which an image counts as
+    /// clipped.
     pub const CLIPPED_FRACTION: f64 = 1e-3;
 
     /// Finds the levels of an image, if at least every other pixel shares its value with another
-    /// and the levels are no finer than those of files, 3 · 2¹⁶ steps.
+    /// pixel and the levels are not finer than in image files, 3 · 2¹⁶ steps.
     ///
-    /// Values that differ by less than 10⁻⁶ of the greater are one level. Returns `None` for an
-    /// image that is not rounded, is all of one value, or has no light: with a value that is
-    /// negative or not finite.
+    /// Values that differ by less than 10⁻⁶ of the greater one are one level. Returns `None` for an
+    /// image that is not rounded, has only one value, or is not an image of light: with a value
+    /// that is negative or not finite.
     pub fn from_values<T: Copy + Into<f64>>(values: &[T]) -> Option<Self> {
         let mut levels: Vec<f64> = values.iter().map(|&value| value.into()).collect();
         if !levels
@@ -87,7 +89,8 @@ impl GreyLevels {
             .saturating_sub(1)
     }
 
-    /// Returns the light, from and to, for which the level at `index` stands.
+    /// Returns the cell of the level at `index`: the lower and the upper end of the light that it
+    /// represents.
     ///
     /// # Panics
     ///
@@ -123,7 +126,7 @@ impl GreyLevels {
         self.step
     }
 
-    /// Tells whether all levels are whole multiples of the step, as those of a linear sensor are.
+    /// Returns whether all levels are integer multiples of the step, as for a linear sensor.
     pub fn are_multiples(&self) -> bool {
         let off = |level: &f64| {
             let multiple = level / self.step;
@@ -132,14 +135,14 @@ impl GreyLevels {
         !self.levels.iter().any(off)
     }
 
-    /// Returns the mean of the exponential law whose values, rounded to the levels, have the mean
-    /// `rounded`.
+    /// Returns the mean of the exponential distribution whose values, rounded to the levels, have
+    /// the mean `rounded`.
     ///
     /// ```text
     /// rounded = step / 2 sinh(step / 2m)
     /// ```
     ///
-    /// Without levels that are multiples of the step it is `rounded` itself.
+    /// If the levels are not multiples of the step, it is `rounded` itself.
     pub fn exponential_mean(&self, rounded: f64) -> f64 {
         if !self.are_multiples() {
             return rounded;
@@ -148,14 +151,14 @@ impl GreyLevels {
         half / (half / rounded).asinh()
     }
 
-    /// Returns the contrast of an exponential law whose values, rounded to the levels, have the
-    /// mean `rounded`.
+    /// Returns the contrast of the rounded values of an exponential distribution, rounded to the
+    /// levels, whose mean after rounding is `rounded`.
     ///
     /// ```text
     /// C² = 2 cosh(step / 2m) − 1 = 2 √(1 + (step / 2 rounded)²) − 1
     /// ```
     ///
-    /// Without levels that are multiples of the step it is 1.
+    /// If the levels are not multiples of the step, it is 1.
     pub fn exponential_contrast(&self, rounded: f64) -> f64 {
         if !self.are_multiples() {
             return 1.0;
@@ -163,10 +166,10 @@ impl GreyLevels {
         (2.0 * (0.5 * self.step / rounded).hypot(1.0) - 1.0).sqrt()
     }
 
-    /// Returns the samples in ascending order, those of each level spread evenly over its cell:
-    /// over none where the cell has no end.
+    /// Returns the samples in ascending order, with the samples of each level spread evenly over
+    /// its cell; in an unbounded cell they are not spread.
     ///
-    /// Fits of a continuous law want samples that differ.
+    /// Fits of a continuous law need samples that differ.
     pub fn spread(&self, samples: &[f64]) -> Vec<f64> {
         let within = |[low, high]: [f64; 2], share: f64| {
             let end = if high.is_finite() { high } else { low };
@@ -175,7 +178,7 @@ impl GreyLevels {
         self.spread_over(samples, |index| self.cell(index), within)
     }
 
-    /// Returns for each sample a place within the image under `cumulative` of the cell of its
+    /// Returns for each sample a position within the image under `cumulative` of the cell of its
     /// level, evenly spread.
     pub(crate) fn places(&self, samples: &[f64], cumulative: impl Fn(f64) -> f64) -> Vec<f64> {
         let cell = |index: usize| self.cell(index).map(&cumulative);
@@ -183,7 +186,7 @@ impl GreyLevels {
         self.spread_over(samples, cell, within)
     }
 
-    /// Places the j-th of n samples of a level at the share (j + ½)/n of its cell.
+    /// Places the j-th of n samples of a level at the fraction (j + ½)/n of its cell.
     fn spread_over(
         &self,
         samples: &[f64],
@@ -204,7 +207,7 @@ impl GreyLevels {
     }
 }
 
-/// Tells if a value and a greater one differ by rounding only.
+/// Returns whether a value and a greater one differ by rounding only.
 fn are_same(low: f64, high: f64) -> bool {
     high - low <= high * SAME
 }
@@ -215,7 +218,7 @@ mod tests {
 
     use super::*;
 
-    /// Whole numbers from 0 to `last`: many times each, but for the last one.
+    /// Integers from 0 to `last`, many times each except the last one.
     fn levels(last: u16, times: usize) -> GreyLevels {
         let mut values: Vec<f32> = (0..last)
             .flat_map(|level| core::iter::repeat_n(f32::from(level), 400))
@@ -255,7 +258,7 @@ mod tests {
 
     #[test]
     fn values_finer_than_those_of_files_are_no_levels() {
-        // Pairs of neighbours, as many as in a picture of single precision.
+        // Pairs of neighbours, as many as in an image in single precision.
         let fine = |steps: u16| -> Vec<f32> {
             let near_one = (0..200_u16).map(|i| 1.0 - f32::from(i / 2) * f32::from(steps) * 2e-6);
             near_one.collect()
@@ -272,7 +275,7 @@ mod tests {
 
     #[test]
     fn one_pixel_brighter_by_far_makes_no_levels_of_the_others() {
-        // All others lie within 1e-6 of it from zero.
+        // All others lie within 1e-6 of this value from zero.
         let mut values: Vec<f32> = (0..100_u16).map(|i| 1.0 + f32::from(i) / 99.0).collect();
         values.push(1e7);
         assert_eq!(GreyLevels::from_values(&values), None, "a hundred values");
@@ -294,7 +297,7 @@ mod tests {
     fn the_exponential_law_behind_its_rounding_is_found() {
         let levels = levels(255, 1);
         for mean in [0.3_f64, 1.0, 3.0, 20.0] {
-            // ⟨K⟩ and ⟨K²⟩ of K = round(I), term by term; what is left out is below exp(−50).
+            // ⟨K⟩ and ⟨K²⟩ of K = round(I), term by term; the omitted terms are below exp(−50).
             let (mut first, mut second) = (0.0, 0.0);
             for k in 1..1_000_u32 {
                 let k = f64::from(k);
@@ -303,7 +306,7 @@ mod tests {
                 second += k * k * share;
             }
             let contrast = (second / (first * first) - 1.0).sqrt();
-            // Some hundred additions, each rounded.
+            // The tolerance covers some hundred rounded additions.
             assert_relative(levels.exponential_mean(first), mean, 1e-13);
             let found = levels.exponential_contrast(first);
             assert_relative(found, contrast, 1e-12);
@@ -322,7 +325,7 @@ mod tests {
     #[test]
     fn samples_are_spread_evenly_over_their_cells() {
         let spread = levels(3, 2).spread(&[1.0, 3.0, 1.0, 0.0]);
-        // The clipped level has no upper end: its samples stay at its lower one.
+        // The clipped level has no upper end: its samples stay at the lower end.
         assert_eq!(spread, [0.25, 0.75, 1.25, 2.5]);
     }
 }

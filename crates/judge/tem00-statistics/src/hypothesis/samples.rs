@@ -13,13 +13,13 @@ use crate::{
 pub struct TestOutcome {
     /// The test's statistic: the larger, the further from the hypothesis.
     pub statistic: f64,
-    /// The probability of a statistic at least as far from the hypothesis, were the hypothesis
+    /// The probability of a statistic at least as far from the hypothesis if the hypothesis is
     /// true. It is then uniform in [0, 1].
     pub p_value: f64,
 }
 
-/// Tests whether `samples` follow the continuous distribution whose distribution function is
-/// `cumulative`, after Kolmogorov and Smirnov.
+/// Tests whether `samples` follow the continuous distribution with the distribution function
+/// `cumulative`, by the Kolmogorov–Smirnov test.
 ///
 /// ```text
 /// D = max |Fₙ(x) − F(x)|                                        the statistic
@@ -28,16 +28,16 @@ pub struct TestOutcome {
 ///
 /// # Independence
 ///
-/// The samples are independent and the distribution was fixed beforehand, not fitted to them.
-/// Neighbouring pixels of a speckle pattern share a speckle: on all pixels the test rejects a
-/// third of all correct patterns at the 5 % level. Take
+/// The samples must be independent, and the distribution fixed beforehand, not fitted to them.
+/// Neighbouring pixels of a speckle pattern share a speckle: applied to all pixels the test rejects
+/// a third of all correct patterns at the 5 % level. Use
 /// [`decorrelated_samples`](crate::estimate::decorrelated_samples).
 ///
 /// # Validity
 ///
-/// The p-value is that of many samples with Stephens' correction for few. Where it is 0.01 the true
-/// one is smaller by the share 0.12 for five samples, 0.04 for ten and 0.01 for twenty: with few
-/// samples the test errs on the side of the hypothesis.
+/// The p-value is the limit for many samples with Stephens' correction for few samples. Where it is
+/// 0.01 the true p-value is smaller by the fraction 0.12 for five samples, 0.04 for ten and 0.01
+/// for twenty: with few samples the test is conservative.
 ///
 /// # Errors
 ///
@@ -109,7 +109,7 @@ fn largest_distance(
 
 /// Returns the probability Q(λ) that √n times the distance exceeds λ, for n → ∞.
 fn kolmogorov_survival(lambda: f64) -> f64 {
-    // Both series are exact; their first four terms are, on either side, to 1e−17.
+    // Both series are exact; on either side their first four terms are exact to 1e−17.
     if lambda < 1.0 {
         let term = |k: f64| (-(k * PI).powi(2) / (8.0 * lambda * lambda)).exp();
         let sum = term(1.0) + term(3.0) + term(5.0) + term(7.0);
@@ -120,26 +120,26 @@ fn kolmogorov_survival(lambda: f64) -> f64 {
     2.0 * (term(1.0) - term(2.0) + term(3.0) - term(4.0))
 }
 
-/// Tests whether counts `observed` in bins agree with the `expected` ones, after Pearson.
+/// Tests whether counts `observed` in bins agree with the `expected` counts, by Pearson's χ² test.
 ///
 /// ```text
 /// χ² = Σ (O − E)² / E                 the statistic, over the merged bins
 /// degrees of freedom = bins − constraints
 /// ```
 ///
-/// Bins are merged from the first to the last until each expects five counts or more; what is left
-/// over joins the last. `constraints` counts what the expected values were fitted to: 1 where they
-/// were scaled to the observed total (the usual case) and 1 more for each fitted parameter; 0 where
-/// the total was left free.
+/// Bins are merged from the first to the last until each expects five counts or more; the remainder
+/// joins the last bin. `constraints` is the number of fitted quantities of the expected values: 1
+/// if they were scaled to the observed total (the usual case), plus 1 for each fitted parameter; 0
+/// if the total was left free.
 ///
 /// # Independence
 ///
-/// The counted events are independent: for pixels of a speckle pattern take
+/// The counted events must be independent: for pixels of a speckle pattern use
 /// [`decorrelated_samples`](crate::estimate::decorrelated_samples).
 ///
 /// # Validity
 ///
-/// The p-value takes χ² to have the law that it reaches for many counts per bin; five expected
+/// The p-value assumes the limiting distribution of χ² for many counts per bin; five expected
 /// counts are the customary minimum.
 ///
 /// # Errors
@@ -149,7 +149,7 @@ fn kolmogorov_survival(lambda: f64) -> f64 {
 ///
 /// # Examples
 ///
-/// Of 120 throws of a die:
+/// The counts of 120 throws of a die:
 ///
 /// ```
 /// use tem00_statistics::chi_squared;
@@ -184,7 +184,7 @@ pub fn chi_squared(
     Ok(TestOutcome { statistic, p_value })
 }
 
-/// The customary minimum for which χ² nearly has its limiting law.
+/// The customary minimum for which χ² nearly has its limiting distribution.
 const FEWEST_EXPECTED: f64 = 5.0;
 
 fn merge_sparse_bins(
@@ -215,7 +215,7 @@ fn merge_sparse_bins(
     Ok(bins)
 }
 
-/// Tests whether the expectation of `samples` is `mean`, after Student; two-sided.
+/// Tests whether the expectation of `samples` is `mean`, by Student's two-sided t-test.
 ///
 /// ```text
 /// t = |m − mean| / (s / √n)           the statistic, with n − 1 degrees of freedom
@@ -223,12 +223,12 @@ fn merge_sparse_bins(
 ///
 /// # Independence
 ///
-/// The samples are independent, for example one per seed.
+/// The samples must be independent, for example one per seed.
 ///
 /// # Validity
 ///
-/// Exact for normal samples, and good for others once their mean is nearly normal: for exponential
-/// ones from a hundred on.
+/// The test is exact for normal samples, and accurate for others once their mean is nearly normal:
+/// for exponential samples from a hundred on.
 ///
 /// # Errors
 ///

@@ -5,7 +5,7 @@ use crate::{
     intensity::bessel::{rician_cumulative, scaled_bessel_i0},
 };
 
-/// The law of the intensity of speckle on a coherent background: partially developed speckle.
+/// Distribution of the intensity of speckle on a coherent background: partially developed speckle.
 ///
 /// ```text
 /// p(I) = (1 + r) exp(−(1 + r) I − r) I₀(2√(r (1 + r) I))     I in units of its mean
@@ -14,15 +14,15 @@ use crate::{
 /// r    = I_s / ⟨I_n⟩                                         beam ratio
 /// ```
 ///
-/// `I_s` is the uniform intensity of the background, `⟨I_n⟩` the mean of the speckle: the specular
-/// reflection of a surface that is not quite rough, or the reference wave of a hologram. The
-/// amplitude has Rice's law. r = 0 is the exponential law.
+/// `I_s` is the uniform intensity of the background, the specular reflection of a surface that is
+/// not quite rough or the reference wave of a hologram, and `⟨I_n⟩` is the mean of the speckle. The
+/// amplitude has a Rice distribution. r = 0 is the exponential distribution.
 ///
 /// # Validity
 ///
-/// The background has one phase and one intensity over the area considered, and the polarisation
-/// and coherence of the speckle, which is fully developed by itself. A surface whose phase varies
-/// by less than some radians adds a part that is not circular, which is left out.
+/// The background has one phase and one intensity over the area considered, and the same
+/// polarisation and coherence as the speckle, which is fully developed by itself. A surface whose
+/// phase varies by less than some radians adds a part that is not circular, which is neglected.
 ///
 /// # Examples
 ///
@@ -47,7 +47,7 @@ pub struct CoherentBackground {
 }
 
 impl CoherentBackground {
-    /// Creates the law from the beam ratio r, background over mean of the speckle.
+    /// Creates the law from the beam ratio r, the background divided by the mean of the speckle.
     ///
     /// # Errors
     ///
@@ -64,7 +64,7 @@ impl CoherentBackground {
         }
     }
 
-    /// Creates the law that has the contrast C: `r = s (1 + s) / C²` with `s = √(1 − C²)`.
+    /// Creates the law with the contrast C: `r = s (1 + s) / C²` with `s = √(1 − C²)`.
     ///
     /// # Errors
     ///
@@ -83,7 +83,7 @@ impl CoherentBackground {
         })
     }
 
-    /// Returns the beam ratio r, background over mean of the speckle.
+    /// Returns the beam ratio r, the background divided by the mean of the speckle.
     pub const fn beam_ratio(&self) -> f64 {
         self.beam_ratio
     }
@@ -91,7 +91,7 @@ impl CoherentBackground {
     /// Returns the contrast, standard deviation over mean: `√(1 + 2r) / (1 + r)`.
     pub fn contrast(&self) -> f64 {
         let share = (1.0 + self.beam_ratio).recip();
-        // r / (1 + r) is 1 − share, and overflows nowhere.
+        // r / (1 + r) is 1 − share, which never overflows.
         ((2.0 - share) * share).sqrt()
     }
 
@@ -109,7 +109,7 @@ impl CoherentBackground {
 
     /// Returns the probability that the intensity is at most `intensity`, in units of the mean.
     ///
-    /// The result is exact to 10⁻¹⁴, not relative to itself.
+    /// The absolute error is below 10⁻¹⁴.
     pub fn cumulative(&self, intensity: f64) -> f64 {
         if intensity <= 0.0 {
             return 0.0;

@@ -2,10 +2,10 @@ use core::f64::consts::TAU;
 
 use tem00_numerics::quadrature::integrate;
 
-/// From here on the asymptotic series is exact: its smallest term is exp(−2x).
+/// Argument from which the asymptotic series is exact: its smallest term is exp(−2x).
 const ASYMPTOTIC_FROM: f64 = 25.0;
 
-/// Returns exp(−|x|) I₀(x), the modified Bessel function of order zero without its growth.
+/// Returns exp(−|x|) I₀(x), the exponentially scaled modified Bessel function of order zero.
 pub(crate) fn scaled_bessel_i0(x: f64) -> f64 {
     let x = x.abs();
     if x < ASYMPTOTIC_FROM {
@@ -19,7 +19,7 @@ pub(crate) fn scaled_bessel_i0(x: f64) -> f64 {
     }
 }
 
-/// Returns 1 + q(1) + q(1) q(2) + …, up to the terms that no longer count.
+/// Returns 1 + q(1) + q(1) q(2) + …, until the terms are negligible.
 fn sum_of_terms(quotient: impl Fn(f64) -> f64) -> f64 {
     let (mut term, mut sum, mut k) = (1.0, 1.0, 1.0);
     while term > f64::EPSILON / 16.0 * sum {
@@ -30,14 +30,14 @@ fn sum_of_terms(quotient: impl Fn(f64) -> f64) -> f64 {
     sum
 }
 
-/// Returns the probability that a Rician amplitude, that of a constant `a` and a circular complex
-/// Gaussian of unit variance per component, is at most `b`.
+/// Returns the probability that a Rician amplitude, the magnitude of the sum of a constant `a` and
+/// a circular complex Gaussian of unit variance per component, is at most `b`.
 ///
 /// ```text
 /// 1 − Q₁(a, b) = ∫₀ᵇ x exp(−(x² + a²)/2) I₀(ax) dx      Q₁ Marcum's function
 /// ```
 ///
-/// The result is exact to 10⁻¹⁴, not relative to itself.
+/// The absolute error is below 10⁻¹⁴.
 pub(crate) fn rician_cumulative(a: f64, b: f64) -> f64 {
     // exp(−9²/2) = 3e−18.
     const REACH: f64 = 9.0;
@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     /// exp(−x) I₀(x) = (1/n) Σ exp(x (cos θ − 1)) over n equidistant angles: the trapezoidal rule
-    /// misses `I_n(x)` and what follows, nothing for n ≫ x.
+    /// omits `I_n(x)` and higher orders, which vanish for n ≫ x.
     fn by_definition(x: f64) -> f64 {
         const ANGLES: u32 = 4_000;
         let angle = |i| TAU * f64::from(i) / f64::from(ANGLES);

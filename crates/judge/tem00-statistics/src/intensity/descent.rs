@@ -11,19 +11,19 @@ pub(crate) struct Factor {
     pub(crate) count: f64,
 }
 
-/// Returns the inverse Laplace transform of a product of factors, the one with the rightmost pole
-/// first, at `time`.
+/// Returns the inverse Laplace transform of a product of factors at `time`; the factor with the
+/// rightmost pole comes first.
 ///
 /// ```text
 /// f(x) = (1/2πi) ∫ exp(φ(p)) dp      φ(p) = p x − Σ nⱼ ln((p − pⱼ)/sⱼ)
 /// ```
 ///
 /// On the real axis right of all poles φ has one minimum, the saddle of the integrand. The path of
-/// steepest descent from there, φ = φ₀ − τ², goes round all poles, as all other saddles lie on the
-/// real axis between them. Along it the integrand is exp(−τ²) times a smooth function, which the
-/// trapezoidal rule sums to 1e−13, and nothing cancels: poles may coincide, nearly coincide or lie
-/// far apart, and the result keeps its digits however small it is. The time taken grows with the
-/// number of factors.
+/// steepest descent from the saddle, φ = φ₀ − τ², encloses all poles, as all other saddles lie on
+/// the real axis between them. Along the path the integrand is exp(−τ²) times a smooth function,
+/// which the trapezoidal rule sums to 1e−13 without cancellation: poles may coincide, nearly
+/// coincide or lie far apart, and even very small results keep their digits. The computing time
+/// grows with the number of factors.
 pub(crate) fn inverse_laplace_transform(factors: &[Factor], time: f64) -> f64 {
     let Some(first) = factors.first() else {
         return 0.0;
@@ -33,8 +33,8 @@ pub(crate) fn inverse_laplace_transform(factors: &[Factor], time: f64) -> f64 {
         .map(|f| (first.pole - f.pole) * time)
         .collect();
     let saddle = saddle(factors, &behind);
-    // The distances of all poles from the saddle: those of the first in units of each, and its
-    // square.
+    // The distances of all poles from the saddle: the distance of the first pole in units of each,
+    // and its square.
     let ratios = behind.iter().map(|behind| saddle / (saddle + behind));
     let norm: f64 = factors
         .iter()
@@ -50,14 +50,14 @@ pub(crate) fn inverse_laplace_transform(factors: &[Factor], time: f64) -> f64 {
             ratio: ratio / norm,
         })
         .collect();
-    // One of the first factors is left for the measure of the path.
+    // One of the first factors is reserved for the measure of the path.
     let others = |index: usize| factors[index].count - if index == 0 { 1.0 } else { 0.0 };
     let height: f64 = (0..factors.len())
         .filter(|&index| others(index) > 0.0)
         .map(|index| others(index) * (factors[index].scale * time / (saddle + behind[index])).ln())
         .sum();
     let (decay, height) = (first.pole * time, saddle + height);
-    // The first exponential alone is exact, but may be zero where the product is not.
+    // The first exponential by itself is exact, but may be zero where the product is not.
     let size = if decay > -600.0 {
         decay.exp() * height.exp()
     } else {
@@ -66,15 +66,15 @@ pub(crate) fn inverse_laplace_transform(factors: &[Factor], time: f64) -> f64 {
     first.scale / norm * size * path_integral(&terms)
 }
 
-/// A factor as the path sees it: one over the distance of its pole from the saddle. The squares of
-/// all add up to one.
+/// A factor in terms of the path: the reciprocal distance of its pole from the saddle. The squares
+/// of all terms add up to one.
 #[derive(Clone, Copy, Debug)]
 struct Term {
     count: f64,
     ratio: f64,
 }
 
-/// The distance of the saddle from the first pole, over the time: Σ nⱼ/(d + behindⱼ) = 1.
+/// The distance of the saddle from the first pole, divided by the time: Σ nⱼ/(d + behindⱼ) = 1.
 fn saddle(factors: &[Factor], behind: &[f64]) -> f64 {
     let sums = |d: f64| {
         let terms = factors.iter().zip(behind);
@@ -84,10 +84,10 @@ fn saddle(factors: &[Factor], behind: &[f64]) -> f64 {
             (sum + term, squares + term * inverse)
         })
     };
-    // All poles are at the first, or it is alone.
+    // Bounds: all poles coincide with the first, or the first is alone.
     let (mut high, mut low) = (factors.iter().map(|factor| factor.count).sum(), 1.0);
     let mut d: f64 = high;
-    // Newton's method on one over the sum, which is nearly straight, within the bracket.
+    // Newton's method on the reciprocal of the sum, which is nearly straight, within the bracket.
     for _ in 0..100 {
         let (sum, squares) = sums(d);
         if sum > 1.0 {
@@ -114,8 +114,8 @@ fn saddle(factors: &[Factor], behind: &[f64]) -> f64 {
 const STEP: f64 = 0.15;
 const STEPS: u32 = 42;
 
-/// (1/π) Im ∫₀^∞ exp(−τ²) dy/dτ dτ along the path, with the distance y from the saddle in units in
-/// which φ falls as y²/2 on either side.
+/// (1/π) Im ∫₀^∞ exp(−τ²) dy/dτ dτ along the path, with the distance y from the saddle, in units in
+/// which φ falls as y²/2 on both sides.
 fn path_integral(terms: &[Term]) -> f64 {
     let zero = Complex::new(0.0, 0.0);
     // The last three points.
@@ -144,7 +144,7 @@ fn point_of_path(terms: &[Term], tau: f64, guess: Complex<f64>) -> (Complex<f64>
         let (fall, curvature) = fall(terms, y);
         let change = (fall + tau * tau) / (y * curvature);
         y -= change;
-        // The next step would be the square of this one.
+        // The next step would be about the square of this one.
         if change.norm_sqr() < 1e-18 * y.norm_sqr() {
             break;
         }

@@ -11,7 +11,7 @@ use crate::StatisticsError;
 /// ```
 ///
 /// The field is a sum of many phasors of random phase, a circular complex Gaussian, and its squared
-/// magnitude has this negative exponential law: mean 1, contrast 1, most probable where it is dark.
+/// magnitude has this negative exponential distribution: mean 1, contrast 1, most probable value 0.
 ///
 /// # References
 ///
@@ -48,19 +48,20 @@ pub fn exponential_cumulative(intensity: f64) -> f64 {
     }
 }
 
-/// The law of the intensity after speckle has been averaged: a Gamma distribution of mean 1.
+/// Distribution of the intensity of averaged speckle: a Gamma distribution with mean 1.
 ///
 /// ```text
 /// p(I) = Mᴹ Iᴹ⁻¹ exp(−M I) / Γ(M)      contrast C = 1 / √M
 /// ```
 ///
-/// The shape M counts the degrees of freedom. M = 1 is the exponential law.
+/// The shape M is the number of degrees of freedom. M = 1 is the exponential distribution.
 ///
 /// # Validity
 ///
-/// Exact for the sum of M independent speckle patterns of equal mean. For speckle averaged over a
-/// pixel or an exposure it is the customary approximation that has the right mean and contrast: for
-/// a square pixel of one speckle size the distribution functions differ by up to 0.04.
+/// The distribution is exact for the sum of M independent speckle patterns of equal mean. For
+/// speckle averaged over a pixel or an exposure it is the customary approximation with the correct
+/// mean and contrast: for a square pixel of one speckle size the distribution functions differ by
+/// up to 0.04.
 ///
 /// # Examples
 ///
@@ -84,7 +85,8 @@ pub struct GammaIntensity {
     shape: f64,
 }
 
-/// The largest shape: beyond, the rounding of `M ln M` would show in the ninth digit of the law.
+/// The largest shape: for larger ones the rounding of `M ln M` would affect the ninth digit of the
+/// law.
 const MAXIMUM_SHAPE: f64 = 1e6;
 
 /// The contrast of the largest shape.
@@ -95,7 +97,7 @@ impl GammaIntensity {
     ///
     /// # Errors
     ///
-    /// Returns an error unless `1 ≤ shape ≤ 10⁶`. Averaging never takes a degree of freedom away.
+    /// Returns an error unless `1 ≤ shape ≤ 10⁶`. Averaging never removes a degree of freedom.
     pub fn new(shape: f64) -> Result<Self, StatisticsError> {
         if (1.0..=MAXIMUM_SHAPE).contains(&shape) {
             Ok(Self { shape })
@@ -104,7 +106,7 @@ impl GammaIntensity {
         }
     }
 
-    /// Creates the law that has the contrast C: M = 1 / C².
+    /// Creates the law with the contrast C: M = 1 / C².
     ///
     /// # Errors
     ///
@@ -169,7 +171,7 @@ fn peak_density(m: f64) -> f64 {
     (m / TAU).sqrt() * (-series).exp()
 }
 
-/// From here on Stirling's series is exact: its next term is 1 / (1680 M⁷) = 3e−14.
+/// Shape from which Stirling's series is exact: its next term is 1 / (1680 M⁷) = 3e−14.
 const STIRLING_LIMIT: f64 = 30.0;
 
 /// Returns the contrast of the intensity of a sum of `count` phasors of equal length and random
@@ -179,9 +181,9 @@ const STIRLING_LIMIT: f64 = 30.0;
 /// C = √(1 − 1/N)
 /// ```
 ///
-/// A single phasor has no contrast; from some fifty on speckle counts as fully developed. The same
-/// number is the contrast of a pattern computed from N unit phasors in the pupil, in the ensemble
-/// and on average over the tile.
+/// A single phasor has no contrast; from about fifty phasors on speckle counts as fully developed.
+/// A pattern computed from N unit phasors in the pupil has the same contrast, in the ensemble and
+/// on average over the tile.
 ///
 /// # Panics
 ///
@@ -222,7 +224,7 @@ mod tests {
     #[test]
     fn exponential_density_is_the_slope_of_its_distribution() {
         for intensity in [0.3, 1.0, 4.0] {
-            // The midpoint rule errs by h² f″ / 24 · length < 4 (4 / 2e5)² / 24 = 7e−11.
+            // The midpoint rule has an error of h² f″ / 24 · length < 4 (4 / 2e5)² / 24 = 7e−11.
             let area = integral(exponential_density, intensity);
             assert_absolute(area, exponential_cumulative(intensity), 1e-10);
         }
@@ -234,10 +236,10 @@ mod tests {
     fn gamma_density_has_mean_one_and_the_stated_contrast() {
         for shape in [1.0, 1.977, 4.0, 29.9, 30.1, 2_500.0] {
             let law = GammaIntensity::new(shape).unwrap();
-            // exp(−40) and less lies beyond 1 + 10/√M + 40/M.
+            // The probability beyond 1 + 10/√M + 40/M is exp(−40) or less.
             let end = 1.0 + 10.0 / shape.sqrt() + 40.0 / shape;
             let moment = |k: i32| integral(|x| law.density(x) * x.powi(k), end);
-            // M = 1.977 starts with a root, where the midpoint rule errs by h^1.98 = 1e−7.
+            // M = 1.977 starts like a root, where the midpoint rule has an error of h^1.98 = 1e−7.
             assert_absolute(moment(0), 1.0, 1e-7);
             assert_absolute(moment(1), 1.0, 1e-7);
             let contrast = (moment(2) - 1.0).sqrt();

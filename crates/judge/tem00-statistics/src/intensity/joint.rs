@@ -3,8 +3,8 @@ use crate::{
     intensity::bessel::{rician_cumulative, scaled_bessel_i0},
 };
 
-/// The joint law of the intensities at two points of fully developed speckle, or at one point of
-/// two correlated patterns.
+/// Joint distribution of the intensities at two points of fully developed speckle, or at one point
+/// of two correlated patterns.
 ///
 /// ```text
 /// p(I₁, I₂) = exp(−(I₁ + I₂)/(1 − μ²)) I₀(2μ√(I₁I₂)/(1 − μ²)) / (1 − μ²)
@@ -12,13 +12,13 @@ use crate::{
 /// γ = μ²    correlation of the two intensities
 /// ```
 ///
-/// Intensities are in units of their mean, which both points share. For two points a distance r
-/// apart μ² is the [`airy_autocovariance`](crate::airy_autocovariance); for a pupil shifted by a
+/// Intensities are in units of their mean, which both points share. For two points at the distance
+/// r, μ² is the [`airy_autocovariance`](crate::airy_autocovariance); for a pupil shifted by a
 /// fraction of its diameter μ is the overlap of the two discs.
 ///
 /// # Examples
 ///
-/// Next to a speckle five times as bright as the mean, where μ² = 1/2:
+/// The intensity next to a speckle five times as bright as the mean, where μ² = 1/2:
 ///
 /// ```
 /// use tem00_statistics::laws::JointIntensity;
@@ -46,8 +46,8 @@ impl JointIntensity {
     ///
     /// # Errors
     ///
-    /// Returns an error unless `0 ≤ amplitude_correlation < 1`: at 1 the two intensities are the
-    /// same and have no joint density.
+    /// Returns an error unless `0 ≤ amplitude_correlation < 1`: at 1 the two intensities are equal
+    /// and have no joint density.
     pub fn new(amplitude_correlation: f64) -> Result<Self, StatisticsError> {
         if (0.0..1.0).contains(&amplitude_correlation) {
             Ok(Self {
@@ -78,9 +78,10 @@ impl JointIntensity {
         exponential_density(given) * self.conditional_density(intensity, given)
     }
 
-    /// Returns the density of the intensity at one point where that at the other is `given`.
+    /// Returns the density of the intensity at one point if the intensity at the other is `given`.
     ///
-    /// It is that of a coherent background of μ² times `given` with speckle of the mean 1 − μ².
+    /// It is the density for a coherent background of μ² times `given` with speckle of the mean 1 −
+    /// μ².
     pub fn conditional_density(&self, intensity: f64, given: f64) -> f64 {
         if intensity < 0.0 || given < 0.0 || intensity.is_infinite() || given.is_infinite() {
             return 0.0;
@@ -93,9 +94,9 @@ impl JointIntensity {
         bessel * (-distance * (distance / width)).exp() / width
     }
 
-    /// Returns the probability that the intensity at one point is at most `intensity` where that
-    /// at the other is `given`: `1 − Q₁(μ√(2 given/(1 − μ²)), √(2 intensity/(1 − μ²)))`, with
-    /// Marcum's function.
+    /// Returns the probability that the intensity at one point is at most `intensity` if the
+    /// intensity at the other is `given`: `1 − Q₁(μ√(2 given/(1 − μ²)), √(2 intensity/(1 − μ²)))`,
+    /// with Marcum's function.
     pub fn conditional_cumulative(&self, intensity: f64, given: f64) -> f64 {
         if intensity <= 0.0 {
             return 0.0;
@@ -105,13 +106,13 @@ impl JointIntensity {
         rician_cumulative(unit * background, unit * intensity.sqrt())
     }
 
-    /// Returns the mean of the intensity at one point where that at the other is `given`:
+    /// Returns the mean of the intensity at one point if the intensity at the other is `given`:
     /// `1 + (given − 1) μ²`.
     pub fn conditional_mean(&self, given: f64) -> f64 {
         self.independent_share() + given * self.intensity_correlation()
     }
 
-    /// Returns the variance of the intensity at one point where that at the other is `given`:
+    /// Returns the variance of the intensity at one point if the intensity at the other is `given`:
     /// `(1 − μ²)² + 2μ² (1 − μ²) given`.
     pub fn conditional_variance(&self, given: f64) -> f64 {
         let share = self.independent_share();
@@ -166,7 +167,7 @@ mod tests {
         JointIntensity::new(amplitude_correlation).unwrap()
     }
 
-    /// ∫∫ p I₁ᵐ I₂ⁿ by quadrature; exp(−45) is left out.
+    /// ∫∫ p I₁ᵐ I₂ⁿ by quadrature; the omitted part is exp(−45).
     fn moment_by_quadrature(law: &JointIntensity, [m, n]: [i32; 2]) -> f64 {
         let inner = |first: f64| {
             integrate(
@@ -233,7 +234,8 @@ mod tests {
             for (a, b) in [(a, b), (a, a), (0.0, b), (exponents[0].abs(), exponents[1].abs())] {
                 let (there, back) = (law.density([a, b]), law.density([b, a]));
                 prop_assert!(there.is_finite() && there >= 0.0, "p({a}, {b}) = {there}");
-                // The exponent cancels (√a − μ√b)²/(1 − μ²), of some ε a/(1 − μ²).
+                // Cancellation in the exponent (√a − μ√b)²/(1 − μ²) leaves an error of about ε a/(1
+                // − μ²).
                 if mu < 0.99 && a.max(b) < 40.0 {
                     prop_assert!((there - back).abs() <= 1e-12 * (there + back), "{there} {back}");
                 }

@@ -2,7 +2,7 @@ use core::f64::consts::PI;
 
 use crate::{StatisticsError, laws::contrast_of_phasor_sum};
 
-/// The law of the intensity of a sum of few phasors of equal length and random phase.
+/// Distribution of the intensity of a sum of few phasors of equal length and random phase.
 ///
 /// ```text
 /// I    = |Σ exp(iφⱼ)|² / N                   N phasors; mean 1, at most N
@@ -10,19 +10,20 @@ use crate::{StatisticsError, laws::contrast_of_phasor_sum};
 /// C    = √(1 − 1/N)
 /// ```
 ///
-/// Such is the speckle of a surface with only N scatterers, or facets, in a resolution cell of the
-/// optics, and that of a pattern computed from N unit phasors in the pupil.
+/// Examples are the speckle of a surface with only N scatterers, or facets, in a resolution cell of
+/// the optics, and a pattern computed from N unit phasors in the pupil.
 ///
 /// # Validity
 ///
-/// All phasors have one length. The density is exact to 10⁻⁶ from eight phasors on and to 10⁻⁹ from
-/// sixteen on, the distribution to a hundredth of that; for fewer than eight the integral converges
-/// too slowly. An intensity above 49, whose probability is below 10⁻²¹, counts as impossible.
+/// All phasors have the same length. The density is exact to 10⁻⁶ from eight phasors on and to 10⁻⁹
+/// from sixteen on, the distribution function to a hundredth of these values; for fewer than eight
+/// the integral converges too slowly. An intensity above 49, whose probability is below 10⁻²¹,
+/// counts as impossible.
 ///
 /// # Examples
 ///
-/// Ten phasors are brighter than four times their mean less often than fully developed speckle, for
-/// which it is e⁻⁴ = 0.0183:
+/// Ten phasors are brighter than four times their mean less often than fully developed speckle,
+/// whose probability is e⁻⁴ = 0.0183:
 ///
 /// ```
 /// use tem00_statistics::laws::PhasorSum;
@@ -58,11 +59,11 @@ struct Term {
 /// exp(−7²) is the probability of a larger amplitude, if there is one.
 const LARGEST_AMPLITUDE: f64 = 7.0;
 
-/// The most terms of the series, which eight phasors use.
+/// The largest number of terms of the series, which eight phasors need.
 const LARGEST_TERM_COUNT: u32 = 2_500;
 
 impl PhasorSum {
-    /// Creates the law of the sum of `count` phasors.
+    /// Creates the distribution for the sum of `count` phasors.
     ///
     /// # Errors
     ///
@@ -114,7 +115,7 @@ impl PhasorSum {
         let ratio = amplitude / self.reach;
         let wave = |term: &Term| term.weight * libm::j0(term.zero * ratio);
         let sum: f64 = self.terms.iter().map(wave).sum();
-        // Where the density vanishes the terms left out can make it negative.
+        // Where the density vanishes the omitted terms can make it negative.
         (sum / (self.reach * self.reach)).max(0.0)
     }
 
@@ -127,12 +128,12 @@ impl PhasorSum {
         let ratio = amplitude / self.reach;
         let wave = |term: &Term| term.weight * libm::j1(term.zero * ratio) / term.zero;
         let sum: f64 = self.terms.iter().map(wave).sum();
-        // The terms left out can take it past 0 and 1.
+        // The omitted terms can make it leave [0, 1].
         (2.0 * ratio * sum).clamp(0.0, 1.0)
     }
 }
 
-/// Returns whether a term and what follows it are too small to count, from |J₀(x)| ≤ √(2/πx).
+/// Returns whether a term and all following terms are negligible, from |J₀(x)| ≤ √(2/πx).
 fn is_negligible(x: f64, power: i32) -> bool {
     (2.0 / (PI * x)).sqrt().powi(power) < 1e-14
 }
@@ -142,7 +143,7 @@ fn is_negligible(x: f64, power: i32) -> bool {
 fn bessel_zero(index: u32) -> f64 {
     let beta = (f64::from(index) - 0.25) * PI;
     let mut zero = beta + 0.125 / beta;
-    // The start is good to 1e−3, which each step squares.
+    // The starting value has an error of 1e−3, which each step squares.
     for _ in 0..3 {
         zero += libm::j0(zero) / libm::j1(zero);
     }
@@ -157,7 +158,7 @@ fn bessel_zero(index: u32) -> f64 {
 /// ⟨I²⟩ = 2 − 1/N,   ⟨I³⟩ = 6 − 9/N + 4/N²
 /// ```
 ///
-/// For N → ∞ it is k!, that of the exponential law.
+/// For N → ∞ it is k!, the moment of the exponential distribution.
 ///
 /// # Panics
 ///
@@ -200,7 +201,7 @@ pub fn moment_of_phasor_sum(count: usize, order: u32) -> f64 {
 }
 
 /// Returns the moments of the intensity of the sum of two independent fields of random phase from
-/// theirs: ⟨|a + b|²ᵏ⟩ = Σⱼ (k j)² ⟨|a|²ʲ⟩ ⟨|b|²⁽ᵏ⁻ʲ⁾⟩.
+/// the moments of each: ⟨|a + b|²ᵏ⟩ = Σⱼ (k j)² ⟨|a|²ʲ⟩ ⟨|b|²⁽ᵏ⁻ʲ⁾⟩.
 fn moments_of_two(first: &[f64], second: &[f64]) -> Vec<f64> {
     let moment = |order: usize| {
         let mut sum = 0.0;

@@ -1,6 +1,6 @@
 use crate::{StatisticsError, exponential_cumulative, exponential_density};
 
-/// The law of the intensity of partially polarised speckle.
+/// Distribution of the intensity of partially polarised speckle.
 ///
 /// ```text
 /// p(I) = (exp(−2I/(1 + P)) − exp(−2I/(1 − P))) / P     I in units of its mean
@@ -8,12 +8,12 @@ use crate::{StatisticsError, exponential_cumulative, exponential_density};
 /// ```
 ///
 /// P is the degree of polarisation of the scattered light: along two orthogonal polarisations its
-/// fields are uncorrelated and carry the shares (1 ± P)/2 of the power. P = 1 is the exponential
-/// law, P = 0 the sum of two equal patterns.
+/// fields are uncorrelated and carry the fractions (1 ± P)/2 of the power. P = 1 is the exponential
+/// distribution, P = 0 the sum of two equal patterns.
 ///
 /// # Validity
 ///
-/// Fully developed speckle in either polarisation.
+/// The speckle is fully developed in both polarisations.
 ///
 /// # Examples
 ///
@@ -94,7 +94,7 @@ impl PartiallyPolarised {
         if intensity <= 0.0 {
             return 0.0;
         }
-        // 1 − F = exp(−t) (1 + t (1 − exp(−y)) / y), all of it positive.
+        // 1 − F = exp(−t) (1 + t (1 − exp(−y)) / y), with positive terms only.
         let strong = 2.0 * intensity / (1.0 + p);
         let excess = 4.0 * p * intensity / ((1.0 - p) * (1.0 + p));
         let tail = (-strong).exp();
@@ -124,12 +124,13 @@ mod tests {
     fn density_has_mean_one_and_the_stated_contrast() {
         for (degree, contrast) in [(0.1, 0.710_63), (0.3, 0.738_24), (0.7, 0.863_13)] {
             let law = PartiallyPolarised::new(degree).unwrap();
-            // exp(−2 · 40/1.7) = 4e−21 lies beyond; the steeper exponential falls by e in 0.15.
+            // The probability exp(−2 · 40/1.7) = 4e−21 lies beyond; the steeper exponential falls
+            // by e in 0.15.
             let moment = |k| integrate(|x| law.density(x) * x.powi(k), [0.0, 40.0], 0.5);
             assert_absolute(moment(0), 1.0, 1e-13);
             assert_absolute(moment(1), 1.0, 1e-13);
             assert_absolute((moment(2) - 1.0).sqrt(), law.contrast(), 1e-13);
-            // Five digits worked out by hand.
+            // Five digits, computed by hand.
             assert_absolute(law.contrast(), contrast, 5e-6);
         }
     }
@@ -158,7 +159,7 @@ mod tests {
             assert_absolute(all.density(x), exponential_density(x), 1e-15);
             assert_absolute(all.cumulative(x), exponential_cumulative(x), 1e-15);
         }
-        // The closed forms join: 1 − P changes the law by as much.
+        // The closed forms join continuously: 1 − P changes the law by the same amount.
         let nearly = PartiallyPolarised::new(1.0 - 1e-12).unwrap();
         assert_absolute(nearly.density(0.7), all.density(0.7), 1e-11);
     }

@@ -5,30 +5,31 @@ use crate::{
     intensity::descent::{Factor, inverse_laplace_transform},
 };
 
-/// The law of the intensity of a sum of independent speckle patterns of any mean intensities.
+/// Distribution of the intensity of a sum of independent speckle patterns with any mean
+/// intensities.
 ///
 /// ```text
 /// I = Σ wⱼ Iⱼ / Σ wⱼ         Iⱼ independent, exponential, of mean 1
 /// C = √(Σ wⱼ²) / Σ wⱼ
 /// ```
 ///
-/// Such are several lasers on one surface, a diffuser in some positions during an exposure, or the
-/// uncorrelated parts of a partially coherent field: the weights are then the eigenvalues of its
-/// coherence matrix. The law is the hypoexponential distribution, scaled to mean 1. Patterns of
-/// equal mean have the [`GammaIntensity`](crate::GammaIntensity) law of that many degrees of
-/// freedom, two unequal ones the [`PartiallyPolarised`](crate::PartiallyPolarised) one.
+/// Examples are several lasers on one surface, a diffuser in several positions during an exposure,
+/// or the uncorrelated parts of a partially coherent field, whose weights are the eigenvalues of
+/// its coherence matrix. The distribution is the hypoexponential distribution, scaled to mean 1.
+/// For patterns of equal mean it is [`GammaIntensity`](crate::GammaIntensity) with one degree of
+/// freedom per pattern, for two unequal patterns [`PartiallyPolarised`](crate::PartiallyPolarised).
 ///
 /// # Validity
 ///
 /// Each pattern is fully developed. Weights may be equal, nearly equal or orders of magnitude
-/// apart: density and distribution are exact to 10⁻¹² of themselves on either tail for up to a
-/// thousand patterns, and to 10⁻⁹ for a million. The time of each value is some 10 µs for each
-/// weight that differs from the others, of which there may be
-/// [`MAX_DIFFERENT`](Self::MAX_DIFFERENT).
+/// apart: density and distribution function have relative errors of 10⁻¹² on both tails for up to a
+/// thousand patterns, and of 10⁻⁹ for a million. The computing time of each value is about 10 µs
+/// per different weight; up to [`MAX_DIFFERENT`](Self::MAX_DIFFERENT) different weights are
+/// allowed.
 ///
 /// # Examples
 ///
-/// A second laser of half the power:
+/// Two lasers, the second with half the power of the first:
 ///
 /// ```
 /// use tem00_statistics::IncoherentSum;
@@ -45,20 +46,20 @@ use crate::{
 /// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007, ch. 3 (sums of speckle patterns).
 #[derive(Clone, Debug, PartialEq)]
 pub struct IncoherentSum {
-    /// The weights over their sum, the largest first.
+    /// The weights divided by their sum, the largest first.
     shares: Vec<Share>,
 }
 
 /// Patterns of one weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Share {
-    /// The weight of one over the sum of all.
+    /// The weight of one pattern divided by the sum of all weights.
     value: f64,
     /// The number of patterns.
     count: f64,
 }
 
-/// A pattern of a smaller share changes no digit and is left out.
+/// A pattern with a smaller fraction changes no digit and is left out.
 const NEGLIGIBLE_SHARE: f64 = 1e-30;
 
 impl IncoherentSum {
@@ -69,8 +70,8 @@ impl IncoherentSum {
     ///
     /// # Errors
     ///
-    /// Returns an error if a weight is negative or not finite, if none is positive, or if more than
-    /// [`MAX_DIFFERENT`](Self::MAX_DIFFERENT) differ.
+    /// Returns an error if a weight is negative or not finite, if no weight is positive, or if more
+    /// than [`MAX_DIFFERENT`](Self::MAX_DIFFERENT) weights differ.
     pub fn new(weights: &[f64]) -> Result<Self, StatisticsError> {
         let mut shares = fractions("weights", weights)?;
         shares.retain(|&share| share > NEGLIGIBLE_SHARE);
@@ -137,9 +138,9 @@ impl IncoherentSum {
         })
     }
 
-    /// Returns whether the law is 1 to all digits: n equal patterns as strong as the strongest
-    /// exceed y strongest means with a probability below (ey/n)ⁿ e⁻ʸ, less than e⁻⁷⁴⁵ from
-    /// y = 4n + 1600 on.
+    /// Returns whether the distribution function is 1 to all digits: n equal patterns as strong as
+    /// the strongest exceed y times the strongest mean with a probability below (ey/n)ⁿ e⁻ʸ, less
+    /// than e⁻⁷⁴⁵ from y = 4n + 1600 on.
     fn is_beyond(&self, intensity: f64) -> bool {
         let patterns: f64 = self.shares.iter().map(|share| share.count).sum();
         intensity / self.shares[0].value >= 4.0 * patterns + 1_600.0
@@ -155,7 +156,8 @@ mod tests {
     use super::*;
     use crate::{GammaIntensity, PartiallyPolarised, exponential_density};
 
-    /// (density, cumulative) for weights of sum 1 that are well apart, from partial fractions.
+    /// Density and cumulative probability for well separated weights of sum 1, from partial
+    /// fractions.
     fn by_partial_fractions(shares: &[f64], x: f64) -> (f64, f64) {
         let coefficient = |j: usize| -> f64 {
             let others = shares.iter().enumerate().filter(|&(k, _)| k != j);
@@ -178,7 +180,7 @@ mod tests {
         let law = IncoherentSum::new(&[1.5, 3.0, 0.5, 5.0]).unwrap();
         for x in [0.2, 0.9, 2.0, 9.0] {
             let (density, cumulative) = by_partial_fractions(&shares, x);
-            // The fractions cancel four digits.
+            // Cancellation between the fractions costs four digits.
             assert_absolute(law.density(x), density, 1e-13 + 1e-12 * density);
             assert_absolute(law.cumulative(x), cumulative, 1e-13);
         }
@@ -191,7 +193,8 @@ mod tests {
             let law = IncoherentSum::new(&vec![1e-200; usize::from(count)]).unwrap();
             let gamma = GammaIntensity::new(f64::from(count)).unwrap();
             for x in [1e-3, 0.3, 1.0, 2.5] {
-                // Relative, from 1e−180 on: n k roundings of some 1e−16, and the exponent of Γ.
+                // The relative error, from 1e−180 on, covers n k roundings of about 1e−16, and the
+                // exponent of Γ.
                 assert_relative(law.density(x), gamma.density(x), 1e-12);
                 assert_absolute(law.cumulative(x), gamma.cumulative(x), 1e-13);
             }
@@ -202,7 +205,7 @@ mod tests {
     #[test]
     fn many_nearly_equal_weights_are_the_gamma_law() {
         for (count, tolerance) in [(1_000_u32, 1e-11), (5_000, 1e-10)] {
-            // Weights that differ by 5e−11 change the law by less than that.
+            // Weights that differ by 5e−11 change the law by less than 5e−11.
             let weights: Vec<f64> = (0..count).map(|i| 1.0 + 1e-14 * f64::from(i)).collect();
             let law = IncoherentSum::new(&weights).unwrap();
             let gamma = GammaIntensity::new(f64::from(count)).unwrap();
@@ -217,7 +220,8 @@ mod tests {
     #[test]
     fn a_million_equal_weights_are_one_factor() {
         let law = IncoherentSum::new(&vec![0.3; 1_000_000]).unwrap();
-        // The density and the distribution of the Gamma law, by SciPy 1.17: `stats.gamma`.
+        // The density and the distribution function of the Gamma distribution, by SciPy 1.17:
+        // `stats.gamma`.
         let reference = [
             (0.997, 4.405_267_011_036, 0.001_338_104_167_313_6),
             (1.0, 398.942_246_883_331_6, 0.500_132_980_760_872),
@@ -231,7 +235,7 @@ mod tests {
 
     #[test]
     fn weights_of_a_geometric_series_are_the_sum_of_partial_fractions() {
-        // Their coefficients stay below 12, and lose one digit.
+        // The coefficients stay below 12, and lose one digit.
         let weights: Vec<f64> = (0..60).map(|i| 0.5_f64.powi(i)).collect();
         let total: f64 = weights.iter().sum();
         let shares: Vec<f64> = weights.iter().map(|weight| weight / total).collect();
@@ -263,7 +267,7 @@ mod tests {
             let exact = exponential_density(x);
             assert_relative(law.density(x), exact, 1e-13);
         }
-        // 1e−25 of another pattern bends only the first 1e−24.
+        // A second pattern of the fraction 1e−25 changes only the first 1e−24.
         let law = IncoherentSum::new(&[1.0, 1e-25]).unwrap();
         assert_relative(law.density(0.5), (-0.5_f64).exp(), 1e-13);
     }

@@ -4,19 +4,19 @@ use tem00_numerics::{jinc, sinc};
 
 use crate::StatisticsError;
 
-/// The area of a rough surface that is lit, with lengths in metres.
+/// Lit area of a rough surface, with lengths in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LitArea {
     /// A uniformly lit disc.
     Disc {
-        /// Its diameter.
+        /// The diameter of the disc.
         diameter: f64,
     },
     /// A uniformly lit rectangle.
     Rectangle {
-        /// Its width, along x.
+        /// The width of the rectangle, along x.
         width: f64,
-        /// Its height, along y.
+        /// The height of the rectangle, along y.
         height: f64,
     },
     /// A Gaussian spot.
@@ -26,7 +26,7 @@ pub enum LitArea {
     },
 }
 
-/// Speckle without a lens: the pattern that a lit area of a rough surface makes in a distant plane.
+/// Speckle without a lens: the pattern of a lit area of a rough surface in a distant plane.
 ///
 /// ```text
 /// disc        c(r) = [2 J₁(πr/h) / (πr/h)]²,          h = λ z / D
@@ -34,19 +34,19 @@ pub enum LitArea {
 /// Gaussian    c(r) = exp(−(π w r / λz)²)
 /// ```
 ///
-/// The field in the plane is correlated as the Fourier transform of the irradiance on the surface
-/// (van Cittert and Zernike), and c is the square of that. Uniformly lit, the area has the part
-/// that the pupil has for the speckle in an image; z is the distance.
+/// The correlation of the field in the plane is the Fourier transform of the irradiance on the
+/// surface (van Cittert and Zernike), and c is its squared magnitude. A uniformly lit area takes
+/// the role of the pupil for the speckle in an image; z is the distance.
 ///
 /// # Validity
 ///
-/// Fully developed speckle close to the axis; a plane parallel to the surface that is many
-/// wavelengths and several sizes of the lit area away, while the correlation of the light on the
-/// surface is as short as the wavelength.
+/// The speckle is fully developed and close to the axis. The plane is parallel to the surface, at a
+/// distance of many wavelengths and several sizes of the lit area, and the correlation length of
+/// the light on the surface is of the order of the wavelength.
 ///
 /// # Examples
 ///
-/// A red laser spot of 1 mm diameter on a wall makes speckles of 1.3 mm at 2 m:
+/// A red laser spot of 1 mm diameter on a wall produces speckles of 1.3 mm at a distance of 2 m:
 ///
 /// ```
 /// use tem00_statistics::laws::{LitArea, ObjectiveSpeckle};
@@ -109,11 +109,11 @@ impl ObjectiveSpeckle {
         }
     }
 
-    /// Returns the speckle size along x and y, in metres: λz over the diameter or the sides of the
-    /// lit area, the period of the finest fringes.
+    /// Returns the speckle size along x and y, in metres: λz divided by the diameter or the sides
+    /// of the lit area, the period of the finest fringes.
     ///
-    /// A Gaussian spot has no finest fringes. Its size is that of the uniform disc that makes the
-    /// same coherence area: of the diameter 2w.
+    /// A Gaussian spot has no finest fringes. Its speckle size is that of the uniform disc with the
+    /// same coherence area, whose diameter is 2w.
     pub fn size(&self) -> [f64; 2] {
         match self.area {
             LitArea::Disc { diameter } => [self.scale / diameter; 2],
@@ -165,7 +165,7 @@ mod tests {
     /// |∫ E(x) exp(2πi x lag / λz) dx / ∫ E dx|², where E is even in x.
     fn by_transform(profile: impl Fn(f64) -> f64, half: f64, lag: f64) -> f64 {
         let scale = 2.0 * PI * lag / (WAVELENGTH * DISTANCE);
-        // From the edge inwards: the profile may have a root there.
+        // The integral runs from the edge inwards, since the profile may have a root at the edge.
         let wave = |depth: f64| profile(half - depth) * (scale * (half - depth)).cos();
         let power = |depth: f64| profile(half - depth);
         let range = [0.0, half];
@@ -183,7 +183,7 @@ mod tests {
         });
         let spot = speckle(LitArea::GaussianSpot { radius: 1e-3 });
         for lag in [0.0, 40e-6, 150e-6, 210e-6, 700e-6] {
-            // Summed over y, the disc is a half circle and the Gaussian a Gaussian.
+            // Integrated over y, the disc becomes a half circle and the Gaussian a Gaussian.
             let chord = |x: f64| (1.5e-3 * 1.5e-3 - x * x).max(0.0).sqrt();
             let law = by_transform(chord, 1.5e-3, lag);
             assert_absolute(disc.autocovariance([0.6 * lag, -0.8 * lag]), law, 1e-12);
@@ -209,7 +209,7 @@ mod tests {
         };
         let rectangle = speckle(area).coherence_area();
         assert_relative(rectangle, squared_scale / 1.5e-6, 1e-14);
-        // ∫ E² over (∫ E)², radially.
+        // ∫ E² divided by (∫ E)², as radial integrals.
         let spot = speckle(LitArea::GaussianSpot { radius: 1e-3 });
         let radial = |power: f64| {
             let ring = |r: f64| (-2.0 * power * (r / 1e-3).powi(2)).exp() * 2.0 * PI * r;
@@ -217,7 +217,7 @@ mod tests {
         };
         let exact = squared_scale * radial(2.0) / radial(1.0).powi(2);
         assert_relative(spot.coherence_area(), exact, 1e-12);
-        // And the integral of its autocovariance.
+        // The coherence area is also the integral of the autocovariance.
         let h = spot.size()[0];
         let ring = |r: f64| spot.autocovariance([r * h, 0.0]) * 2.0 * PI * r;
         let integral = h * h * integrate(ring, [0.0, 5.0], 0.2);

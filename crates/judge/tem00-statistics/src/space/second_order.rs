@@ -4,18 +4,19 @@ use tem00_numerics::{disc_overlap, jinc};
 
 /// The lag at which the [`airy_autocovariance`] first vanishes, in units of the speckle size h.
 ///
-/// The first zero 3.8317 of J₁ divided by π.
+/// It is the first zero 3.8317 of J₁ divided by π.
 pub const AIRY_FIRST_ZERO: f64 = 1.219_669_891_266_504_5;
 
 /// The lag at which the [`airy_autocovariance`] has fallen to one half, in units of h.
 ///
-/// The half width at half maximum; the full width is 1.029 h.
+/// It is the half width at half maximum; the full width is 1.029 h.
 pub const AIRY_HALF_WIDTH: f64 = 0.514_496_984_981_094;
 
 /// The integral of the [`airy_autocovariance`] over the plane, in units of h²: the area of the
 /// average speckle.
 ///
-/// A pattern of area A has the mean intensity of πA / 4h² independent points.
+/// The mean intensity of a pattern of area A fluctuates like the mean of πA / 4h² independent
+/// points.
 pub const COHERENCE_AREA: f64 = 4.0 / PI;
 
 /// Returns the normalised autocovariance of speckle behind a circular pupil, at a `lag` in units of
@@ -26,7 +27,7 @@ pub const COHERENCE_AREA: f64 = 4.0 / PI;
 /// h    = λ d / D                  wavelength, distance from pupil to image, pupil diameter
 /// ```
 ///
-/// The intensity pattern of a point imaged by the same pupil. The function is even, and 0 at
+/// It is the intensity pattern of a point imaged by the same pupil. The function is even, and 0 at
 /// infinity.
 ///
 /// # Examples
@@ -52,10 +53,10 @@ pub fn airy_autocovariance(lag: f64) -> f64 {
 /// S(f) = (4/π) chat(f h)        h² per unit variance of the intensity
 /// ```
 ///
-/// The Fourier transform of the [`airy_autocovariance`]: its integral over the frequency plane is 1
-/// and its value at zero the [`COHERENCE_AREA`]. There is nothing beyond one cycle per h, so that
-/// two samples per speckle size catch all of the intensity. The mean intensity, a delta peak at
-/// zero frequency, is left out.
+/// It is the Fourier transform of the [`airy_autocovariance`]: its integral over the frequency
+/// plane is 1 and its value at zero the [`COHERENCE_AREA`]. It vanishes beyond one cycle per h, so
+/// that two samples per speckle size capture the intensity completely. The mean intensity, a delta
+/// peak at zero frequency, is not included.
 pub fn airy_power_spectrum(frequency: f64) -> f64 {
     COHERENCE_AREA * disc_overlap(frequency)
 }
@@ -68,13 +69,13 @@ pub fn airy_power_spectrum(frequency: f64) -> f64 {
 ///         = 1.530 / n            and std(C) = 0.765 / n
 /// ```
 ///
-/// A pattern computed from a pupil C lattice points across is n = C speckle sizes wide, however
-/// many samples it has. For an image of area A it is `n = √A / h`.
+/// A pattern computed from a pupil C lattice points across is n = C speckle sizes wide, for any
+/// number of samples. For an image of area A, `n = √A / h`.
 ///
 /// # Validity
 ///
-/// Fully developed speckle behind a circular pupil; the first order in 1/n. It does not matter
-/// whether the mean over the pattern is fixed or fluctuates.
+/// The speckle is fully developed behind a circular pupil, and the result is of first order in 1/n.
+/// It does not matter whether the mean over the pattern is fixed or fluctuates.
 ///
 /// # Panics
 ///
@@ -87,24 +88,24 @@ pub fn contrast_squared_spread(speckles_across: f64) -> f64 {
     2.0 * squared_airy_area().sqrt() / speckles_across
 }
 
-/// Returns ∫ c(r)² d²r = (32/π) κ in units of h²: the area that counts as one sample of the
+/// Returns ∫ c(r)² d²r = (32/π) κ in units of h²: the area of one independent sample of the
 /// contrast.
 ///
 /// The influence of one intensity on the contrast is the Laguerre polynomial 1 − 2I + I²/2, and the
-/// covariance of two of these is the square of the autocovariance.
+/// covariance of two such values is the square of the autocovariance.
 fn squared_airy_area() -> f64 {
     let kappa = 1.0 / 8.0 - 2.0 / (3.0 * PI * PI);
     32.0 / PI * kappa
 }
 
-/// Returns how many pixels count as one independent sample of the contrast, for speckles of
+/// Returns the number of pixels per independent sample of the contrast, for speckles of
 /// `speckle_size` pixels: the sum of the squared Airy autocovariance over all pixels.
 pub(crate) fn pixels_per_contrast_sample(speckle_size: f64) -> f64 {
     // c² has no frequencies beyond 2/h: the sum over a lattice finer than h/2 is the integral.
     if speckle_size >= 2.0 {
         return squared_airy_area() * speckle_size * speckle_size;
     }
-    // c² falls as (r/h)⁻⁶: what lies beyond 12 pixels adds 1e−5 at h = 2 and less below.
+    // c² falls as (r/h)⁻⁶: the part beyond 12 pixels adds 1e−5 at h = 2 and less below.
     let weight = |x: i32, y: i32| {
         let lag = f64::from(x).hypot(f64::from(y));
         airy_autocovariance(lag / speckle_size).powi(2)
@@ -158,7 +159,7 @@ mod tests {
     fn spectrum_and_autocovariance_are_a_fourier_pair() {
         for lag in [0.0, 0.25, AIRY_HALF_WIDTH, 1.0, 1.7] {
             // The Hankel transform of the spectrum; chat bends by −(4/π)(1−ρ²)^(½) only, and the
-            // midpoint rule errs by h² = 2.5e−9 of the slope 4/π at the origin.
+            // midpoint rule has an error of h² = 2.5e−9 times the slope 4/π at the origin.
             let transform = integral_over_plane(
                 |f| airy_power_spectrum(f) * libm::j0(2.0 * PI * f * lag),
                 1.0,
@@ -172,8 +173,8 @@ mod tests {
 
     #[test]
     fn coherence_area_is_the_integral_of_the_autocovariance() {
-        // c falls as 4/(π⁴ r³) on average, which leaves 8/(π³ R) = 8.6e−4 beyond R = 300 and an
-        // oscillation of 4/(π⁴ R²) = 5e−7 on top. The midpoint rule adds 2π h²/24 = 3e−7.
+        // c falls as 4/(π⁴ r³) on average, which gives 8/(π³ R) = 8.6e−4 beyond R = 300, plus an
+        // oscillation of 4/(π⁴ R²) = 5e−7. The midpoint rule adds 2π h²/24 = 3e−7.
         let end = 300.0;
         let tail = 8.0 / (PI.powi(3) * end);
         let area = integral_over_plane(airy_autocovariance, end, 300_000) + tail;
@@ -185,7 +186,7 @@ mod tests {
         // c² falls as r⁻⁶: 6e−8 lies beyond r = 10.
         let area = integral_over_plane(|r| airy_autocovariance(r).powi(2), 10.0, 20_000);
         assert_absolute(squared_airy_area(), area, 1e-6);
-        // Both branches at the switch.
+        // Compares both branches at the switch.
         assert_relative(
             pixels_per_contrast_sample(2.0 - 1e-12),
             pixels_per_contrast_sample(2.0),

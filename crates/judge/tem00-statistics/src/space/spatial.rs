@@ -10,8 +10,9 @@ pub const SPECKLE_DENSITY: f64 = PI / 4.0;
 /// σ_k² / 2π = π / (8 h²)        σ_k² = π²/4h², the variance of the wave number along one axis
 /// ```
 ///
-/// At each the intensity is zero and the phase turns once around, in one sense or the other with
-/// equal frequency: one to two speckles. Fully developed speckle behind a circular pupil.
+/// At each singularity the intensity is zero and the phase turns once around, in one sense or the
+/// other with equal frequency. There is one singularity per two speckles. The value holds for fully
+/// developed speckle behind a circular pupil.
 ///
 /// # References
 ///
@@ -27,18 +28,18 @@ pub const VORTEX_DENSITY: f64 = PI / 8.0;
 /// ⟨(∂I/∂x)²⟩ = 2σ_k² ⟨I⟩² = π² ⟨I⟩² / (2 h²)
 /// ```
 ///
-/// It is the curvature of the [`airy_autocovariance`](crate::airy_autocovariance) at its top.
+/// It is the curvature of the [`airy_autocovariance`](crate::airy_autocovariance) at its maximum.
 pub const MEAN_SQUARE_SLOPE: f64 = PI * PI / 2.0;
 
-/// Returns how often the intensity of fully developed speckle rises through a `level`, in units of
-/// the mean intensity, per length h of a straight line.
+/// Returns the number of upward crossings of a `level`, in units of the mean intensity, by the
+/// intensity of fully developed speckle, per length h of a straight line.
 ///
 /// ```text
 /// N(x) = (√π / 2) √x exp(−x)
 /// ```
 ///
-/// It falls through the level as often. Half the mean is crossed upwards 0.380 times per speckle
-/// size, most often of all levels. The pupil is circular.
+/// The number of downward crossings is the same. Half the mean is crossed upwards 0.380 times per
+/// speckle size, more often than any other level. The pupil is circular.
 ///
 /// # Examples
 ///
@@ -119,8 +120,8 @@ mod tests {
     fn drawn_speckle_has_the_mean_square_slope() {
         let [slope] = per_pixel(|tile| [over_neighbours(tile, |a, b| (b - a).powi(2))]);
         // The slope squared has the variance of I's derivative, ⟨I_x⁴⟩ = 24σ_k⁴ = 6 ⟨I_x²⟩², about
-        // √5 per sample and two samples per coherence area: 3.3 σ. Differences over h/16 see
-        // 1 − (5π²/96)(1/16)²·… = 0.2 % less, the corners of the lattice add 0.4 %.
+        // √5 per sample and two samples per coherence area: 3.3 σ. Differences over h/16 are
+        // smaller by the factor 1 − (5π²/96)(1/16)²·…, 0.2 %; the corners of the lattice add 0.4 %.
         let samples = 2.0 * TILES as f64 * PI / 4.0 * (DIAMETER * DIAMETER) as f64;
         let tolerance = 3.3 * (5.0 / samples).sqrt() + 6e-3;
         assert_relative(slope * H * H, MEAN_SQUARE_SLOPE, tolerance);
@@ -137,8 +138,9 @@ mod tests {
         for (level, share) in levels.into_iter().zip(rises) {
             let crossings = share * H;
             let exact = level_crossings(level);
-            // At most Poisson's error of the independent rows, h apart: 3.3 σ. Double crossings
-            // within h/16 are missed, of the order of 1 %, and the lattice mask is 0.2 % off.
+            // The error is at most the Poisson error of independent rows at the distance h: 3.3 σ.
+            // Double crossings within h/16 are missed, of the order of 1 %, and the lattice mask
+            // has an error of 0.2 %.
             let count = exact / H * TILES as f64 * (SIZE * SIZE) as f64 / H;
             let tolerance = 3.3 / count.sqrt() + 0.012;
             assert_relative(crossings, exact, tolerance);
@@ -161,7 +163,7 @@ mod tests {
         for (level, area) in levels.into_iter().zip(measured) {
             let share = area_fraction_above(level);
             let samples = TILES as f64 * PI / 4.0 * (DIAMETER * DIAMETER) as f64;
-            // Binomial, 3.3 σ; and 1/N = 1/800 of the fixed mean.
+            // The tolerance is 3.3 binomial σ, plus 1/N = 1/800 for the fixed mean.
             let tolerance = 3.3 * (share * (1.0 - share) / samples).sqrt() + 1.0 / 800.0;
             assert_absolute(area, share, tolerance);
         }

@@ -262,8 +262,7 @@ mod tests {
                         [1e-5, -1e-5].map(|step| laser.path_to(point + step * direction).unwrap());
                     (ahead - behind) / 2e-5
                 };
-                // The paraxial error is half the square of the slope of the rays, which is at most
-                // 0.15.
+                // The paraxial error is half the square of the rays' slope, which is at most 0.15.
                 assert_absolute(slope(-wave), 1.0, 0.012);
                 assert!(slope(across).abs() < 2e-3, "{point}: {}", slope(across));
             }

@@ -102,7 +102,7 @@ fn the_literal_weight_adds_up_to_power_times_solid_angle() {
         let ray = sampler.sample(rng.random());
         let hit = ray.origin + ray.direction * (z / ray.direction.z);
         let irradiance = beam().irradiance_per_watt(hit.truncate().length(), z);
-        // The surface is square to the axis, so cos θ_s is cos θ and cancels.
+        // The surface is perpendicular to the axis, so cos θ_s is cos θ and cancels.
         let weight = irradiance / (ray.pdf_position * ray.pdf_direction);
         sum += weight / f64::from(COUNT);
         squares += weight * weight / f64::from(COUNT);
@@ -118,7 +118,7 @@ fn the_literal_weight_adds_up_to_power_times_solid_angle() {
     );
 }
 
-/// The area that two discs of the radii `a` and `b` share, their centres `d` apart.
+/// The overlap of two discs of the radii `a` and `b` whose centres are `d` apart.
 fn shared_area(a: f64, b: f64, d: f64) -> f64 {
     let smaller = a.min(b);
     if d <= (a - b).abs() {

@@ -78,8 +78,8 @@ fn groups(values: &[f64]) -> slice::Iter<'_, [f64; LANES]> {
 /// Returns sine and cosine of `π t` for `0 ≤ t < 2⁵¹`, with an error below 1e−11 in addition to the
 /// error of `t`.
 ///
-/// Above this range, where a phase is meaningless, the results are arbitrary numbers between −1 and
-/// 1. There are no branches and only operations that vector units have.
+/// Above this range, where a phase is meaningless, the results are arbitrary numbers in [−1, 1].
+/// There are no branches and only operations that vector units have.
 #[inline(always)]
 fn sin_cos_half_turns(t: f64) -> (f64, f64) {
     use core::f64::consts::PI;

@@ -1,4 +1,4 @@
-//! What a host may rely on, whatever it asks for.
+//! Guarantees to a host for any query.
 
 use proptest::prelude::*;
 use tem00_decorrelation::pupil_overlap_correlation;
@@ -65,7 +65,7 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Factors are finite and not negative whatever is asked, have mean 1, and are exponential.
+    /// Factors are finite and not negative for any query, have mean 1, and are exponential.
     #[test]
     fn factors_are_speckle_for_any_pose(
         seed: u64,
@@ -103,8 +103,8 @@ proptest! {
     }
 }
 
-/// The speckle of points that the body carries along keeps as much as the law says, for motions
-/// across, along the line of sight, about axes, and of camera and laser.
+/// The correlation of the speckle of points that the body carries along follows the law, for
+/// motions across, along the line of sight, about axes, and of camera and laser.
 #[test]
 fn factors_of_two_frames_correlate_by_the_law() {
     let motions = [
@@ -129,8 +129,8 @@ fn factors_of_two_frames_correlate_by_the_law() {
         let [reference, frame] = [Motion::default(), motion].map(|m| speckle.frame(&m).unwrap());
         let points = places(600);
         let carried = |point: DVec3| motion.surface.point(point);
-        // Where the peak has gone, beside the image of the point: the factor follows the body, its
-        // speckle the peak.
+        // The displacement of the peak relative to the image of the point: the factor follows the
+        // body, its speckle the peak.
         let normal = motion.surface.direction(DVec3::Z);
         let shift = frame.shift(carried(DVec3::ZERO), normal).unwrap();
         let seen = camera.moved(&motion.camera);
@@ -147,8 +147,8 @@ fn factors_of_two_frames_correlate_by_the_law() {
         let law = pupil_overlap_correlation(shift.pupil);
         let found = correlation(&before, &after);
         assert!((0.05..0.95).contains(&law), "{law} tells nothing");
-        // Three standard errors of a correlation of exponentials from 600 points, and what the
-        // blend adds.
+        // Three standard errors of a correlation of exponentials from 600 points, and the excess of
+        // the blend.
         let tolerance = 3.0 * (1.0 + law) / 600_f64.sqrt() + 0.02;
         assert!((found - law).abs() < tolerance, "{found}, by the law {law}");
     }
@@ -280,7 +280,7 @@ fn bodies_have_speckle_of_their_own() {
     assert!(correlation(&first, &second).abs() < 4.0 / 600_f64.sqrt());
 }
 
-/// Wherever the patterns of a body lie in the stack, its field goes on from slice to slice.
+/// For any position of a body's patterns in the stack, its field is continuous from slice to slice.
 #[test]
 fn amplitudes_of_all_bodies_go_on_from_slice_to_slice() {
     const STEPS: u32 = 400;
@@ -346,7 +346,7 @@ fn shifts_are_found_under_a_line_much_wider_than_the_image() {
     let speckle = speckle.unwrap();
     let frame = speckle.frame(&pose.into()).unwrap();
     let shift = frame.shift(DVec3::ZERO, DVec3::Z).unwrap();
-    // More than the path of a motion that is not seen.
+    // The path is longer than for an invisible motion.
     assert!(shift.pupil > 1.0, "{shift:?} tells nothing");
     let reach = speckle.plan().reach();
     assert!(reach >= shift.pupil, "{reach} for {shift:?}");
@@ -380,7 +380,7 @@ fn a_sample_out_of_focus_is_looked_up_where_it_is_seen() {
     );
 }
 
-/// Light of the laser over a flat mirror is that of its image behind it.
+/// Light of the laser over a flat mirror equals the light of its image behind the mirror.
 #[test]
 fn light_over_a_mirror_is_that_of_the_mirrored_laser() {
     let camera = camera(DVec3::new(-0.05, 0.01, 0.3));
@@ -402,7 +402,8 @@ fn light_over_a_mirror_is_that_of_the_mirrored_laser() {
         speckle.frame(&motion).unwrap()
     });
     let normal = motion.surface.direction(DVec3::Z);
-    // The wave near the spot, as traced rays tell it: it leaves the axis where the spot lies.
+    // The wave near the spot, as traced rays give it: it leaves the axis at the position of the
+    // spot.
     let rays = |point: DVec3| (mirrored - point).normalize();
     let step = 1e-5;
     let along = |axis: DVec3| (rays(step * axis) - rays(-step * axis)) / (2.0 * step);

@@ -23,8 +23,8 @@ fn geometry() -> ImagingGeometry {
 /// along the unit vector `a`: in the image, upright, and in the pupil.
 ///
 /// The surface axes are world axes; the camera is turned by `angles` and sees the point at
-/// `to_pupil` in its own axes. Half the difference of both ways leaves the third order, (1e−6 over
-/// the shortest radius)², and the rounding of lengths over 1e−6.
+/// `to_pupil` in its own axes. Half the difference of both directions has an error of third order,
+/// (1e−6 over the shortest radius)², and the rounding of lengths over 1e−6.
 fn law(angles: EulerAngles, emitter: Emitter, to_pupil: DVec3, a: DVec3) -> [DVec2; 2] {
     const STEP: f64 = 1e-6;
     let axes = angles.camera_axes();
@@ -115,7 +115,7 @@ fn printed_slice_coordinate_has_the_stated_errors() {
             .map(|x| (error(x), x))
             .fold((0.0, 0.0), |a, b| if b.0 > a.0 { b } else { a })
     };
-    // Stated to the last digit given.
+    // The values are stated to the last given digit.
     let (error, s) = worst(&in_plane);
     assert!((error - 0.1949).abs() < 1e-4, "in the plane {error}");
     assert!((s - 0.273).abs() < 1.5e-3, "in the plane at {s}");
@@ -135,7 +135,8 @@ fn printed_slice_coordinates_bring_an_old_pattern_back() {
         stack_correlation(slice_coordinate(&geometry, shift, dz, 8) / 8.0)
     };
     // One displacement undoes the other; two pupil diameters are once round the stack. At least one
-    // alone has left 15 % or nothing of the pattern. Rounding of u, 1e−15, counts four times.
+    // displacement alone leaves a correlation of 15 % or zero. Rounding of u, 1e−15, enters four
+    // times.
     for (s, x) in [(0.5, -0.5), (1.0, -1.0), (2.0, 0.0)] {
         assert!((left(s, x) - 1.0).abs() < 1e-14, "s = {s}, x = {x}");
         assert!(pupil_overlap_correlation(s) < 0.16, "s = {s}");

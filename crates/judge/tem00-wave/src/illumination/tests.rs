@@ -62,8 +62,8 @@ fn the_beam_has_its_radius_and_its_curvature() {
         // A dozen roundings.
         assert_relative(fall, (-1.0_f64).exp(), 1e-13);
         let curvature = z / (z * z + rayleigh_range * rayleigh_range);
-        // The phase is quadratic: what is left is its rounding, 1e−10 rad of 2π z/λ over the square
-        // of the step.
+        // The phase is quadratic: the only error is its rounding, 1e−10 rad of 2π z/λ over the
+        // square of the step.
         let measured = phase_curvature(&beam, axis, DVec3::X * 50e-6) / K;
         assert_absolute(measured, curvature, 4.0 * 1e-9 / (K * 2.5e-9));
     }
@@ -201,7 +201,7 @@ fn light_travels_in_its_direction() {
         let direction = light.axes.z_axis;
         let step = 0.1 * WAVELENGTH;
         let turned = phase_between(&light, at, at + direction * step);
-        // A tenth of a turn, less a Gouy phase of step/z_R ≤ 6e−6.
+        // A tenth of a turn, minus a Gouy phase of step/z_R ≤ 6e−6.
         assert!((turned - 0.1 * TAU).abs() < 1e-5, "{turned} in {light:?}");
     }
 }

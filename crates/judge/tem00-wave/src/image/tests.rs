@@ -55,7 +55,8 @@ fn a_point_in_focus_is_an_airy_pattern() {
     let window = ImageWindow::new(&camera(), &sampling(512)).expect("a window");
     let image = window.image(&points(&[DVec3::new(0.0, 0.0, -0.3)]));
     let peak = image.amplitude()[(256, 256)];
-    // exp(ik · 0) from the removed sphere over the distance; 0.3 m is whole in no way.
+    // exp(ik · 0) from the removed sphere over the distance; 0.3 m is not a whole number of
+    // wavelengths.
     assert!((peak.norm() * 0.3 - 1.0).abs() < 1e-4, "{peak}");
     for x in 256..300_usize {
         for y in [256, 256 + (x - 256) / 2] {
@@ -63,8 +64,8 @@ fn a_point_in_focus_is_an_airy_pattern() {
             let argument = PI * radius.max(1e-6);
             let airy = 2.0 * bessel_j1(argument) / argument;
             let error = (image.amplitude()[(x, y)] / peak - airy).norm();
-            // The part of a rim cell inside the pupil is off by some 0.1; there are 400 of them
-            // among 12 900 cells: 0.1 √400 / 12 900 = 1.6e−4, and twice that.
+            // The fraction of a rim cell inside the pupil has an error of about 0.1; there are 400
+            // of them among 12 900 cells: 0.1 √400 / 12 900 = 1.6e−4, and twice that.
             assert!(error < 3.2e-4, "{error:e} at {radius} h");
         }
     }
@@ -123,7 +124,7 @@ fn a_window_off_the_axis_is_the_perfect_image_of_every_point() {
             let expected = image_of_point(&lit, camera.focus_point(centre + at)).norm();
             let found = image.amplitude()[(x, y)].norm();
             // Two lattices differ at the rim of the pupil, here of 32 samples: 100 cells of 800,
-            // off by 0.1 each, are 1.2e−3 for each point.
+            // each with an error of 0.1, give 1.2e−3 for each point.
             let tolerance = 3e-3;
             assert_absolute(found, expected, tolerance * largest);
         }

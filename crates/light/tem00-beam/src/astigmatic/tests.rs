@@ -31,7 +31,7 @@ fn each_axis_follows_its_own_law() {
             (square.sqrt(), delta * delta * t / square, gouy)
         };
         let (a, b) = (law(40e-6, 1.0, z - 0.05), law(90e-6, 1.6, z + 0.02));
-        // A few roundings each.
+        // The tolerances cover a few roundings each.
         for (got, want) in [(wu, a.0), (wv, b.0), (cu, a.1), (cv, b.1)] {
             assert_relative(got, want, 1e-14);
         }

@@ -116,12 +116,13 @@ fn rows_give_the_fields_back() {
     assert_eq!(LineLight::from_rows(numbers()).to_rows(), numbers(), "line");
 }
 
-/// Holds the flux of a light at points against that of its beam, both in the frame of the light.
+/// Compares the flux of a light at points with the flux of its beam, both in the frame of the
+/// light.
 fn check_flux(light: &dyn Emitter, flux: impl Fn(DVec3) -> DVec3, points: [[f64; 3]; 3]) {
     for local in points.map(DVec3::from) {
         let expected = rotated(POWER * flux(local));
         let got = DVec3::from(light.flux(world(local)));
-        // 1e−16 m of rounding beside a thickness of 5e−5 m.
+        // 1e−16 m of rounding compared with a thickness of 5e−5 m.
         assert_absolute(got.distance(expected), 0.0, 1e-10 * expected.length());
         assert!(got.length() > 0.0, "{local} is lit");
     }
@@ -308,7 +309,7 @@ fn finite() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// Directions, half of them nearly at right angles to the axis, in the frame of the light.
+/// Directions, half of them nearly perpendicular to the axis, in the frame of the light.
 fn directions() -> impl Strategy<Value = DVec3> {
     let steep = (-300.0..0.0_f64).prop_map(|exponent| 10.0_f64.powf(exponent));
     let z = prop_oneof![-1.0..1.0_f64, steep];
@@ -316,7 +317,7 @@ fn directions() -> impl Strategy<Value = DVec3> {
         .prop_map(|(x, y, z)| DVec3::new(x, y, z).normalize_or(DVec3::Z))
 }
 
-/// All that a light answers about a point and a direction, none of which may be negative or NaN.
+/// All results of a light for a point and a direction, none of which may be negative or NaN.
 fn answers(light: &dyn Emitter, p: [f64; 3], d: [f64; 3], u: [f64; 4]) -> Vec<f64> {
     let mut answers = vec![light.irradiance(p), light.radiance(p, d)];
     answers.push(light.next_event_pdf(p, d));

@@ -25,7 +25,8 @@ fn densities() -> Vec<SlopeDensity> {
 }
 
 /// ∫ f dθ over the slopes [a, b] by the midpoint rule, in a coordinate t that resolves both the top
-/// and the edges of the density: its variable for a Gaussian or uniform one, tan θ for Powell's.
+/// and the edges of the density: its variable for a Gaussian or uniform profile, tan θ for a Powell
+/// profile.
 fn integrate(density: SlopeDensity, a: f64, b: f64) -> f64 {
     const INTERVALS: u32 = 20_000;
     let at = |t: f64| match density.variable {
@@ -48,7 +49,7 @@ fn integrate(density: SlopeDensity, a: f64, b: f64) -> f64 {
         * h
 }
 
-/// The slope beyond which less than 1e−30 of the power lies, or the last one of all.
+/// The slope beyond which less than 1e−30 of the power lies, or the largest slope.
 fn end(density: SlopeDensity) -> f64 {
     density.largest_slope(6.0)
 }

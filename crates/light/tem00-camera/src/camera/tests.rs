@@ -17,8 +17,8 @@ fn description() -> CameraDescription {
     }
 }
 
-/// A camera with everything at once: 0.2 rad of tilt, a barrel of 3 % at the corners and the axis
-/// off the middle. The image spans ±0.04 in tangents.
+/// A camera with all features: 0.2 rad of tilt, a barrel of 3 % at the corners and the axis off the
+/// middle. The image spans ±0.04 in tangents.
 fn crooked() -> CameraDescription {
     CameraDescription {
         principal_point: Some(DVec2::new(300.0, 260.0)),
@@ -68,7 +68,7 @@ fn pixels_see_the_solid_angle_of_the_sensor() {
             sum += camera.solid_angle_per_pixel(centre);
         }
     }
-    // The midpoint rule errs by (pitch/d)²/24 · ∂²/∂x² cos³ ≈ 1e−9.
+    // The midpoint rule has an error of (pitch/d)²/24 · ∂²/∂x² cos³ ≈ 1e−9.
     assert_relative(sum, exact, 1e-7);
 }
 

@@ -91,7 +91,7 @@ fn far_out_of_focus_a_tilt_acts_by_the_blur() {
         .unwrap()
         .with_defocus(30e-3)
         .unwrap();
-    // Some blurs beside a speckle: a jinc of the paths across the blur.
+    // At some blurs from a speckle the result is a jinc of the paths across the blur.
     for kappa in [2e3, 4e3, 6e3] {
         let x = kappa * cell.tilt().length() * 30e-3 * 0.025;
         let found = cell.field_correlation(kappa).norm();

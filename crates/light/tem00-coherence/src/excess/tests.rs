@@ -13,7 +13,8 @@ const KERNELS: [LagKernel; 3] = [
     LagKernel { contrast_like: 0.0 },
 ];
 
-/// The largest difference of the table from integrals over lags, over phases and displacements.
+/// The largest difference between the table and integrals over lags, for many phases and
+/// displacements.
 fn largest_error(kernel: LagKernel, length: f64) -> f64 {
     let table = table::Table::new(kernel, length);
     let mut largest: f64 = 0.0;
@@ -33,7 +34,7 @@ fn the_table_holds_the_integrals() {
             let error = largest_error(kernel, length);
             assert!(error < 1e-6, "{kernel:?} {length}: {error:e}");
         }
-        // Beyond the longest one what is lost agrees, but not its course over phases and
+        // Beyond the longest length the loss agrees, but not its dependence on phases and
         // displacements.
         for length in [33.0, 70.0] {
             let error = largest_error(kernel, length);
@@ -95,7 +96,7 @@ fn two_directions_and_a_relief_are_their_sum() {
     assert!((found - sum).abs() < 2e-6, "{found} {sum}");
 }
 
-/// The size of all that is summed, for any relief.
+/// The number of all terms that are summed, for any relief.
 #[test]
 fn the_work_is_bounded() {
     for length in [1e-300, 1e-3, 1.0, 32.0, 1e5, f64::MAX] {

@@ -80,8 +80,8 @@ fn points_and_lamps_are_the_limits_of_a_source() {
         assert!(contrast(&cell, SourceExtent::disc(small)) > 1.0 - 1e-4);
         assert!(contrast(&cell, SourceExtent::gaussian(small)) > 1.0 - 1e-4);
     }
-    // Lamps have as many patterns as speckles of their own fit into them: ∫ chat² over the squared
-    // pupil.
+    // The number of patterns of a lamp is the number of its own speckles that fit into it: ∫ chat²
+    // over the squared pupil.
     let area = integrate(|x| TAU * x * disc_overlap(x).powi(2), [0.0, 1.0], 0.1);
     let of_pupil = (2.0 * SIN_APERTURE).powi(2) * area;
     let (wide, spread) = (0.3, 0.1);
@@ -134,7 +134,7 @@ fn a_disc_is_the_sum_of_its_points_with_heights_and_a_linewidth_too() {
                 law(&of(line, cell))
             };
             let (points, disc) = (of(&points), of(&SourceExtent::disc(0.015).unwrap()));
-            // Each point stands for its neighbourhood, over which the overlap falls a little.
+            // Each point represents its neighbourhood, over which the overlap falls a little.
             assert_relative(disc, points, 0.005);
             let point = of(&SourceExtent::default());
             assert!(disc < 0.95 * point, "law {i}: {disc}, {point}");

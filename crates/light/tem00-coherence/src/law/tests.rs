@@ -74,7 +74,7 @@ fn without_a_tilt_contrasts_have_closed_forms() {
         let line = &lines(shape);
         let found = contrast(line, &cell);
         assert_relative(found * found, squared, 1e-8);
-        // Grains are those of one wavelength, and their covariance that of Airy's pattern.
+        // The speckles are as in one wavelength, and their covariance is the Airy pattern.
         let speckle = of(line, &cell);
         for (lag, airy) in [([0.0, 0.0], 1.0), ([0.5, 0.0], jinc(0.5 * PI).powi(2))] {
             let found = speckle.autocovariance(lag);
@@ -186,7 +186,8 @@ fn a_gaussian_line_has_an_approximate_closed_form() {
     }
 }
 
-/// Sums over a lattice of wave numbers and of points of two displaced pupils, which know no chat.
+/// Sums over a lattice of wave numbers and of points of two displaced pupils, which do not use
+/// chat.
 #[test]
 fn frames_and_grains_of_a_tilted_cell() {
     let cell = cell(450e-9, 0.0, 30.0, 0.0);

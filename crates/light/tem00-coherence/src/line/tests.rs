@@ -110,7 +110,7 @@ fn a_comb_stands_about_its_wavelength() {
 
 #[test]
 fn nodes_have_the_moments_of_the_line() {
-    // Of more than 24 peaks the widths are left out.
+    // With more than 24 peaks the widths are neglected.
     for (count, is_wide) in [(1, true), (3, true), (24, true), (25, false)] {
         let comb = SpectralLine::comb(650e-9, 4e-9, count).unwrap();
         let modes = comb.clone().with_linewidth(0.1e-9, LineShape::Gaussian);
@@ -225,7 +225,7 @@ fn many_peaks_are_the_sum_of_their_pairs() {
             (-(kappa / scale).powi(2)).exp()
         });
         assert_relative(found, expected, 1e-8);
-        // Of 65,536 pairs with a width each takes some 1,500 values.
+        // Each of 65,536 pairs with a width takes about 1,500 values.
         let max = if linewidth == 0.0 { 1_200 } else { 2_000_000 };
         assert!(asked.get() < max, "{count} {linewidth:e}: {}", asked.get());
     }

@@ -29,7 +29,7 @@ fn depolarised_multiple_light_adds_to_one_of_two_components() {
 }
 
 proptest! {
-    /// Each of the two components is a mixture of its own, of light without a polarisation.
+    /// For unpolarised light each of the two components is an independent mixture.
     #[test]
     fn components_add_as_independent_patterns(
         multiple in 0.0..1.0, c in prop::array::uniform3(0.0..1.0), degrees in prop::array::uniform2(0.0..1.0)
@@ -70,7 +70,7 @@ fn speckle_of_speckle_has_the_contrasts_of_its_table() {
     }
 }
 
-/// Two directions of the light share the overlap of two pupils, as far apart as they are.
+/// The coherence of two directions of the light is the overlap of two pupils at the same distance.
 #[test]
 fn speckle_of_speckle_is_a_mean_over_pairs_of_directions() {
     let count = 1000;

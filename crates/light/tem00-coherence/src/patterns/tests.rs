@@ -72,7 +72,7 @@ fn the_extent_of_a_source_adds_patterns_to_those_of_its_line() {
             let patterns = of_disc.patterns(variance);
             assert_eq!(!patterns.heights.is_empty(), few_heights);
             assert_eq!(patterns.heights, of_point.patterns(variance).heights);
-            // Of heights the fields are still to be added.
+            // For heights the fields are still to be added.
             let left = if few_heights {
                 variance(&of_point)
             } else {

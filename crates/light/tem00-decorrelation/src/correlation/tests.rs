@@ -6,14 +6,15 @@ use tem00_testkit::assert_absolute;
 use super::*;
 
 /// The correlation of a pupil displaced by `s` diameters and defocused by the path difference
-/// `beta` r² over the unit disc, by quadrature over the area of the lens.
+/// `beta` r² over the unit disc, by quadrature over the area of the overlap.
 ///
-/// `reference` is the centre of the defocus: 0.5 puts it in the middle of the lens, which is where
-/// the cross-correlation peaks; 0 at the centre of the undisplaced pupil, which is the displacement
-/// of the projected point with the reference in focus.
+/// `reference` is the centre of the defocus: 0.5 puts it in the middle of the overlap, where the
+/// cross-correlation peaks; 0 puts it at the centre of the undisplaced pupil, which corresponds to
+/// the displacement of the projected point with the reference in focus.
 fn area_integral(s: f64, beta: f64, reference: f64) -> f64 {
     let (mut re, mut im) = (0.0, 0.0);
-    // The left and the right half of the lens each on its own: there is a corner between them.
+    // The left and the right half of the overlap are integrated separately, as there is a corner
+    // between them.
     for side in [-1.0, 1.0] {
         for (position, weight_x) in double_exponential() {
             let x = 0.5 * (1.0 - s) * (1.0 + position);
@@ -32,7 +33,7 @@ fn area_integral(s: f64, beta: f64, reference: f64) -> f64 {
 }
 
 /// Nodes and weights on [−1, 1] of the double-exponential rule, which roots at the ends do not
-/// disturb: x = tanh(π/2 · sinh t). At |t| = 3.2 what is left of the interval is 1e−16.
+/// disturb: x = tanh(π/2 · sinh t). At |t| = 3.2 the remaining interval is 1e−16.
 fn double_exponential() -> impl Iterator<Item = (f64, f64)> {
     const STEP: f64 = 1.0 / 32.0;
     (-102..=102).map(|i| {

@@ -86,8 +86,8 @@ fn a_thick_lens_moves_the_image_by_its_magnification() {
         let moved = SpeckleMotion::between(&thick, &before, &after_surface(&before, slid));
         // Rounding of directions, 1e−16, over a principal distance of 81 mm.
         assert_absolute(moved.image_displacement.x, magnification * 1e-3, 1e-16);
-        // In collimated light the speckle out of focus moves as in focus: it is the moved surface's
-        // own field that is seen, at the distance of focus.
+        // In collimated light the speckle out of focus moves as in focus: the camera sees the field
+        // of the moved surface itself, at the distance of focus.
         assert_absolute(moved.speckle_displacement().x, 0.5e-3, 1e-16);
     }
 }
@@ -137,8 +137,8 @@ fn a_far_focus_sees_the_directions_of_the_light() {
     assert!((tilted.x + 25e-3 * 2e-3).abs() < 1e-10, "{tilted}");
 }
 
-/// What is left of the amplitude in a pupil of `geometry` between two waves whose paths over the
-/// pupil point p are `W p²/2`, squared, by a sum over rings of equal area.
+/// The squared correlation of the amplitudes in a pupil of `geometry` for two waves whose paths
+/// over the pupil point p differ by `W p²/2`, by a sum over rings of equal area.
 fn left_by_defocus(geometry: &ImagingGeometry, [w0, w1]: [f64; 2], wavelengths: [f64; 2]) -> f64 {
     const RINGS: u32 = 2000;
     let (mut re, mut im) = (0.0, 0.0);

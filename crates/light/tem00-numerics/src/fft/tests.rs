@@ -169,7 +169,7 @@ fn a_transform_on_one_thread_stays_there() {
     let input = aperture(61, 45);
     let transform = Fft2::with_aperture(120, 90, 61, 45).unwrap();
     let alone = transform.clone().on_one_thread();
-    // A test is no thread of a pool, so that shared work has to leave it.
+    // A test does not run on a thread of a pool, so that shared work has to leave it.
     let pooled = |transform: &Fft2| {
         let threads = transform.forward(&input, |_, _, _| rayon::current_thread_index());
         threads
@@ -184,7 +184,7 @@ fn a_transform_on_one_thread_stays_there() {
 }
 
 /// The serial loop and the threads cut the work into the same pieces, and each piece is computed
-/// alone: what is compared here is one piece with all the others and without.
+/// alone: the test compares one piece computed together with all the others and without them.
 #[test]
 fn a_column_is_the_same_bits_alone() {
     let input = aperture(40, 24);

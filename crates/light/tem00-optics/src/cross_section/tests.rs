@@ -199,7 +199,7 @@ fn apertures_without_an_edge_pass_everything_and_those_of_negative_size_nothing(
         let all = spot.power_past_knife_edge(f64::NEG_INFINITY);
         assert_absolute(all, 1.0, 1e-15);
     }
-    // One radius is 1e−330 of the other, which no number can be; ±w hold erf √2 of the power.
+    // One radius is 1e−330 of the other, which underflows; ±w hold erf √2 of the power.
     for radii in [[1e-30, 1e300], [1e300, 1e-30]] {
         let power = (CrossSection { radii }).power_in_circle(1e300);
         assert_absolute(power, libm::erf(SQRT_2), 1e-13);

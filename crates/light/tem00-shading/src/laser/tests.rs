@@ -27,8 +27,8 @@ fn line(profile: LineProfile, focus_curve: FocusCurve) -> Laser {
     .unwrap()
 }
 
-/// By how much the light of a laser turns along one of two directions per length along the other,
-/// in 1/m: a component of the curvature of its wavefront.
+/// The change of direction of a laser's light along one of two directions per length along the
+/// other, in 1/m: a component of the curvature of its wavefront.
 fn curvature(laser: &Laser, point: DVec3, [along, turned]: [DVec3; 2]) -> f64 {
     const STEP: f64 = 1e-7;
     let wave = |part: f64| laser.wave_direction_at(point + part * along);

@@ -70,7 +70,7 @@ fn cell(laser: &Laser, relief: Relief) -> ResolutionCell {
     cell.with_source_extent(laser.source_extent().clone())
 }
 
-/// The covariance of two pictures over the product of their means.
+/// The covariance of two images divided by the product of their means.
 fn covariance(a: &[f64], b: &[f64]) -> f64 {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let products: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();

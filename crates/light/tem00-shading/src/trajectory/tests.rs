@@ -33,7 +33,7 @@ fn what_does_not_move_has_the_same_pose_in_every_frame() {
             assert_eq!(trajectory.pose_at(frame), RigidMotion::IDENTITY);
         }
     }
-    // What stands elsewhere than in the scene description stands still, too.
+    // An object at a position other than in the scene description is at rest, too.
     let elsewhere = Keyframe {
         displacement: DVec3::X,
         rotation: turn(DVec3::Y, 1.0),
@@ -55,7 +55,7 @@ fn steady_motions_turn_about_their_pivot_and_go_on_from_there() {
     assert!(!trajectory.is_still(), "{trajectory:?}");
     for frame in [0, 1, 40, 999] {
         let time = f64::from(frame);
-        // The other way to a rotation: that of the theory's rigid bodies.
+        // An independent construction of the rotation, by the theory's rigid bodies.
         let expected = RigidMotion::about(pivot, axis, 0.01 * time)
             .unwrap()
             .then(&RigidMotion::along(step * time).unwrap());

@@ -1,4 +1,4 @@
-//! What each constructor refuses, by the name of the argument.
+//! Refusals of each constructor, by the name of the argument.
 
 use num_complex::Complex;
 use tem00_numerics::Grid;
@@ -40,7 +40,7 @@ fn pupils() {
         height: [0.0, 1.5, -0.5, NAN, UP], height as "pupil": [0.01]);
     refuses!(radius = 0.5 => with(Pupil::Gaussian { radius });
         radius: [0.0, -0.5, NAN, UP], radius as "pupil": [0.1]);
-    // π R² C² phasors of equal weight would fluctuate as these do.
+    // π R² C² phasors of equal weight have the same fluctuations.
     let narrow = with(Pupil::Gaussian { radius: 0.1 }).unwrap_err();
     assert!(narrow.to_string().ends_with("got 32"), "{narrow}");
     let disc = |t: f32| Grid::from_fn(4, 4, |x, _| if x == 1 { t } else { 1.0 });
@@ -102,7 +102,7 @@ fn stacks() {
     });
     let [needed, limit] = [8 * 400 * 288, memory_limit];
     assert_eq!(small, Err(SpeckleError::MemoryLimit { needed, limit }));
-    // Speckles of a nanometre: no pattern is that large, whatever the memory.
+    // Speckles of a nanometre: no pattern is large enough, with any memory.
     let huge = StackPlan::new(&StackNeeds {
         speckle_size: 1e-4,
         memory_limit: u64::MAX,

@@ -110,8 +110,8 @@ fn fractional_coordinates_give_the_field_of_the_lattice() {
     }
 }
 
-/// Over a tile of unit phasors the mean at one fraction is exactly what the renormalisation
-/// leaves: by Parseval it holds no noise.
+/// Over a tile of unit phasors the mean at one fraction is determined exactly by the
+/// renormalisation: by Parseval's theorem it contains no noise.
 #[test]
 fn the_mean_is_one_between_samples_and_slices() {
     for (size, path) in [
@@ -126,7 +126,7 @@ fn the_mean_is_one_between_samples_and_slices() {
         for fractions in [[0.5, 0.5], [0.5, 0.0], [0.25, 0.75], [0.0, 0.0]] {
             for u in [0.0, 0.5, 1.5, 2.25, 3.75] {
                 let (mean, _) = moments(&stack, fractions, u);
-                // Rounding of f32, and odd terms that it hides.
+                // Rounding of f32, and odd terms below this rounding.
                 assert_absolute(mean, 1.0, 3e-6);
             }
         }
@@ -277,8 +277,8 @@ fn look_ups_on_slices_and_between_correlate_as_stated() {
     }
 }
 
-/// Half-way round a closed path pupils meet from both sides. Where the lattice closes with the
-/// pattern these are one wave, else two.
+/// Half-way round a closed path pupils overlap from both sides. If the lattice closes with the
+/// pattern the two overlaps are one wave, otherwise two.
 #[test]
 fn look_ups_on_opposite_sides_of_a_path_correlate_as_stated() {
     const TILES: u32 = 24;
@@ -298,7 +298,7 @@ fn look_ups_on_opposite_sides_of_a_path_correlate_as_stated() {
     }
 }
 
-/// The means over all starts were measured on look-ups, in a trial of its own.
+/// The means over all starts were measured on look-ups, in a separate trial.
 #[test]
 fn look_ups_from_any_start_correlate_more_than_their_slices() {
     let stack = stack(256, 128, circle(6));
@@ -391,7 +391,7 @@ fn the_memory_is_known_before_it_is_taken() {
         .map(|slice| size_of_val(slice.coefficients.values()))
         .sum();
     assert_eq!(stack.memory_bytes(), bytes as u64);
-    // No overflow, whatever is asked for.
+    // No request overflows.
     assert_eq!(circle(usize::MAX).memory_bytes([usize::MAX; 2]), u64::MAX);
 }
 

@@ -53,8 +53,8 @@ fn standard_error_of_the_contrast_is_that_of_many_trials() {
     let errors: f64 = contrasts.iter().map(|c| c.standard_error().powi(2)).sum();
     let estimated = (errors / f64::from(TRIALS)).sqrt();
     let spread = Moments::from_samples(&values).unwrap().standard_deviation();
-    // 1/√n for exponential samples; a standard deviation from 2000 trials is known to 1/√4000
-    // = 1.6 %, here 3.3 σ, and the first order in 1/n errs by some 10/n = 2 %.
+    // 1/√n for exponential samples; a standard deviation from 2000 trials has a relative error of
+    // 1/√4000 = 1.6 %, here 3.3 σ, and the first order in 1/n an error of about 10/n = 2 %.
     assert_relative(spread, 500.0_f64.sqrt().recip(), 0.072);
     assert_relative(spread, estimated, 0.072);
 }
@@ -73,8 +73,8 @@ fn speckle_size_widens_the_error_of_the_contrast_as_tiles_do() {
         let values: Vec<_> = contrasts.iter().map(Contrast::value).collect();
         let errors: f64 = contrasts.iter().map(Contrast::standard_error).sum();
         let spread = Moments::from_samples(&values).unwrap().standard_deviation();
-        // A spread from 300 tiles is known to 1/√600 = 4.1 %, here 3.3 σ; the first order in
-        // 1/C errs by some 2/C.
+        // A spread from 300 tiles has a relative error of 1/√600 = 4.1 %, here 3.3 σ; the first
+        // order in 1/C has an error of about 2/C.
         let tolerance = 3.3 * 0.041 + 2.0 / diameter as f64;
         assert_relative(spread, errors / TILES as f64, tolerance);
         assert_relative(

@@ -112,9 +112,10 @@ fn drawn_speckle_has_the_density_and_its_spread_as_stated() {
         .map(VortexDensity::standard_error)
         .sum::<f64>()
         / TILES as f64;
-    // A spread from 150 tiles is known to 1/√300 = 5.8 %, here 3.3 σ.
+    // A spread from 150 tiles has a relative error of 1/√300 = 5.8 %, here 3.3 σ.
     assert_relative(moments.standard_deviation(), error, 0.19);
-    // The mean over the tiles, 3.3 σ; the share stated for h = 8 is known to a fifth.
+    // The mean over the tiles, 3.3 σ; the fraction stated for h = 8 has a relative error of a
+    // fifth.
     let exact = density_of_the_lattice(size, 16) * (1.0 + 1.5 / 64.0);
     let tolerance = 3.3 * moments.standard_error() / exact + 0.3 / 64.0;
     assert_relative(moments.mean(), exact, tolerance);

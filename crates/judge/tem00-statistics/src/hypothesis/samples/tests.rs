@@ -34,12 +34,12 @@ fn exponential(rng: &mut ChaCha8Rng) -> f64 {
     -(1.0 - rng.random::<f64>()).ln()
 }
 
-/// A normal deviate after Box and Muller.
+/// A normal deviate by the Box–Muller method.
 fn normal(rng: &mut ChaCha8Rng) -> f64 {
     (2.0 * exponential(rng)).sqrt() * (2.0 * PI * rng.random::<f64>()).cos()
 }
 
-/// Samples of a uniform law whose empirical distribution is `distance` away from it.
+/// Samples whose empirical distribution has the distance `distance` from the uniform law.
 fn samples_at_distance(count: u32, distance: f64) -> Vec<f64> {
     let shifted = |i| (f64::from(i) / f64::from(count) + distance).min(1.0);
     (0..count).map(shifted).collect()

@@ -99,7 +99,7 @@ fn a_tilted_mirror_focuses_rays_as_reflection_says() {
 fn a_graded_rod_images_at_its_quarter_and_half_pitch() {
     let (n, g) = (1.6, 250.0);
     let quarter = AbcdMatrix::grin_rod(n, g, FRAC_PI_2 / g).unwrap();
-    // What is parallel meets in one point, and what comes from one point is parallel.
+    // Parallel rays meet in one point, and rays from one point become parallel.
     assert!(
         quarter.a().abs() < 1e-15 && quarter.d().abs() < 1e-15,
         "{quarter:?}"

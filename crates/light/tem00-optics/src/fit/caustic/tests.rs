@@ -9,7 +9,7 @@ const WAIST: f64 = 80e-6;
 const POSITION: f64 = 0.35;
 const M_SQUARED: f64 = 1.8;
 
-/// Positions in Rayleigh ranges as ISO 11146-1 asks: six near the waist, six far from it.
+/// Positions in Rayleigh ranges as ISO 11146-1 requires: six near the waist, six far from it.
 const ISO: [f64; 12] = [
     -4.0, -3.0, -2.2, -0.9, -0.5, -0.15, 0.2, 0.6, 1.0, 2.5, 3.2, 4.1,
 ];
@@ -62,7 +62,7 @@ fn radii_without_noise_give_the_beam_back() {
 }
 
 /// Fits many noisy caustics and returns the pulls of w₀, z₀ and M², scaled to the true size of the
-/// noise, and the sum of squared residuals in units of that.
+/// noise, and the sum of squared residuals in units of the noise.
 fn repeated_fits(
     seed: u64,
     deviation: impl Fn(f64) -> f64,

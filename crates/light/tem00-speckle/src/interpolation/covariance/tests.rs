@@ -16,8 +16,8 @@ pub(in crate::interpolation) fn spline(x: f64) -> f64 {
     }
 }
 
-/// What a look-up at r = `f` makes of the pupil point k, by the sum over its taps: the phase of
-/// each tap, and of k itself where the tap stands.
+/// The response of a look-up at r = `f` to the pupil point k, by the sum over its taps: the phase
+/// of each tap, and of k itself at the position of the tap.
 fn looked_up(k: f64, f: f64, size: f64) -> Complex<f64> {
     let turn = |x: f64| Complex::cis(-2.0 * PI * k * x / size);
     let half = PI * k / size;
@@ -46,7 +46,7 @@ fn points(field: &PupilField) -> Vec<([i64; 2], Complex<f64>)> {
     points
 }
 
-/// Where two slices of a stack are looked up.
+/// Position at which two slices of a stack are looked up.
 struct Place {
     shift: [i64; 2],
     fractions: [f64; 2],
@@ -60,8 +60,8 @@ fn wave(field: &PupilField, k: [i64; 2], r: [f64; 2]) -> Complex<f64> {
     Complex::cis(-2.0 * PI * turns)
 }
 
-/// All that each lattice point does to the blend of two slices, of which one shows it as `value`
-/// and the other in the frame turned by `frame`.
+/// The total contribution of each lattice point to the blend of two slices, of which one contains
+/// it as `value` and the other in the frame turned by `frame`.
 fn blended(
     field: &PupilField,
     place: &Place,
@@ -122,7 +122,7 @@ fn mean_square_of_look_ups(field: &PupilField, place: &Place) -> f64 {
 
 fn fields() -> Vec<PupilField> {
     let slanted = Grid::from_fn(13, 13, |x, y| (40 + x + x * y) as f32 / 208.0);
-    // Coma: an odd phase, so that no two halves are alike.
+    // Coma: an odd phase, so that no two halves are equal.
     let coma = Grid::from_fn(25, 25, |x, y| {
         let (x, y) = ((x as f32 - 12.0) / 12.0, (y as f32 - 12.0) / 12.0);
         Complex::cis(4.0 * (3.0 * (x * x + y * y) - 2.0) * (x + 0.5 * y))
@@ -186,7 +186,7 @@ fn an_external_field_has_the_covariance_of_what_its_pupils_see() {
     let responses = Responses::new(&field);
     let shift = [4, -7];
     let phasors = responses.of_phasors(&field, shift);
-    // Phasors of magnitude 1 are light like any other.
+    // Phasors of magnitude 1 are a special case of a field.
     let power = field.mask.power();
     let seen = |centre| {
         let mut grid = field.seen(centre);

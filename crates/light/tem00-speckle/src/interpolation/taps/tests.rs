@@ -40,8 +40,8 @@ fn place(x: f64, cells: usize) -> (f64, Option<f64>) {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(4_000))]
 
-    /// Multiplication by 1/Q takes off whole periods as exactly as integers do, and so does the
-    /// remainder that takes over at 2⁵⁰.
+    /// Multiplication by 1/Q removes whole periods as exactly as integers do, and so does the
+    /// remainder operation that takes over at 2⁵⁰.
     #[test]
     fn whole_periods_are_taken_off_exactly(
         mantissa in -(1_i64 << 53)..1 << 53, exponent in -52_i32..17, cells in 1_usize..40_000,

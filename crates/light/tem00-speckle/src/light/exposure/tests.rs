@@ -92,7 +92,7 @@ fn exposures_are_the_integral_of_the_moving_intensity() {
 
 #[test]
 fn contrasts_follow_the_laws_of_drift() {
-    // Behind a circle only the length of a drift counts.
+    // Behind a circle only the length of a drift matters.
     let diagonal = |drift: f64| [0.6 * drift, -0.8 * drift];
     for (exposure, contrast) in [
         (exposure([1.0, 0.0], [0.0; 2]), translation_contrast(1.0)),

@@ -26,7 +26,7 @@ fn stack(field: &PupilField, path: SlicePath) -> SpeckleStack {
 }
 
 /// An external field: phasors under an envelope that falls to one side, so that no two pupils
-/// see the same.
+/// contain the same field.
 fn measured(size: [usize; 2], speckle_size: f64) -> PupilField {
     let samples = Grid::from_fn(48, 48, |x, y| {
         let word = u32::try_from(x * 48 + y)
@@ -54,7 +54,7 @@ fn an_external_field_has_the_mean_of_one_between_samples() {
     for fractions in [[0.0, 0.0], [0.5, 0.5], [0.3, 0.8]] {
         for u in [0.0, 1.0, 2.0, 0.5, 1.5, 3.25] {
             let mean = mean(&stack, fractions, u);
-            // By Parseval, but for the rounding of f32.
+            // By Parseval's theorem, except for the rounding of f32.
             assert!((mean - 1.0).abs() < 3e-6, "{fractions:?}, {u}: {mean}");
         }
     }
@@ -137,8 +137,8 @@ proptest! {
         let [width, height] = speckles.map(|count| count * speckle_size);
         let field = PupilField::from_speckle_size(size, speckle_size, 11).unwrap();
         let stack = stack(&field, circle(2));
-        // The oracle is the midpoint rule: over n points it errs by at most π q / (6 n²) of a wave
-        // of q periods, 1e-4. Between two slices there are up to two waves in a speckle.
+        // The oracle is the midpoint rule: over n points its error is at most π q / (6 n²) for a
+        // wave of q periods, 1e-4. Between two slices there are up to two waves in a speckle.
         let midpoints = |centre: f64, size: f64| {
             let min = (PI * (2.0 * size / speckle_size) / 6e-4).sqrt();
             let count = (1_u32..).find(|count| f64::from(*count) >= min).unwrap();
@@ -156,7 +156,7 @@ proptest! {
     }
 }
 
-/// Among places of the pattern, which keep their bits.
+/// Among positions in the pattern, which keep their bits.
 #[test]
 #[expect(clippy::float_cmp, reason = "exact by definition")]
 fn a_place_that_is_none_has_the_mean_and_correlates_with_nothing() {

@@ -17,7 +17,7 @@ fn needs() -> StackNeeds {
 fn sizes_have_small_prime_factors() {
     let sizes = [1.0, 33.0, 182.5, 247.0, 385.0, 1e4].map(diameter_for);
     assert_eq!(sizes, [32, 40, 192, 256, 400, 10_000]);
-    // What no pattern can hold is left to the pupil field to refuse.
+    // The pupil field refuses sizes that no pattern can have.
     assert_eq!(diameter_for(1e9), 1_000_000_000);
 }
 
@@ -46,7 +46,8 @@ fn the_stack_is_that_of_the_plan() {
     let stack = plan.stack(3, StackOptions::default()).unwrap();
     assert_eq!(stack.memory_bytes(), plan.memory_bytes());
     assert_eq!((stack.size(), stack.path()), (plan.size(), plan.path()));
-    // A motion by a quarter of the diameter leads to the next slice, and leaves chat(0.25)².
+    // A motion by a quarter of the diameter leads to the next slice, and leaves the correlation
+    // chat(0.25)².
     let u = 0.25 * plan.slices_per_diameter();
     let expected = tem00_numerics::disc_overlap(0.25).powi(2);
     assert!((stack.correlation_at(u) - expected).abs() < 1e-12, "at {u}");

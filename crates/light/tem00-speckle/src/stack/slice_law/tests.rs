@@ -5,7 +5,7 @@ use tem00_numerics::cast::to_signed;
 
 use crate::{PupilField, SlicePath, SpeckleStack};
 
-/// The place of a coordinate: fraction, and taps with their weights.
+/// The position of a coordinate: fraction, and taps with their weights.
 struct Place {
     fraction: f64,
     place: f64,
@@ -59,7 +59,7 @@ fn polynomial<const N: usize>(table: &[[f32; N]; N], places: &[Place; 2]) -> f64
         .sum()
 }
 
-/// The look-up as the documentation has it.
+/// The look-up as the documentation states it.
 fn documented(stack: &SpeckleStack, [x, y]: [f64; 2], (index, f): (usize, f64)) -> f64 {
     let places = [x, y].map(place);
     let next = (index + 1) % stack.slice_count();

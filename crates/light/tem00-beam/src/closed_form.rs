@@ -6,7 +6,7 @@
 //!
 //! # Examples
 //!
-//! The functions precede a shader of your own:
+//! Put the functions before your own shader:
 //!
 //! ```
 //! use tem00_beam::closed_form::WGSL;

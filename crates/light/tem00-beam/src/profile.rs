@@ -65,8 +65,8 @@ pub enum LineProfile {
     /// g(u) = [erf((u + T) / (√2 σ)) − erf((u − T) / (√2 σ))] / (4 T)     with σ = edge · T
     /// ```
     ///
-    /// At the edges, `|u| = T`, the density is half that of the plateau, `1 / 2T`. With an `edge`
-    /// above 0.3 no plateau is left: at 1 the edges have 70 % of the density on the axis.
+    /// At the edges, `|u| = T`, the density is half the density of the plateau, `1 / 2T`. With an
+    /// `edge` above 0.3 no plateau is left: at 1 the edges have 70 % of the density on the axis.
     Powell {
         /// Standard deviation of the roll-off relative to the half-length of the line, from 1e−6
         /// (a top hat) to 1.

@@ -11,7 +11,7 @@
 ///
 /// # Examples
 ///
-/// The functions precede a shader of your own:
+/// Put the functions before your own shader:
 ///
 /// ```
 /// use tem00_decorrelation::closed_form::WGSL;

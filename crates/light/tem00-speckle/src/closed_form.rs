@@ -8,7 +8,7 @@
 //!
 //! # Examples
 //!
-//! The functions precede a shader of your own, which defines where the stack is stored:
+//! Put the functions before your own shader, which defines where the stack is stored:
 //!
 //! ```
 //! use tem00_speckle::closed_form::WGSL;

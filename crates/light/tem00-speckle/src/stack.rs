@@ -114,7 +114,7 @@ impl SpeckleStack {
     ///
     /// # Errors
     ///
-    /// Returns an error if the half period or the length of `path` is zero or too large, or if the
+    /// Returns an error if the half period or the length of `path` is out of range, or if the
     /// memory for [`SlicePath::memory_bytes`] cannot be allocated.
     pub fn generate(field: &PupilField, path: SlicePath) -> Result<Self, SpeckleError> {
         Self::generate_with(field, path, StackOptions::default())

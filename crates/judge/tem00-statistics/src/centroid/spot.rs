@@ -48,8 +48,8 @@ pub fn gaussian_spot_centroid_deviation(radius: f64) -> f64 {
 /// ```
 ///
 /// The limit is the uncertainty of Dorsch: on the surface, `h/π = λ / (2π sin u)`. For spots of a
-/// few speckles the blurred edge reduces the standard deviation, by 23 % at a radius of two. The
-/// law is of first order in the fluctuations. The function is even.
+/// few speckles the blurred edge reduces the standard deviation, by up to 23 % at a radius of two.
+/// The law is of first order in the fluctuations. The function is even.
 ///
 /// # Examples
 ///

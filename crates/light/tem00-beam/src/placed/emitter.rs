@@ -293,8 +293,8 @@ pub trait Emitter: PhaseSpace {
     /// or empty.
     ///
     /// A light hierarchy that holds surfaces in boxes visits no light whose bound is 0, and chooses
-    /// among the others by their bounds. The bound counts all unoccluded light within the cut-off
-    /// that passes through the box.
+    /// among the others by their bounds. The bound ignores occlusion: it counts all light within
+    /// the cut-off that is directed through the box.
     ///
     /// # Validity
     ///

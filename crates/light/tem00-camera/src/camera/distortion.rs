@@ -176,8 +176,8 @@ mod tests {
             let limit = distortion.limit;
             for step in 0..1000 {
                 let (r, next) = (f64::from(step) * 1e-3, f64::from(step + 1) * 1e-3);
-                // Near the turning point the last steps change the radius by 1e−6, more than
-                // rounding.
+                // Near the turning point the last steps change the radius by a fraction of 1e−6,
+                // more than rounding.
                 assert!(
                     image(limit * r) < image(limit * next),
                     "{k1}, {k2}, {k3}: {r}"

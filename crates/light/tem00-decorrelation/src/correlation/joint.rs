@@ -13,7 +13,7 @@ use super::{axial_correlation, pupil_overlap_correlation};
 /// ```
 ///
 /// with the pupil displacement s in pupil diameters, the axial displacement x in axial
-/// decorrelation lengths and the speckle size h: The shift is against the pupil displacement if the
+/// decorrelation lengths and the speckle size h. The shift is against the pupil displacement if the
 /// surface has approached, and along it if the surface has receded. The remaining correlation
 /// depends on whether the look-up follows this shift: [`SpeckleMotion`](crate::SpeckleMotion)
 /// follows it, to [`AtPeak`](Self::AtPeak); a look-up at the projected displacement of the surface

@@ -111,7 +111,8 @@ fn an_edge_on_surface_is_decorrelated() {
 #[test]
 fn a_far_focus_sees_the_directions_of_the_light() {
     // Focused at infinity, a picture shows where light comes from. In collimated light the speckle
-    // of a surface that slides stands still, and that of one that tilts by θ turns by 2θ, away.
+    // of a surface that slides is at rest, and the speckle of a surface that tilts by θ turns by
+    // 2θ, away.
     let far = ImagingGeometry::from_lens(LensData {
         wavelength: 650e-9,
         focal_length: 25e-3,

@@ -41,7 +41,7 @@ fn radius_and_curvature_determine_the_parameter() {
         let radius = q.radius(1.2e-6).unwrap();
         let again =
             ComplexBeamParameter::from_radius_and_curvature(radius, q.curvature(), 1.2e-6).unwrap();
-        // Errors of 1/q, in its own modulus, are those of q.
+        // The errors of 1/q, relative to its modulus, equal the relative errors of q.
         let error = (again.to_complex() - q.to_complex()).norm() / q.to_complex().norm();
         assert!(error < 2e-15, "{q:?}: {error:e}");
     }

@@ -52,7 +52,7 @@ pub struct KnifeEdgeFit {
 
 impl KnifeEdgeFit {
     /// Fits radius, centre and power to the powers, in any unit, that pass a knife edge at the
-    /// given positions, in metres. No power passes the closed edge.
+    /// given positions, in metres, on the assumption that no power passes the closed edge.
     ///
     /// # Errors
     ///

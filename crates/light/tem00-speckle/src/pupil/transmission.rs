@@ -90,7 +90,7 @@ impl Transmission {
     }
 
     /// |∫ t(p) t*(p − shift)| / ∫ |t|², exactly: cells are constant, so that their overlap is
-    /// linear in the shift between two integer numbers of cells.
+    /// linear in the shift between consecutive whole numbers of cells.
     pub(crate) fn overlap(&self, [x, y]: [f64; 2]) -> f64 {
         // Beyond the square there is no overlap; the condition is negated so that NaN counts as no
         // overlap, too.

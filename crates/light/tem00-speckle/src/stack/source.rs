@@ -34,7 +34,7 @@ impl StackSource {
     ///
     /// # Errors
     ///
-    /// Returns an error if the half period or the length of `path` is zero or too large, or if the
+    /// Returns an error if the half period or the length of `path` is out of range, or if the
     /// slices take more than the memory limit.
     pub fn new(
         field: &PupilField,

@@ -137,8 +137,8 @@ fn tables() -> impl Strategy<Value = (Vec<f64>, Vec<f64>)> {
 }
 
 proptest! {
-    /// Where there is power, p(angle(p)) = p but for the 1e−12 that a drawn angle keeps off a knot:
-    /// the angle is rounded by 2e−16 times a density that a narrow piece may raise to 1e6.
+    /// Where there is power, p(angle(p)) = p except for the 1e−12 that a drawn angle keeps off a
+    /// knot: the angle is rounded by 2e−16 times a density that a narrow piece may raise to 1e6.
     #[test]
     fn angles_drawn_from_a_table_invert_its_cumulative_power(
         (angles, powers) in tables(),

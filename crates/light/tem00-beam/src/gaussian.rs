@@ -95,9 +95,9 @@ impl GaussianBeam {
     /// w₀ = λ / (π δ)
     /// ```
     ///
-    /// Where a data sheet gives the divergence *and* an M², create the beam with the divergence `δ
-    /// / M²` and then set M²: [`with_m_squared`](Self::with_m_squared) keeps the waist, so that the
-    /// divergence becomes `δ`.
+    /// Where a data sheet gives the divergence *and* an M², create the beam with the divergence
+    /// `δ / M²` and then set its M²: [`with_m_squared`](Self::with_m_squared) keeps the waist, so
+    /// that the divergence becomes `δ`.
     ///
     /// # Errors
     ///

@@ -86,8 +86,8 @@ impl ResolutionCell {
     ///
     /// # Errors
     ///
-    /// Returns an error unless source and pupil lie on the side of the normal, `0 < sin_aperture ≤
-    /// 1` and the wavelength is positive and finite.
+    /// Returns an error unless source and pupil lie on the side of the normal,
+    /// `0 < sin_aperture ≤ 1` and the wavelength is positive and finite.
     pub fn new(geometry: CellGeometry) -> Result<Self, Refusal> {
         let normal = unit("normal", geometry.normal)?;
         let above = |parameter, value: DVec3| {

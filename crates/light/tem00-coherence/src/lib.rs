@@ -5,9 +5,9 @@
 //! - SI units and radians. Wave numbers are vacuum wave numbers, in rad/m; κ is the difference of
 //!   two.
 //! - Directions lead *away from the surface*: to the source, to the pupil.
-//! - Displacements across the pupil are in pupil diameters, lags on the object in speckle sizes `λ
-//!   / (2 sin u)`. The first component is along the tilt of the resolution cell, the second across
-//!   it.
+//! - Displacements across the pupil are in pupil diameters, lags on the object in units of the
+//!   speckle size `λ / (2 sin u)`. The first component is along the tilt of the resolution cell,
+//!   the second across it.
 //! - Paths are *group* paths: in glass every length counts with the group index.
 //!
 //! # Main types

@@ -31,11 +31,11 @@ use super::slope::{aperture_point, direction, secant, slope_of, towards_light};
 /// # Validity
 ///
 /// The irradiance carries the rounding of the coordinates, which is large if they are stored as
-/// `f32`. Within two beam radii of the axis its relative error is then usually below `4 ε (1 + |p|
-/// / w)` and below five times this bound at any position of the light. Here ε = 1.2e−7, `|p|` is
-/// the larger of the distances of the point and of the light from the world's origin, and `w` is
-/// the smaller beam radius. In a line the half-length of the fan and the width of its roll-off
-/// count as radii too; at an abrupt end there is no bound.
+/// `f32`. Within two beam radii of the axis its relative error is then usually below the value
+/// `4 ε (1 + |p| / w)` and below five times this bound at any position of the light. Here ε =
+/// 1.2e−7, `|p|` is the larger of the distances of the point and of the light from the world's
+/// origin, and `w` is the smaller beam radius. In a line the half-length of the fan and the width
+/// of its roll-off count as radii too; at an abrupt end there is no bound.
 ///
 /// The batch forms give the bits of single calls, with and without the feature `simd`, which
 /// compiles their loops for the widest vector instructions that the processor supports.

@@ -25,8 +25,8 @@ use crate::{FocusCurve, LaserLine, LineProfile, Refusal};
 ///
 /// The density along the fan is given in the variable `v` that `variable` selects: uniform on
 /// [−flat, flat], convolved with a normal density of standard deviation `sigma` (the normal alone
-/// if `flat` is 0, a top hat if `sigma` is 0), and divided by `mass`, its fraction inside `|θ| <
-/// π/2`. Per slope it is `g = g_v(v) dv/du`.
+/// if `flat` is 0, a top hat if `sigma` is 0), and divided by `mass`, its fraction inside
+/// `|θ| < π/2`. Per slope it is `g = g_v(v) dv/du`.
 ///
 /// | `variable` | v | dv/du |
 /// |---|---|---|

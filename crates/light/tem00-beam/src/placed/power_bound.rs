@@ -47,8 +47,8 @@ impl LocalBox {
 ///
 /// In units of its standard deviation `w/2` a ray is at `u cos δ + v sin δ`, with independent
 /// standard normal u and v and the Gouy phase δ, taken from the middle of its range ±Δ. With `x` in
-/// these units, widened to its largest extent over `dz`, the inequality `x₀ ≤ u cos δ + v sin δ ≤
-/// x₁` implies that
+/// these units, widened to its largest extent over `dz`, the inequality
+/// `x₀ ≤ u cos δ + v sin δ ≤ x₁` implies that
 ///
 /// ```text
 /// x₀' − |v| tan Δ ≤ u ≤ x₁' + |v| tan Δ     where x' = x / cos Δ if that widens the range, else x

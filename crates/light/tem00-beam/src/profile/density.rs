@@ -97,8 +97,8 @@ impl Variable {
 /// A uniform density on [−flat, flat], convolved with a normal density of standard deviation sigma,
 /// in a variable of the fan angle.
 ///
-/// All line profiles except the tabulated one are of this kind: `flat = 0` is a Gaussian, `sigma =
-/// 0` a top hat.
+/// All line profiles except the tabulated one are of this kind: `flat = 0` is a Gaussian,
+/// `sigma = 0` a top hat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlopeDensity {
     /// The number of the variable; see [`Variable`].

@@ -1,4 +1,4 @@
-//! Values that take the place of those in a file, as a command line gives them.
+//! Values from a command line that replace values of a file.
 
 use core::str::FromStr;
 
@@ -8,15 +8,15 @@ use crate::error::Problem;
 use crate::input_file::FileAccess;
 use crate::source::INCLUDE;
 
-/// A key of a document, and the value that it is to have instead of the file's.
+/// A key of a document, and the value that replaces the value of the file.
 ///
-/// It is written `camera.f_number=8`: the path of the key with dots between tables, and the value
-/// as the file has it. Of several tables, as of lasers, the index counts from 0:
-/// `laser[0].power=2 mW`. A value that is no TOML is a string, so that quotation marks, which
-/// shells take away, may be left out.
+/// A change is written `camera.f_number=8`: the path of the key, with dots between tables, and the
+/// value in the syntax of the file. An index counts several tables of one name, such as lasers,
+/// from 0: `laser[0].power=2 mW`. A value that is not valid TOML is taken as a string, so that
+/// quotation marks, which shells remove, may be left out.
 ///
-/// The value is read as if it stood in the file: it is held to the same rules, and an unknown key
-/// is met with the nearest known one.
+/// The value is read as if it stood in the file: the same rules apply, and the error for an unknown
+/// key names the nearest known key.
 ///
 /// # Examples
 ///
@@ -36,17 +36,17 @@ pub struct Change {
 }
 
 /// Settings for reading a document: where the files that it names may lie,
-/// and what is to stand in it instead of what does.
+/// and which of its values are replaced.
 #[derive(Clone, Copy, Debug)]
 pub struct Reading<'a> {
-    /// From where files may be read that it names.
+    /// The locations of the files that the document may name.
     pub access: FileAccess,
-    /// The values that take the place of its own.
+    /// The values that replace values of the document.
     pub changes: &'a [Change],
 }
 
 impl From<FileAccess> for Reading<'_> {
-    /// Reads the file as it is.
+    /// Reads the file without changes.
     fn from(access: FileAccess) -> Self {
         Self {
             access,
@@ -55,7 +55,7 @@ impl From<FileAccess> for Reading<'_> {
     }
 }
 
-/// The maximum number of steps of a key. Files have five.
+/// The maximum number of steps in the path of a key. Files use five.
 const MAX_STEPS: usize = 32;
 
 /// A step towards a value.
@@ -116,13 +116,13 @@ fn steps(text: &str) -> Option<Vec<Step>> {
         .collect()
 }
 
-/// Writes the changes into the texts of a document, each into the text that has its section, or
-/// else into `main`, the number of one of them. The texts stand in the order in which they are put
-/// together, and are TOML.
+/// Writes the changes into the texts of a document. Each change goes into the text that has its
+/// section, or else into the text with the index `main`. The texts are TOML, in the order in which
+/// they are put together.
 pub(crate) fn apply(changes: &[Change], texts: &mut [String], main: usize) -> Result<(), Problem> {
     let documents = texts.iter().map(|text| text.parse::<DocumentMut>());
     let documents: Result<Vec<_>, _> = documents.collect();
-    // Whoever reads the texts afterwards tells what is wrong with them, and where.
+    // Reading the texts afterwards reports what is wrong with them, and where.
     let Ok(mut documents) = documents else {
         return Ok(());
     };
@@ -136,7 +136,7 @@ pub(crate) fn apply(changes: &[Change], texts: &mut [String], main: usize) -> Re
 }
 
 impl Change {
-    /// Returns whether both change the same value, or one of them the whole of which the other
+    /// Returns whether both change the same value, or one replaces a whole of which the other
     /// changes a part.
     pub fn overlaps(&self, other: &Self) -> bool {
         let steps = self.path.len().min(other.path.len());
@@ -167,7 +167,7 @@ impl Change {
         Ok(())
     }
 
-    /// The problem that there is nothing at a step of the path.
+    /// Returns the problem that there is nothing at a step of the path.
     fn nowhere(&self, depth: usize) -> Problem {
         let written = |steps: &[Step]| {
             let text = steps.iter().map(|step| match step {
@@ -192,8 +192,9 @@ impl Change {
     }
 }
 
-/// Returns the number of the document that has the section that a path begins with. Where several
-/// have tables of it, the index counts through them all, and is made that of the document.
+/// Returns the number of the document that has the section at the start of a path. Where several
+/// documents have tables of that section, the index counts through all of them and is converted
+/// into the index within its document.
 fn owner(path: &mut [Step], documents: &[DocumentMut]) -> Option<usize> {
     let [Step::Key(key), rest @ ..] = path else {
         return None;
@@ -210,7 +211,7 @@ fn owner(path: &mut [Step], documents: &[DocumentMut]) -> Option<usize> {
             _ => return owner,
         }
     }
-    // Beyond the last: the index is no index of the last document either.
+    // An index beyond the last table is no index of the last document either.
     if let (Some(_), Some(Step::Index(index))) = (owner, rest.first_mut()) {
         *index = usize::MAX;
     }

@@ -13,7 +13,7 @@ const SPECTRA: &[(&str, Spectrum)] = &[
     ("gaussian", Spectrum::Peak(LineShape::Gaussian)),
     ("lorentzian", Spectrum::Peak(LineShape::Lorentzian)),
     ("rectangular", Spectrum::Peak(LineShape::Rectangular)),
-    // The number of lines is a key of its own.
+    // The number of lines has its own key.
     ("comb", Spectrum::Comb(0)),
 ];
 
@@ -111,7 +111,7 @@ fn peaks(
 }
 
 /// Reads the keys of the relief of a surface, in scene files and in set-up files: `rms_height`,
-/// with a `usual` one, and `correlation_length`.
+/// with a `usual` value, and `correlation_length`.
 ///
 /// # Errors
 ///

@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use crate::{Folder, Problem, Section, Value, sources::Sources};
 
-/// A document as its files tell it, those that are included first.
+/// A document as the sections of its files, the included files first.
 #[derive(Debug)]
 pub struct Document<'a> {
     files: Vec<Section<'a>>,
@@ -31,8 +31,7 @@ impl<'a> Document<'a> {
         self.sources.files()
     }
 
-    /// Returns a value that stands outside of all sections; that of the file that includes the
-    /// others counts.
+    /// Returns a value that stands outside of all sections, from the file that includes the others.
     pub fn value(&self, key: &'static str) -> Option<Value<'a>> {
         self.files.iter().rev().find_map(|file| file.optional(key))
     }
@@ -41,8 +40,8 @@ impl<'a> Document<'a> {
     ///
     /// # Errors
     ///
-    /// Returns a problem, placed in its file, if it is written otherwise, is given twice or has a
-    /// key that it may not have.
+    /// Returns a problem, placed in its file, if the table has another form, is given twice or has
+    /// a key that is not allowed.
     pub fn table(
         &self,
         key: &'static str,
@@ -66,8 +65,8 @@ impl<'a> Document<'a> {
     ///
     /// # Errors
     ///
-    /// Returns a problem, placed in its file, if it is written otherwise, is given twice or has a
-    /// key that it may not have.
+    /// Returns a problem, placed in its file, if a table has another form, is given twice or has a
+    /// key that is not allowed.
     pub fn tables(
         &self,
         key: &'static str,

@@ -33,8 +33,8 @@ impl ConfigError {
         }
     }
 
-    /// Returns the path of the file with the error: the file that was asked for or one that it
-    /// includes; `None` if the text did not come from a file.
+    /// Returns the path of the file with the error: the requested file or one that it includes;
+    /// `None` if the text did not come from a file.
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()
     }
@@ -44,7 +44,7 @@ impl ConfigError {
         &self.problem.message
     }
 
-    /// Returns how to put it right, if there is more to say than the message does.
+    /// Returns how to correct the error, if there is more to say than the message does.
     pub fn help(&self) -> Option<&str> {
         self.problem.help.as_deref()
     }
@@ -54,13 +54,13 @@ impl ConfigError {
         &self.source_text
     }
 
-    /// Returns whether a file could not be read, which tells nothing about what the files say.
+    /// Returns whether a file could not be read, which says nothing about their content.
     pub const fn is_unreadable(&self) -> bool {
         self.problem.is_unreadable
     }
 
     /// Returns the location of the error as a range of bytes of the source text, or `None` if the
-    /// error has no location, such as a section that is not there.
+    /// error has no location, such as a missing section.
     pub fn span(&self) -> Option<Range<usize>> {
         self.problem
             .location
@@ -116,8 +116,8 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Creates a problem without a location. What cannot be printed is escaped, and a long message
-    /// is cut: it may quote the file.
+    /// Creates a problem without a location. Characters that cannot be printed are escaped, and a
+    /// long message is cut, since it may quote the file.
     pub fn new(message: impl Into<String>) -> Self {
         Self {
             message: printable_line(&message.into(), MAX_CHARS),
@@ -140,14 +140,14 @@ impl Problem {
         self
     }
 
-    /// Adds how to put it right.
+    /// Adds advice on how to correct the problem.
     #[must_use]
     pub fn with_help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(printable_line(&help.into(), MAX_CHARS));
         self
     }
 
-    /// Returns the message, without its place.
+    /// Returns the message, without its location.
     pub fn message(&self) -> String {
         self.message.clone()
     }

@@ -5,21 +5,21 @@ use std::{
 
 use crate::FileAccess;
 
-/// Advice for a file that lies elsewhere than it may.
+/// Advice for a file outside of the allowed folder.
 pub(crate) const OUTSIDE: &str =
     "put it below that folder, or allow files from everywhere with --allow-outside";
 
-/// The folder of a file, below which the files lie that are its own.
+/// The folder of a file, which holds the files that belong to it.
 #[derive(Clone, Debug)]
 pub struct Folder {
     /// Its canonical path; `None` if there is no such folder.
     canonical: Option<PathBuf>,
-    /// From where files may be read.
+    /// The locations from which files may be read.
     pub access: FileAccess,
 }
 
 impl Folder {
-    /// Finds a folder, of which an empty path is the current one.
+    /// Finds a folder, where an empty path is the current folder.
     pub fn new(directory: &Path, access: FileAccess) -> Self {
         let is_current = directory.as_os_str().is_empty();
         let directory = if is_current {

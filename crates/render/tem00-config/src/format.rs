@@ -5,8 +5,8 @@ use toml::de::{DeTable, DeValue};
 pub struct Format {
     /// The subject of such a file, as messages name it: "scene".
     pub noun: &'static str,
-    /// The keys that it may have outside of its sections. `"include"` among them lets it name files
-    /// that belong to it.
+    /// The keys that are allowed outside of its sections. `"include"` among them lets a file name
+    /// other files that belong to it.
     pub keys: &'static [&'static str],
     /// The keys of its sections whose values may be uncertain: a value, or a table with the keys of
     /// [`UNCERTAIN`](crate::UNCERTAIN).
@@ -21,17 +21,17 @@ pub struct Format {
 pub enum DocumentKind {
     /// A scene: camera, lasers and surfaces in space.
     Scene,
-    /// A set-up: what data sheets tell of a triangulation sensor.
+    /// A set-up: a triangulation sensor as data sheets describe it.
     Setup,
     /// A grid: the values that a sweep goes over.
     Grid,
 }
 
-/// Tells by its sections what a document describes, so that a file of another kind can be told by
-/// name; `None` if it is not TOML, or of no known kind.
+/// Returns the kind of document that the sections of a text show, so that an error can name the
+/// kind of a wrong file; `None` if the text is not TOML, or of no known kind.
 ///
 /// A scene may have several lasers and surfaces, `[[laser]]` and `[[surface]]`; a set-up has one
-/// `[laser]` and one `[surface]`; a grid has nothing but `[sweep]`.
+/// `[laser]` and one `[surface]`; a grid has only `[sweep]`.
 pub fn kind_of_document(text: &str) -> Option<DocumentKind> {
     let document = DeTable::parse(text.trim_start_matches('\u{feff}')).ok()?;
     if document

@@ -1,4 +1,4 @@
-//! External files: regular ones, of a bounded size.
+//! External files: regular files of a bounded size.
 
 use std::{
     fs::{self, File, Metadata},
@@ -11,7 +11,8 @@ use tem00_numerics::check_memory;
 /// The maximum number of bytes of a document or of a file that it includes: 16 MiB.
 pub const MAX_TEXT_BYTES: u64 = 16 << 20;
 
-/// The maximum number of bytes of a mesh, of a file with its data, and of a map of radiance: 4 GiB.
+/// The maximum number of bytes of a mesh file, of a file with its data, and of a radiance map: 4
+/// GiB.
 pub const MAX_ASSET_BYTES: u64 = 4 << 30;
 
 /// The name that stands for standard input where a text is read.
@@ -20,8 +21,9 @@ const STANDARD_INPUT: &str = "-";
 /// The locations of the files that a document may name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum FileAccess {
-    /// Files that it includes lie below its own folder, and the data of a glTF file below that of
-    /// the glTF file, symbolic links followed. Meshes and maps of radiance may lie anywhere.
+    /// Files that the document includes lie below its own folder, and the data of a glTF file below
+    /// the folder of the glTF file, with symbolic links followed. Meshes and radiance maps may lie
+    /// anywhere.
     #[default]
     WithinFolder,
     /// Files may be anywhere.
@@ -30,15 +32,16 @@ pub enum FileAccess {
 
 /// Opens a regular file of at most `max_bytes`.
 ///
-/// A device or a pipe could be read without end, and opening a pipe waits for who writes into it.
+/// Reading a device or a pipe might never end, and opening a pipe waits for a writer.
 ///
 /// # Errors
 ///
-/// Returns an error if it is something else, is longer or cannot be opened.
+/// Returns an error if the path is not a regular file, or if the file is longer or cannot be
+/// opened.
 pub fn open_input(path: &Path, max_bytes: u64) -> io::Result<File> {
     check(&fs::metadata(path)?, max_bytes)?;
     let file = File::open(path)?;
-    // It may have been replaced meanwhile.
+    // The file may have been replaced meanwhile.
     check(&file.metadata()?, max_bytes)?;
     Ok(file)
 }
@@ -47,8 +50,8 @@ pub fn open_input(path: &Path, max_bytes: u64) -> io::Result<File> {
 ///
 /// # Errors
 ///
-/// Returns the errors of [`open_input`], and an error if it cannot be read or there is not the
-/// memory.
+/// Returns the errors of [`open_input`], and an error if the file cannot be read or too little
+/// memory is available.
 pub fn read_input(path: &Path, max_bytes: u64) -> io::Result<Vec<u8>> {
     let file = open_input(path, max_bytes)?;
     check_memory(file.metadata()?.len())
@@ -72,7 +75,7 @@ pub fn is_standard_input(path: &Path) -> bool {
 }
 
 /// Returns a text without the byte order mark of UTF-8 that some editors and spreadsheets put in
-/// front.
+/// front of it.
 pub fn without_byte_order_mark(content: &[u8]) -> &[u8] {
     content.strip_prefix(b"\xef\xbb\xbf").unwrap_or(content)
 }

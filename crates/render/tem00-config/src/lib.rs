@@ -6,20 +6,20 @@
 //!   or strings with a unit, such as `"0.25 mm"`: see [`Dimension`].
 //! - A file that another includes lies below its folder, unless [`FileAccess::Anywhere`] is given.
 //! - An unknown key is an error, which names the nearest known one.
-//! - Text of a file that is shown is escaped, so that it does nothing to a terminal: see
+//! - Text of a file is escaped before it is shown, so that it cannot control a terminal: see
 //!   [`printable`].
 //!
 //! # Main types
 //!
 //! [`read_document`] opens a file of a [`Format`] as a [`Document`] of [`Section`]s, whose
 //! [`Value`]s are read one by one; [`read_laser_light`] and [`read_relief`] read keys that scenes
-//! and set-ups have in common. What is wrong is a [`Problem`], which becomes a [`ConfigError`] once
-//! its file is known.
+//! and set-ups have in common. An error is a [`Problem`], which becomes a [`ConfigError`] once its
+//! file is known.
 //!
 //! # Scope and non-goals
 //!
-//! No derived deserialisation: it loses the location of a value inside tagged tables. Nothing is
-//! written.
+//! There is no derived deserialisation: it loses the location of a value inside tagged tables. The
+//! crate only reads files.
 
 mod change;
 mod coherence;

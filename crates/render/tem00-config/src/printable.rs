@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-/// Returns text that does nothing to a terminal: control characters, and those that turn the
+/// Returns text that cannot control a terminal: control characters, and characters that change the
 /// direction of writing, are replaced by `\u001b` and the like. Line feeds and tabs stay.
 ///
 /// Inside a JSON string the replacements mean the same characters.
@@ -31,7 +31,7 @@ pub fn printable_line(text: &str, max_chars: usize) -> String {
 }
 
 /// Returns whether a character could do something to a terminal or a page other than show itself: a
-/// control character other than a line feed or a tab, a separator of lines, or a mark that turns
+/// control character other than a line feed or a tab, a separator of lines, or a mark that changes
 /// the direction of writing.
 pub const fn is_hazard(character: char) -> bool {
     matches!(character,

@@ -9,10 +9,10 @@ pub struct Dimension {
     pub(crate) noun: &'static str,
     /// The plural of the SI unit, for messages.
     pub(crate) si_unit: &'static str,
-    /// A value as one would write it.
+    /// A value as a file would state it.
     example: &'static str,
-    /// The least positive and the greatest magnitude, in SI units: beyond any apparatus, but far
-    /// enough inside the range of `f64` that areas and volumes stay there, too.
+    /// The smallest positive and the largest magnitude, in SI units. They lie beyond any apparatus,
+    /// but far enough inside the range of `f64` that areas and volumes stay there, too.
     pub(crate) magnitudes: (f64, f64),
     units: &'static [Unit],
 }
@@ -29,7 +29,7 @@ struct Unit {
 
 /// A quantity in a message.
 struct Limit {
-    /// In SI units.
+    /// The value in SI units.
     value: f64,
     /// True if number and unit are one word.
     is_one_word: bool,
@@ -190,8 +190,8 @@ impl Dimension {
         self.units.iter().map(|unit| unit.symbol)
     }
 
-    /// Returns the value, in SI units, of a string such as "650 nm", or `None` if it is no quantity
-    /// of this kind; a number without a unit is not one.
+    /// Returns the value, in SI units, of a string such as "650 nm", or `None` if it is not a
+    /// quantity of this kind; a number without a unit is not a quantity.
     pub fn parse(&self, text: &str) -> Option<f64> {
         let (number, unit) = self.split(text)?;
         Some(unit.si(number))
@@ -219,8 +219,8 @@ impl Dimension {
         Some(format!("{} {}", digits(unit.of(value)), unit.symbol))
     }
 
-    /// Returns a message about `typed` with its lengths, or whatever it is, in the unit that was
-    /// typed; or `None` if it is not a quantity of this kind.
+    /// Returns a message about `typed` with its quantities in the unit of `typed`, or `None` if
+    /// `typed` is not a quantity of this kind.
     pub(crate) fn retyped(&self, message: &str, typed: &str) -> Option<String> {
         let value = self.parse(typed)?;
         let si = self.units.iter().find(|unit| unit.is_si())?;
@@ -257,7 +257,7 @@ impl Dimension {
         Some(message.replace(&format!(", in {}", self.si_unit), ""))
     }
 
-    /// Returns the quantity that a message tells in a unit that is not the SI unit: "1 µm", or
+    /// Returns the quantity that a message states in a unit that is not the SI unit: "1 µm", or
     /// "45°" in one word.
     fn limit(&self, word: &str, next: Option<&str>) -> Option<Limit> {
         let of = |number: &str, symbol: &str, is_one_word: bool| {
@@ -272,9 +272,9 @@ impl Dimension {
         degrees.or_else(|| of(one, bare(next?), false))
     }
 
-    /// Returns a value in SI units as one would write it into a file: in the unit that takes the
-    /// fewest digits, in the `usual` one of several, or else as a bare number. It reads back as the
-    /// same bits.
+    /// Returns the text of a value in SI units for a file: in the unit that takes the fewest
+    /// digits, in the `usual` unit if several do, or else as a bare number. The text reads back as
+    /// the same bits.
     pub fn text(&self, value: f64, usual: &str) -> String {
         // Symbols beyond ASCII are second names of units.
         let units = self.units.iter().filter(|unit| unit.symbol.is_ascii());
@@ -287,8 +287,8 @@ impl Dimension {
     }
 
     /// Returns the value nearest to one in SI units that is written with few digits in a unit:
-    /// rounded to the power of ten at or below `step`, which is in SI units, too. It is the value
-    /// that its text reads back as.
+    /// rounded to the power of ten at or below `step`, which is in SI units, too. Its text reads
+    /// back as the same value.
     pub fn rounded(&self, value: f64, step: f64, symbol: &str) -> f64 {
         const MAX_DECIMALS: f64 = 15.0;
         const ONE: Unit = unit("", 1.0, 1.0);

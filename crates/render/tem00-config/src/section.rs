@@ -12,13 +12,13 @@ use crate::value::{Value, nearest};
 /// A table that a section may have: its key, and the keys that it may have itself.
 pub type Choice = (&'static str, &'static [&'static str]);
 
-/// Keys that have another name since: the old and the new one.
+/// Renamed keys: the old and the new name.
 const RENAMED: [(&str, &str); 2] = [("lamp", "light"), ("line_width", "line_thickness")];
 
 /// Table of the file.
 ///
-/// It is opened with the keys that it may have. A key that is not among them is an error at once,
-/// before a missing key is missed: a typo in a required key is both.
+/// A section is opened with its allowed keys. Any other key is an error at once, before a missing
+/// key is reported: a typo in a required key is both.
 #[derive(Clone, Debug)]
 pub struct Section<'a> {
     header: String,
@@ -52,7 +52,8 @@ impl<'a> Section<'a> {
         .checked(None)
     }
 
-    /// Returns the value of a key, if the file gives one; of an uncertain value the best estimate.
+    /// Returns the value of a key, if the file gives one; for an uncertain value, the best
+    /// estimate.
     pub fn optional(&self, key: &'static str) -> Option<Value<'a>> {
         debug_assert!(self.keys.contains(&key), "{key} is not declared");
         let item = self.best_estimate(key)?;
@@ -82,7 +83,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Returns the value of a key that must be there; `example` shows how it may look.
+    /// Returns the value of a required key; `example` shows a possible value.
     ///
     /// # Errors
     ///
@@ -112,8 +113,8 @@ impl<'a> Section<'a> {
     ///
     /// # Errors
     ///
-    /// Returns a problem, placed in the file, if it is missing, written otherwise or has a key that
-    /// it may not have.
+    /// Returns a problem, placed in the file, if the table is missing, has another form or has a
+    /// key that is not allowed.
     pub fn table(
         &self,
         key: &'static str,
@@ -134,8 +135,8 @@ impl<'a> Section<'a> {
     ///
     /// # Errors
     ///
-    /// Returns a problem, placed in the file, if it is missing, written otherwise or has a key that
-    /// it may not have.
+    /// Returns a problem, placed in the file, if a table is missing, has another form or has a key
+    /// that is not allowed.
     pub fn tables(
         &self,
         key: &'static str,
@@ -169,8 +170,8 @@ impl<'a> Section<'a> {
     ///
     /// # Errors
     ///
-    /// Returns a problem, placed in the file, if it is missing, written otherwise or has a key that
-    /// it may not have.
+    /// Returns a problem, placed in the file, if the table is missing, has another form or has a
+    /// key that is not allowed.
     pub fn at_most_one_of(
         &self,
         what: &str,
@@ -199,8 +200,8 @@ impl<'a> Section<'a> {
     ///
     /// # Errors
     ///
-    /// Returns a problem, placed in the file, if it is missing, written otherwise or has a key that
-    /// it may not have.
+    /// Returns a problem, placed in the file, if the table is missing, has another form or has a
+    /// key that is not allowed.
     pub fn one_of(&self, what: &str, choices: &[Choice]) -> Result<(&'static str, Self), Problem> {
         self.at_most_one_of(what, choices)?.ok_or_else(|| {
             let headers = choices
@@ -240,8 +241,8 @@ impl<'a> Section<'a> {
         Problem::new(message.to_string()).at(self.location.clone())
     }
 
-    /// Returns a problem that was found when an object was made of the section, placed at the value
-    /// of `key` if the file gives one, and in its unit.
+    /// Returns a problem that was found when an object was made from the section. It is placed at
+    /// the value of `key`, and stated in the unit of that value, if the file gives one.
     pub fn problem_with(&self, key: &str, message: impl Display) -> Problem {
         match self.best_estimate(key) {
             Some(item) => Value::new(key, item, self.source).problem(message),
@@ -276,7 +277,7 @@ impl<'a> Section<'a> {
         format!("{}.{key}", self.header.trim_matches(['[', ']']))
     }
 
-    /// Complains about the first key that the section does not know.
+    /// Returns the section, or a problem at its first key that is not allowed.
     fn checked(self, parent: Option<&Self>) -> Result<Self, Problem> {
         let unknown = self
             .table

@@ -50,7 +50,7 @@ impl Source {
         }
     }
 
-    /// Returns the document and tells where it is not TOML.
+    /// Parses the text, or returns a problem at the place where it is not TOML.
     pub(crate) fn parse(&self) -> Result<toml::Spanned<DeTable<'_>>, Problem> {
         DeTable::parse(&self.text).map_err(|error| {
             let problem = Problem::new(format!("this is not valid TOML: {}", error.message()));

@@ -18,7 +18,8 @@ pub(crate) struct Sources {
     format: Format,
     folder: Folder,
     all: Vec<Source>,
-    /// The order in which they are put together: what is included stands before what includes it.
+    /// The order in which they are put together: an included text stands before the text that
+    /// includes it.
     order: Vec<usize>,
     /// The texts that are being read, outermost first.
     open: Vec<usize>,
@@ -39,14 +40,14 @@ impl Sources {
         Ok(sources)
     }
 
-    /// Puts values in the place of those that the texts have.
+    /// Replaces values of the texts.
     fn change(&mut self, changes: &[Change]) -> Result<(), Problem> {
         if changes.is_empty() {
             return Ok(());
         }
         let in_order = self.order.iter().filter_map(|&index| self.all.get(index));
         let mut texts: Vec<String> = in_order.map(|source| source.text.clone()).collect();
-        // What is included stands before the file itself.
+        // Included texts stand before the file itself.
         let main = texts.len().saturating_sub(1);
         change::apply(changes, &mut texts, main)?;
         for (&index, text) in self.order.iter().zip(texts) {
@@ -168,7 +169,7 @@ impl Sources {
         self.add(source)
     }
 
-    /// Refuses a file that was read before, and one at the end of a long chain.
+    /// Refuses a file that was read before, and a file at the end of too long a chain of includes.
     fn check_new(&self, canonical: &Path, include: &Include) -> Result<(), Problem> {
         let mut read = self.all.iter();
         match read.position(|source| source.canonical.as_deref() == Some(canonical)) {
@@ -184,7 +185,7 @@ impl Sources {
     }
 }
 
-/// A problem in a file outside the document's folder, without what stands there.
+/// Returns a problem in a file outside the document's folder, without a quotation from that file.
 fn unquoted(source: &Source, problem: &Problem) -> Problem {
     let location = problem.location.as_ref();
     let location = location.and_then(|location| line_column(&source.text, location.span.start));
@@ -197,7 +198,7 @@ fn unquoted(source: &Source, problem: &Problem) -> Problem {
     .unreadable(problem.is_unreadable)
 }
 
-/// A file that another one includes, and where it says so.
+/// An included file, and the location that includes it.
 struct Include {
     path: PathBuf,
     location: Location,

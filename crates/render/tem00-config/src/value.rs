@@ -9,8 +9,7 @@ use crate::error::{Location, Problem};
 use crate::quantity::{DIMENSIONS, Dimension, LENGTH, NUMBER};
 use crate::source::Source;
 
-/// A value of the file, with what it takes to complain about it: its name, its text and its
-/// location.
+/// A value of the file, with its name, its text and its location for messages about it.
 #[derive(Clone, Debug)]
 pub struct Value<'a> {
     name: String,
@@ -109,7 +108,7 @@ impl<'a> Value<'a> {
             })
     }
 
-    /// Returns a problem placed at the value, whose quantities are told in the unit of the value.
+    /// Returns a problem placed at the value, whose quantities are stated in the unit of the value.
     pub fn problem(&self, message: impl Display) -> Problem {
         Problem::new(self.retyped(&message.to_string())).at(self.location())
     }
@@ -207,7 +206,7 @@ impl<'a> Value<'a> {
             .ok_or_else(|| self.must_be("a string in quotation marks"))
     }
 
-    /// Returns what the string names among `choices`.
+    /// Returns the one of `choices` that the string names.
     ///
     /// # Errors
     ///
@@ -235,7 +234,7 @@ impl<'a> Value<'a> {
         self.item.get_ref().is_array()
     }
 
-    /// Returns the elements of an array of exactly `N`.
+    /// Returns the elements of an array that has exactly `N` elements.
     ///
     /// # Errors
     ///
@@ -270,7 +269,7 @@ impl<'a> Value<'a> {
         self.vector(&LENGTH, "three lengths, such as [0, \"5 mm\", \"0.3 m\"]")
     }
 
-    /// Returns a vector that points somewhere, of length 1.
+    /// Returns a vector in the direction of a vector that is not zero, of length 1.
     ///
     /// # Errors
     ///
@@ -278,7 +277,7 @@ impl<'a> Value<'a> {
     pub fn direction(&self) -> Result<DVec3, Problem> {
         const ALLOWED: &str = "three numbers that are not all zero, such as [0, 0, 1]";
         let vector = self.vector(&NUMBER, ALLOWED)?;
-        // The largest component first, so that no square leaves the range of numbers.
+        // Divides by the largest component first, so that no square leaves the range of numbers.
         let largest = vector.abs().max_element();
         (vector / largest)
             .try_normalize()

@@ -1,4 +1,4 @@
-//! Measured quantities beside the predictions of the theory.
+//! Measured quantities compared with the predictions of the theory.
 
 use serde::Serialize;
 use tem00_report::{
@@ -44,7 +44,8 @@ impl Expectation {
         Self::AtMost { at_most }
     }
 
-    /// Returns in words whether a measured value is what theory says, if it says anything.
+    /// Returns in words whether a measured value agrees with the theory; `None` without a
+    /// prediction.
     fn verdict(self, measured: f64) -> Option<String> {
         let agrees = match self {
             Self::Near { value, tolerance } => (measured - value).abs() <= tolerance,
@@ -125,7 +126,7 @@ pub(crate) fn table(rows: &[Row]) -> Table {
     table
 }
 
-/// Returns what the rows come to, in one sentence.
+/// Returns the conclusion from all rows, in one sentence.
 pub(crate) fn conclusion(rows: &[Row]) -> String {
     let compared = rows
         .iter()

@@ -13,12 +13,12 @@ use tem00_tracer::{Frame, LaserLayers, Scene};
 
 use crate::{preview::Picture, summary::Exposure};
 
-/// Makes sure, before the work, that there is memory for the frames of the scene in a file: for
-/// their layers, once more to write them, and for the picture.
+/// Checks, before the work starts, that memory is available for the frames of the scene in a file:
+/// for their layers, for a second copy of these while they are written, and for the picture.
 ///
 /// # Errors
 ///
-/// Returns a failure if the system says that there is not so much.
+/// Returns a failure if the system reports less memory than is needed.
 pub fn check_room(path: &Path, scene: &Scene) -> Result<(), Failure> {
     let camera = &scene.camera;
     let whole = [camera.width(), camera.height()];
@@ -42,7 +42,7 @@ pub(crate) struct FramePaths {
     pub(crate) preview: PathBuf,
     /// The layers.
     pub(crate) layers: PathBuf,
-    /// The record that the others are whole; for a single frame it is the summary.
+    /// The record that the other files are complete; for a single frame it is the summary.
     pub(crate) record: PathBuf,
 }
 
@@ -87,8 +87,8 @@ fn laser_picture_of(frame: &Frame) -> Picture {
 
 /// Chooses the white level for the light of the lasers, or for all light if no laser is seen.
 ///
-/// A thin line on an object that another light illuminates is few of the pixels: with those
-/// counted, the line would be burnt out.
+/// A thin line covers few of the pixels that another light illuminates: if all of these counted,
+/// the line would be overexposed.
 pub(crate) fn automatic_exposure(frame: &Frame) -> Exposure {
     let lasers = laser_picture_of(frame);
     if lasers.is_dark() {
@@ -122,8 +122,8 @@ pub(crate) fn write_preview(
     .map_err(|error| Failure::writing(path, error))
 }
 
-/// Writes all layers of a frame of which the whole image has `size` pixels: the picture in linear
-/// sRGB, each laser's, the lights', and what was seen.
+/// Writes all layers of a frame whose whole image has `size` pixels: the picture in linear sRGB,
+/// the layers of each laser and of the lights, depth, normal and sample count.
 ///
 /// # Errors
 ///

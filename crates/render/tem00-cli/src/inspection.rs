@@ -9,7 +9,7 @@ use tem00_engine::{LaserInspection, inspect_lasers};
 use tem00_report::{args::IndexRange, failure::Failure};
 use tem00_tracer::{Scene, TracerError};
 
-/// The most frames that are looked at.
+/// The maximum number of frames that are inspected.
 const MAX_FRAMES: u32 = 8;
 
 /// The light of each laser that reaches the camera, in frames spread over the requested ones.
@@ -21,7 +21,7 @@ pub struct Inspection<'a> {
 }
 
 impl<'a> Inspection<'a> {
-    /// Looks at frames spread over those that were asked for.
+    /// Inspects frames spread over the requested range.
     ///
     /// # Errors
     ///
@@ -34,7 +34,7 @@ impl<'a> Inspection<'a> {
         })
     }
 
-    /// Returns whether the camera sees each laser in one of the frames at least.
+    /// Returns whether the camera sees each laser in at least one of the frames.
     pub fn sees_all_lasers(&self) -> bool {
         (0..self.scene.lasers.len()).all(|laser| self.is_seen(laser))
     }
@@ -51,8 +51,8 @@ impl<'a> Inspection<'a> {
         lasers.flat_map(|laser| self.words(laser)).collect()
     }
 
-    /// Draws camera, lasers and parts into NAME.svg in a folder, as they stand in the first frame
-    /// in which a laser is not seen, or else in the first; returns the path.
+    /// Draws camera, lasers and parts into NAME.svg in a folder and returns the path. The drawing
+    /// shows the first frame in which a laser is not seen, or else the first frame.
     ///
     /// # Errors
     ///
@@ -88,7 +88,7 @@ impl<'a> Inspection<'a> {
     }
 }
 
-/// Returns frames spread over a range, both ends among them.
+/// Returns frames spread over a range, both ends included.
 fn spread(IndexRange { first, last }: IndexRange) -> impl Iterator<Item = u32> {
     let steps = (last - first).min(MAX_FRAMES - 1);
     let length = u64::from(last - first);

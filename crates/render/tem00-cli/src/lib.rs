@@ -1,5 +1,5 @@
-//! The program `tem00`, to be started by its own binary or from the Python package.
-//! Its commands: `docs/program.md` in the repository.
+//! The program `tem00`, which its own binary or the Python package starts. `docs/program.md` in the
+//! repository describes its commands.
 
 mod args;
 mod comparison;
@@ -36,7 +36,8 @@ const INSPECTION: &str = "budget calibrate characterise design lines sweep trian
 /// Runs the program with the arguments of a process, the first of which is its own name, and
 /// returns the exit code.
 ///
-/// Takes over Ctrl-C and the termination signals of the process: a second one ends it at once.
+/// Takes over Ctrl-C and the termination signals of the process: a second signal ends the process
+/// at once.
 pub fn run(arguments: &[OsString]) -> u8 {
     let command = arguments.get(1).and_then(|command| command.to_str());
     let is_other = |command: &&str| INSPECTION.split(' ').any(|other| other == *command);
@@ -50,7 +51,7 @@ pub fn run(arguments: &[OsString]) -> u8 {
     program::run(arguments, execute)
 }
 
-/// Makes sure, before the work, that a file can be written.
+/// Checks, before the work starts, that a file can be written.
 fn check_writable(path: &Path) -> Result<(), Failure> {
     probe_writable(path).map_err(|error| {
         Failure::input(
@@ -60,7 +61,7 @@ fn check_writable(path: &Path) -> Result<(), Failure> {
     })
 }
 
-/// Does the command and prints its results to `out`.
+/// Executes the command and prints its results to `out`.
 fn execute(cli: &Cli, out: &mut impl Write) -> Result<(), Failure> {
     if cli.quiet {
         output::set_quiet();

@@ -1,4 +1,4 @@
-//! `tem00 list`: what scenes can name.
+//! `tem00 list`: the names that scenes can use.
 
 use std::io::Write;
 
@@ -12,7 +12,7 @@ use tem00_tracer::{FinishingProcess, Metal, TracerError};
 
 use crate::args::{ListArgs, Listed};
 
-/// Prints what was asked for, with its sources.
+/// Prints the requested list, with its sources.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! `tem00 pattern`: one speckle pattern beside the theory.
+//! `tem00 pattern`: one speckle pattern, compared with the theory.
 
 mod theory;
 
@@ -23,18 +23,18 @@ use tem00_speckle::{PupilField, SpeckleError, SpeckleField, SpecklePattern};
 
 use crate::{args::PatternArgs, check_writable, comparison};
 
-/// The largest size Q: 2²⁸ samples, the most that [`read_image`](tem00_report::image::read_image)
-/// takes.
+/// The largest size Q: 2²⁸ samples, the maximum that
+/// [`read_image`](tem00_report::image::read_image) accepts.
 const MAXIMUM_SIZE: usize = 1 << 14;
 
-/// The bytes that it takes to make a sample, to measure it and to write it; its amplitude takes
-/// more.
+/// The memory needed to generate, measure and write one sample of intensity, in bytes; its complex
+/// amplitude needs more.
 const BYTES_PER_SAMPLE: u64 = 36;
 
-/// The memory that an external field may take: as much as the largest pattern of amplitudes.
+/// The maximum memory of an external field, in bytes: as much as the largest pattern of amplitudes.
 const FIELD_MEMORY: u64 = 8 << 28;
 
-/// Generates a pattern, writes it to the file asked for and prints the table.
+/// Generates a pattern, writes it to the requested file and prints the table.
 ///
 /// # Errors
 ///
@@ -45,7 +45,7 @@ pub(crate) fn run(args: &PatternArgs, out: &mut impl Write) -> Result<(), Failur
         .and_then(|report| report.print(false, &[], out))
 }
 
-/// Writes the pattern and returns how it compares with the theory.
+/// Writes the pattern and returns its comparison with the theory.
 fn write_and_compare(args: &PatternArgs) -> Result<Report, Failure> {
     let format = output_format(&args.output, args.amplitude)?;
     let field = pupil_field(args)?;
@@ -91,7 +91,7 @@ fn output_format(path: &Path, amplitude: bool) -> Result<Format, Failure> {
     }
 }
 
-/// The field and the pupil before it.
+/// Returns the field, random or read from a file, with the pupil in front of it.
 fn pupil_field(args: &PatternArgs) -> Result<PupilField, Failure> {
     let samples = args.field.as_deref().map(read_field).transpose()?;
     let side = samples.as_ref().map(|s| s.width().min(s.height()));
@@ -125,7 +125,7 @@ fn pupil_field(args: &PatternArgs) -> Result<PupilField, Failure> {
         })
 }
 
-/// The field of external samples, seen through a pupil of whole samples.
+/// Returns the field of external samples, seen through a pupil of whole samples.
 fn behind(
     samples: Grid<Complex<f32>>,
     size: usize,

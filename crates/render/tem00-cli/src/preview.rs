@@ -6,8 +6,8 @@ use tem00_numerics::{
 };
 use tem00_report::colour::rgb_of_wavelength;
 
-/// The fraction of the lit pixels that the automatic exposure leaves below white: of fully
-/// developed speckle, those below three times its mean.
+/// The fraction of the lit pixels that the automatic exposure leaves below white: in fully
+/// developed speckle, the pixels below three times the mean.
 const BELOW_WHITE: f64 = 0.95;
 
 /// A pixel counts as lit if it is brighter than this fraction of the brightest.
@@ -18,7 +18,7 @@ const LIT: f32 = 0.01;
 pub(crate) struct Picture(Grid<[f32; 3]>);
 
 impl Picture {
-    /// Starts with darkness.
+    /// Creates a dark picture.
     ///
     /// # Panics
     ///

@@ -29,11 +29,12 @@ use crate::{
     summary::{FrameSummary, lasers},
 };
 
-/// Renders a scene and prints the names of the files that it is in.
+/// Renders a scene and prints the names of its image files.
 ///
 /// # Errors
 ///
-/// Returns a failure if the input is not valid, a file cannot be written or the user ends it.
+/// Returns a failure if the input is not valid, a file cannot be written or the user interrupts the
+/// render.
 pub fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure> {
     let files = args.common.files.with(args.crop.as_ref());
     let read = SceneFile::read_with(&args.common.scene, files.reading(), |document, _| {
@@ -98,7 +99,7 @@ fn check(args: &RenderArgs, scene: &Scene, out: &mut impl Write) -> Result<(), F
     }
 }
 
-/// Returns the scene with what the command line overrules.
+/// Returns the scene with the values that the command line overrides.
 fn overruled(mut scene: Scene, args: &RenderArgs) -> Scene {
     let options = &mut scene.render;
     args.common.overrule(options);

@@ -21,7 +21,7 @@ use tem00_statistics::{
 
 use crate::args::SpeckleArgs;
 
-/// Prints what is known of the speckle of a camera without a scene.
+/// Prints the properties of a camera's speckle that do not need a scene.
 ///
 /// # Errors
 ///
@@ -43,8 +43,8 @@ struct Speckle {
     decorrelation: [Decorrelation; 5],
 }
 
-/// A change that decorrelates speckle, and its amounts that leave half of the pattern and none, in
-/// SI units.
+/// A change that decorrelates speckle, with the amounts after which half of the pattern and nothing
+/// of it is left, in SI units.
 #[derive(Debug)]
 struct Decorrelation {
     by: &'static str,
@@ -75,7 +75,7 @@ impl Speckle {
             f_number: args.f_number,
             pupil_magnification: args.pupil_magnification,
             focus: Focus::SurfaceToPupil(args.distance),
-            // Nothing that is told without a pitch depends on it.
+            // No value that is printed without a pitch depends on this one.
             pixel_pitch: args.pixel_pitch.unwrap_or(args.wavelength),
         })?;
         Ok(Self {
@@ -195,16 +195,16 @@ impl Speckle {
     }
 }
 
-/// A length in the unit that suits it.
+/// Formats a length in the unit that suits it.
 fn length(metres: f64) -> Cell {
     Unit::of_length(metres).quantity(metres)
 }
 
-/// Returns what decorrelates the speckle of a surface that faces the camera, under collimated light
-/// at an angle to the line of sight, in radians.
+/// Returns the changes that decorrelate the speckle of a surface that faces the camera, under
+/// collimated light at an angle to the line of sight, in radians.
 ///
-/// Across, tilt and wavelength slide the speckle field over the pupil, in proportion while they are
-/// small; along the sight the field is defocused.
+/// Small transverse motions, tilts and wavelength changes shift the speckle field over the pupil in
+/// proportion to their size; a motion along the line of sight defocuses the field.
 fn decorrelation(
     geometry: &ImagingGeometry,
     angle: f64,
@@ -213,7 +213,7 @@ fn decorrelation(
     let axial = geometry.axial_decorrelation_length();
     let [across, tilt, wavelength] = pupil_shifts(geometry, angle)?;
     let halving = equivalent_pupil_shift(0.5)?;
-    // What rounding leaves of a shift is none.
+    // A shift at the level of rounding counts as zero.
     let reach = |shift: f64| (shift > 1e-9).then(|| geometry.pupil_diameter() / shift);
     let sliding = |reach: Option<f64>| reach.map(|reach| [halving * reach, reach]);
     let by_wavelength = reach(wavelength).map(|share| share * geometry.wavelength());
@@ -247,7 +247,7 @@ fn pupil_shifts(
     geometry: &ImagingGeometry,
     angle: f64,
 ) -> Result<[f64; 3], tem00_decorrelation::Refusal> {
-    /// Small enough for the first order, large enough for rounding.
+    /// Small enough for the first order to hold, large enough against rounding.
     const STEP: f64 = 1e-6;
     let pupil = geometry.surface_to_pupil() * DVec3::Z;
     let (sine, cosine) = angle.sin_cos();
@@ -303,7 +303,7 @@ mod tests {
         }
     }
 
-    /// Returns what leaves half of the pattern, and nothing.
+    /// Returns the amounts that leave half of the pattern, and nothing of it.
     fn half_and_none(speckle: &Speckle, change: &str) -> Option<[f64; 2]> {
         let mut changes = speckle.decorrelation.iter();
         let change = changes.find(|found| found.by == change);

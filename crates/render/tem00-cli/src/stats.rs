@@ -28,20 +28,20 @@ use crate::{
 use curves::{Curves, Measured};
 use findings::Findings;
 
-/// The fewest pixels along an axis that hold a speckle and its surroundings.
+/// The minimum number of pixels along an axis for a speckle and its surroundings.
 const FEWEST_PIXELS: usize = 8;
 
-/// The window of the local mean in speckle sizes, by default: it takes 0.3 % of the
-/// variance, which is put back.
+/// The default window of the local mean, in speckle sizes: it removes 0.3 % of the variance, which
+/// a correction restores.
 const WINDOW: f64 = 20.0;
 
-/// The smallest window in speckle sizes that is taken by default.
+/// The smallest window that is chosen by default, in speckle sizes.
 const MIN_WINDOW: f64 = 8.0;
 
-/// The smallest window in speckle sizes for which what is taken is known.
+/// The smallest window for which the removed variance is known, in speckle sizes.
 const SMALLEST_WINDOW: f64 = 6.0;
-/// The bytes that it takes to measure a pixel, most of them for the lags of the autocovariance, of
-/// which there are four for each.
+/// The memory needed to measure one pixel, in bytes: most of it holds the lags of the
+/// autocovariance, of which there are four for each pixel.
 const BYTES_PER_PIXEL: u64 = 100;
 
 /// The statistics of an image.
@@ -57,7 +57,7 @@ struct Measurement {
     curves: Curves,
 }
 
-/// Measures an image, prints the table, or JSON, and draws the page asked for.
+/// Measures an image, prints the table, or JSON, and draws the requested page.
 ///
 /// # Errors
 ///
@@ -99,7 +99,7 @@ pub(crate) fn run(args: &StatsArgs, out: &mut impl Write) -> Result<(), Failure>
     measurement.report().print(args.json, &[], out)
 }
 
-/// Measures an image, flattened if that was asked for.
+/// Measures an image, flattened on request.
 fn measurement(args: &StatsArgs, image: &LoadedImage) -> Result<Measurement, Failure> {
     let flat = args.flatten.map(|window| flattened(&image.values, window));
     let flat = flat.transpose().map_err(|error| {
@@ -158,7 +158,8 @@ impl Measurement {
     }
 }
 
-/// Divides an image by its mean over windows of so many pixels, or as many as its speckle wants.
+/// Divides an image by its mean over windows of `window` pixels, or of a width that suits its
+/// speckle.
 fn flattened(image: &Grid<f32>, window: Option<usize>) -> Result<FlatImage, String> {
     let words = |error: StatisticsError| error.to_string();
     let shorter = image.width().min(image.height());
@@ -185,9 +186,9 @@ fn flattened(image: &Grid<f32>, window: Option<usize>) -> Result<FlatImage, Stri
 
 /// Returns the size of the speckle in uneven light, and the largest window that follows the light.
 ///
-/// Light makes speckles seem larger than they are: it is taken out before they are measured. Where
-/// the image does not hold eight of what is left, that is light as well, and smaller windows are
-/// tried until speckle fills them.
+/// Uneven light makes speckles appear larger than they are, so it is divided out before they are
+/// measured. If the image does not hold eight of the remaining structures, these are uneven light
+/// as well, and smaller windows are tried until speckle fills them.
 fn size_in_light(image: &Grid<f32>) -> Result<(f64, usize), StatisticsError> {
     let shorter = image.width().min(image.height());
     let size_over = |window| size_in(&FlatImage::new(image, window)?);
@@ -216,7 +217,7 @@ fn size_in(flat: &FlatImage) -> Result<f64, StatisticsError> {
     }
 }
 
-/// Returns the whole pixels that hold a length.
+/// Returns the number of whole pixels that hold a length.
 fn pixels(length: f64) -> usize {
     to_usize(length.ceil())
 }

@@ -21,7 +21,7 @@ pub(crate) struct Exposure {
 impl Exposure {
     /// The white level that the user asked for.
     pub(crate) fn asked(level: f64) -> Self {
-        // What f32 cannot hold is shown as black or white all the same.
+        // A level beyond the range of f32 shows everything as black or white anyway.
         let white_level = to_f32(level).clamp(f32::MIN_POSITIVE, f32::MAX);
         Self::chosen(white_level, "as asked")
     }
@@ -53,7 +53,7 @@ pub(crate) struct FrameSummary {
     pub(crate) number: u32,
     pub(crate) preview: String,
     pub(crate) layers: String,
-    /// The hashes of both files, by which they are known to belong to this record.
+    /// The hashes of both files, which identify them as the files of this record.
     pub(crate) preview_fnv1a: String,
     pub(crate) layers_fnv1a: String,
     pub(crate) lasers: Vec<FrameLaser>,
@@ -72,10 +72,10 @@ pub(crate) struct FrameLaser {
     /// Power on the target relative to the power of the laser: 1 if the whole footprint is in the
     /// image.
     pub(crate) power_ratio: f64,
-    /// The standard error of that ratio; `None` with one sample in a pixel.
+    /// The standard error of the power ratio; `None` with one sample per pixel.
     pub(crate) power_ratio_error: Option<f64>,
     /// The contrast of the speckle in the lit pixels; `None` without speckle, without light, or
-    /// where what to expect is not known.
+    /// where the expected contrast is not known.
     pub(crate) contrast: Option<ContrastSummary>,
 }
 
@@ -118,7 +118,7 @@ impl FrameLaser {
         samples_per_pixel: u32,
     ) -> Self {
         let size = plan.map(PatternPlan::speckle_size_in_pixels);
-        // Fewer than two lit pixels, or an even factor: there is no contrast to speak of.
+        // Fewer than two lit pixels, or an even factor: there is no contrast to measure.
         let contrast = size.and_then(|size| contrast(layers, size, samples_per_pixel).ok());
         Self {
             power_on_target: layers.power_on_target,
@@ -149,7 +149,7 @@ fn contrast(
 }
 
 /// Returns the contrast of fully developed speckle in square pixels, each the mean of n samples
-/// that lie in it as those of a render do.
+/// that lie in it as in a render.
 ///
 /// ```text
 /// C² = ⟨c(d / h)⟩        h in pixels, d from sample to sample, c the autocovariance

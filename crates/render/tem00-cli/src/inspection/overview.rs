@@ -11,15 +11,15 @@ use tem00_geometry::Shape;
 use tem00_report::plot::Drawing;
 use tem00_tracer::Scene;
 
-/// The side of a view, and the room about it, in units of the drawing.
+/// The side of a view, and the margin around it, in units of the drawing.
 const SIDE: f64 = 380.0;
 const MARGIN: f64 = 24.0;
 /// The room for the title above, and for the scale below.
 const TITLE: f64 = 28.0;
 const SCALE: f64 = 36.0;
-/// Corners of the outline of something round.
+/// The number of corners in the outline of a round shape.
 const ROUND: u32 = 72;
-/// The most surfaces that are named.
+/// The maximum number of surfaces that are named.
 const MAX_NAMES: usize = 24;
 
 const PART: &str = "#808080";
@@ -50,7 +50,7 @@ impl View {
     }
 }
 
-/// Draws a scene as it stands in a frame, with the ways of the light of its lasers.
+/// Draws a scene as it stands in a frame, with the light paths of its lasers.
 pub(super) fn draw(scene: &Scene, frame: u32, lasers: &[LaserInspection]) -> Drawing {
     let content = Content {
         scene,
@@ -181,7 +181,7 @@ impl Panel<'_> {
         })));
     }
 
-    /// Draws what of a line lies in the panel.
+    /// Draws the part of a line that lies in the panel.
     fn line(&self, ends: [DVec2; 2], width: f64, colour: &str, canvas: &mut Canvas) {
         let low = DVec2::new(self.left, TITLE);
         let ends = clipped(ends.map(|p| self.place(p)), [low, low + SIDE]);
@@ -239,8 +239,8 @@ fn aperture(laser: &LaserInspection) -> Option<DVec3> {
     way.first().copied()
 }
 
-/// Returns the eye of the camera and the corners of what it shows at the distance in focus, in
-/// metres.
+/// Returns the position of the camera and the corners of its field of view at the focus distance,
+/// in metres.
 fn pyramid(camera: &Camera) -> [DVec3; 5] {
     let [width, height] = [camera.width(), camera.height()].map(|pixels| pixels as f64);
     let distance = camera.description().focus_distance;

@@ -80,7 +80,7 @@ fn why(scene: &Scene, part: &LightPart) -> String {
     }
 }
 
-/// Says on which pixel a spot falls, and which the image has.
+/// Says on which pixel a spot falls, and which pixels the image has.
 fn beside(scene: &Scene, part: &LightPart) -> String {
     let camera = &scene.camera;
     let [width, height] = [camera.width(), camera.height()];

@@ -1,4 +1,4 @@
-//! Measurements of a pattern beside the theory.
+//! Measurements of a pattern, compared with the theory.
 
 use core::fmt::Display;
 
@@ -36,7 +36,7 @@ pub(super) struct Comparison {
 }
 
 impl Comparison {
-    /// Adds what was measured, or says that it could not be.
+    /// Adds the measured rows, or a note that they could not be measured.
     fn add<R: IntoIterator<Item = Row>>(
         &mut self,
         what: &dyn Display,
@@ -51,11 +51,11 @@ impl Comparison {
     }
 }
 
-/// Measures the pattern and lists what theory says.
+/// Measures the pattern and lists the predictions of the theory.
 ///
 /// # Errors
 ///
-/// Returns a failure if the user asked for the end, which is looked for before each pass.
+/// Returns a failure if the user has interrupted the program, which is checked before each pass.
 pub(super) fn compare(field: &PupilField, pattern: &SpecklePattern) -> Result<Comparison, Failure> {
     let values = pattern.values();
     let mut found = Comparison::default();
@@ -87,7 +87,8 @@ pub(super) fn compare(field: &PupilField, pattern: &SpecklePattern) -> Result<Co
 
 fn mean_row(field: &PupilField, values: &Grid<f32>) -> Result<Row, StatisticsError> {
     let mean = Moments::from_samples(values.values())?.mean();
-    // Parseval fixes the mean of unit phasors; what is left is the rounding of an f32 transform.
+    // Parseval fixes the mean of unit phasors; the remaining error is the rounding of an f32
+    // transform.
     let rounding = 1e-5;
     let spread = match field.phasors() {
         Some(Phasors::Unit) | None => rounding,
@@ -120,7 +121,7 @@ fn contrast_row(field: &PupilField, values: &Grid<f32>) -> Result<Row, Statistic
 /// 2 √(Σ A(m)²) / N² = 2 (C / N) √(∬ overlap²)        A(m) = N overlap(m / C)
 /// ```
 ///
-/// The rows of a rectangle may be few, so that the sum stays one.
+/// A rectangle may have few rows, so its sum is not replaced by the integral.
 fn contrast_squared_spread(field: &PupilField) -> f64 {
     const STEPS: u32 = 200;
     let (count, [diameter, _]) = (field.phasor_count() as f64, field.diameter());
@@ -140,7 +141,8 @@ fn contrast_squared_spread(field: &PupilField) -> f64 {
     2.0 * diameter / count * integral.sqrt()
 }
 
-/// Adds the speckle size along both axes, beside that of the pupil's exact autocovariance.
+/// Adds the speckle size along both axes, compared with the size by the exact autocovariance of the
+/// pupil.
 fn sizes(found: &mut Comparison, field: &PupilField, values: &Grid<f32>) -> Result<(), Failure> {
     let measured = match autocovariance(values, Boundary::Periodic) {
         Ok(measured) => measured,
@@ -160,7 +162,7 @@ fn sizes(found: &mut Comparison, field: &PupilField, values: &Grid<f32>) -> Resu
 fn size_row(field: &PupilField, lags: &Grid<f32>, axis: Axis) -> Result<Row, StatisticsError> {
     let measured = SpeckleSize::along(axis, lags)?;
     let theory = SpeckleSize::along(axis, &exact_autocovariance(field, axis, measured))?;
-    // The size spreads by the share 0.58 / n in a pattern of n × n speckles.
+    // The relative standard deviation of the size is 0.58 / n in a pattern of n × n speckles.
     let tolerance = SIGMAS * 0.58 / field.effective_diameter() * theory;
     let quantity = format!("speckle size {axis} (samples)");
     Ok(Row::new(
@@ -170,8 +172,8 @@ fn size_row(field: &PupilField, lags: &Grid<f32>, axis: Axis) -> Result<Row, Sta
     ))
 }
 
-/// Returns the autocovariance of the pupil at the lags along one axis, up to some times the
-/// measured size; the rest is left 0.
+/// Returns the autocovariance of the pupil at the lags along one axis, up to a multiple of the
+/// measured size; the other lags are left 0.
 fn exact_autocovariance(field: &PupilField, axis: Axis, size: f64) -> Grid<f32> {
     let lags = (to_usize((8.0 * size).ceil()) + 8).min(field.size()[0]);
     let covariance = |lag: usize| {
@@ -207,7 +209,7 @@ fn distribution_rows(field: &PupilField, values: &Grid<f32>) -> Result<[Row; 2],
 }
 
 /// Returns the distance of practically independent samples: the first zero of the autocovariance of
-/// the disc as narrow as the pupil.
+/// a disc as narrow as the pupil.
 fn stride(field: &PupilField) -> usize {
     let narrowest = match field.pupil() {
         Pupil::Rectangle { height } => *height,

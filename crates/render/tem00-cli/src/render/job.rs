@@ -26,11 +26,11 @@ pub(super) enum Patterns {
     Reference(ReferenceSpeckle),
 }
 
-/// A render that is set up.
+/// A render that is ready to start.
 pub(super) struct Render<'a> {
     pub(super) args: &'a RenderArgs,
     pub(super) scene: Scene,
-    /// The frames that were asked for.
+    /// The requested frames.
     pub(super) frames: IndexRange,
     pub(super) name: String,
     pub(super) folder: PathBuf,
@@ -52,7 +52,7 @@ impl<'a> Render<'a> {
             .then(|| SpecklePlan::new(&scene, options.seed))
             .transpose()
             .map_err(|error| tracer_failure(&args.common.scene, &error))?;
-        // The text as well: standard input is none of the files.
+        // The text is included, because standard input is not one of the files.
         let changes = args.common.files.reading().changes;
         let choices = (options, plan.is_some(), args.reference, text, changes);
 
@@ -77,7 +77,7 @@ impl<'a> Render<'a> {
         Ok(render)
     }
 
-    /// Makes sure, before the work, that no folder stands where a file goes.
+    /// Checks, before the work starts, that no folder has the name of an output file.
     pub(super) fn check_targets(&self) -> Result<(), Failure> {
         let frames = self.scene.frames;
         let of_frames = (self.frames.first..=self.frames.last).flat_map(|number| {
@@ -100,8 +100,8 @@ impl<'a> Render<'a> {
         self.folder.join(format!("{}.json", self.name))
     }
 
-    /// Warns, before the work, about lasers of which the camera will see no light, and draws the
-    /// scene then.
+    /// Warns, before the work starts, about lasers whose light the camera will not see, and in that
+    /// case draws the scene.
     pub(super) fn warn_of_darkness(&self) -> Result<(), Failure> {
         let found = Inspection::new(&self.scene, self.frames)
             .map_err(|error| tracer_failure(&self.args.common.scene, &error))?;
@@ -157,12 +157,12 @@ impl<'a> Render<'a> {
     }
 }
 
-/// Returns the frames that the command line asks for, of the `count` that the scene has; all of
-/// them if it asks for none.
+/// Returns the frames that the command line selects of the `count` frames of the scene, or all of
+/// them without a selection.
 ///
 /// # Errors
 ///
-/// Returns a failure if the scene has fewer.
+/// Returns a failure if the scene has fewer frames than the selection needs.
 pub fn frames(asked: Option<IndexRange>, count: u32) -> Result<IndexRange, Failure> {
     let last = count.saturating_sub(1);
     let asked = asked.unwrap_or(IndexRange { first: 0, last });
@@ -178,7 +178,7 @@ pub fn frames(asked: Option<IndexRange>, count: u32) -> Result<IndexRange, Failu
     ))
 }
 
-/// Returns the failure of a tracer, and what to change.
+/// Returns the failure of a tracer, with advice on what to change.
 pub fn tracer_failure(path: &Path, error: &TracerError) -> Failure {
     let help = match error {
         TracerError::PatternMemory { needed, allowed } => format!(
@@ -203,7 +203,7 @@ pub fn tracer_failure(path: &Path, error: &TracerError) -> Failure {
     Failure::refused(no_memory, message, help)
 }
 
-/// A number of bytes in KiB, or MiB where those are many, rounded up.
+/// Formats a number of bytes in KiB, or in MiB if there are many, rounded up.
 pub(super) fn binary(bytes: u64) -> String {
     match bytes.div_ceil(1 << 10) {
         few @ ..16_384 => format!("{few} KiB"),

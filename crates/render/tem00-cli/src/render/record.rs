@@ -1,4 +1,4 @@
-//! The record of a finished frame, by which a later run need not render it again.
+//! The record of a finished frame, which lets a later run skip the frame.
 
 use std::{
     collections::HashSet,
@@ -20,7 +20,7 @@ use crate::summary::{Exposure, FrameSummary};
 /// A number that distinguishes renders: it changes with the scene, with each file that belongs to
 /// it, with the choices on the command line and with the version of the program.
 ///
-/// It is the 64-bit FNV-1a hash of them all. Two renders share it by chance once in 10¹⁹ pairs.
+/// It is the 64-bit FNV-1a hash of all of these. Two renders share it by chance once in 10¹⁹ pairs.
 #[derive(Clone, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub(super) struct Fingerprint(String);
 
@@ -43,7 +43,7 @@ impl Fingerprint {
                 Failure::running(format!("cannot read {}: {error}", path.display()))
             })?;
         }
-        // Mesh files can name further files, which the list of files does not have.
+        // Mesh files can name further files, which are missing from the list of files.
         let mut known = HashSet::new();
         for mesh in meshes(scene) {
             if known.insert(Arc::as_ptr(mesh)) {
@@ -91,7 +91,7 @@ impl Fnv {
         }
     }
 
-    /// Adds bytes and their number, so that they do not run into those that follow.
+    /// Adds bytes and their number, which separates them from the bytes that follow.
     fn add(&mut self, bytes: &[u8]) {
         self.bytes(bytes);
         self.bytes(&(bytes.len() as u64).to_le_bytes());
@@ -152,7 +152,8 @@ pub(super) enum Found {
 }
 
 impl Record {
-    /// Reads the record of the frame `number`, if there is one of the render `fingerprint`.
+    /// Reads the record of frame `number`, and tells whether it belongs to the render
+    /// `fingerprint`.
     pub(super) fn find(path: &Path, number: u32, fingerprint: &Fingerprint) -> Found {
         let Ok(text) = read_input(path, MAX_TEXT_BYTES) else {
             return Found::Nothing;
@@ -173,7 +174,7 @@ impl Record {
         }
     }
 
-    /// Writes the record, the last act of finishing a frame.
+    /// Writes the record, the last step in finishing a frame.
     ///
     /// # Errors
     ///

@@ -18,7 +18,8 @@ pub(super) fn note_invisible_lasers(scene: &Scene) {
     }
 }
 
-/// Warns about surfaces that are too smooth for the theory of speckle, the first few of many.
+/// Warns about surfaces that are too smooth for the theory of speckle; of many, it names the first
+/// few.
 pub(super) fn note_roughness(notes: &[RoughnessNote]) {
     const TOLD: usize = 8;
     for line in notes.iter().take(TOLD) {

@@ -28,12 +28,12 @@ pub(super) struct Sequence {
 }
 
 impl Render<'_> {
-    /// Renders and writes all frames that were asked for and are not finished.
+    /// Renders and writes all requested frames that are not finished.
     ///
     /// # Errors
     ///
-    /// Returns a failure if a frame cannot be rendered or written, if the folder holds the frames
-    /// of another render to go on with, or if the user ends it.
+    /// Returns a failure if a frame cannot be rendered or written, if the render is to resume in a
+    /// folder with frames of another render, or if the user interrupts it.
     pub(super) fn sequence(&self) -> Result<Sequence, Failure> {
         let missing = self.missing()?;
         let mut exposure = self.known_exposure();
@@ -75,8 +75,8 @@ impl Render<'_> {
         Ok(())
     }
 
-    /// Returns the frames to render: those that were asked for, without the finished ones if the
-    /// render goes on.
+    /// Returns the frames to render: the requested frames, without the finished ones if the render
+    /// resumes.
     fn missing(&self) -> Result<Vec<u32>, Failure> {
         let asked = self.frames.first..=self.frames.last;
         if !self.args.resume {
@@ -119,9 +119,9 @@ impl Render<'_> {
         Record::find(&self.paths(number).record, number, &self.fingerprint)
     }
 
-    /// Returns the exposure that was asked for, or that frame 0 of this render set before.
+    /// Returns the requested exposure, or the exposure that frame 0 of this render set before.
     ///
-    /// A frame 0 that is to be rendered sets it anew, to the same.
+    /// If frame 0 is to be rendered again, it sets the same exposure again.
     fn known_exposure(&self) -> Option<Exposure> {
         match (self.scene.render.white_level, self.find(0)) {
             (Some(level), _) => Some(Exposure::asked(level)),
@@ -165,7 +165,7 @@ impl Render<'_> {
         })
     }
 
-    /// Writes the images of a frame, then the record that says that they are whole.
+    /// Writes the images of a frame, then the record that marks them as complete.
     fn write(
         &self,
         number: u32,
@@ -183,7 +183,7 @@ impl Render<'_> {
         let camera = &self.scene.camera;
         let size = [camera.width(), camera.height()];
         write_layers(&paths.layers, frame, &picture, size).inspect_err(|_| {
-            // Half a result is none; that the preview may be gone already is no matter.
+            // An incomplete result is removed; the preview may be gone already.
             let _ = std::fs::remove_file(&paths.preview);
         })?;
         let record = Record {
@@ -232,8 +232,8 @@ impl Render<'_> {
         })
     }
 
-    /// Returns whether the expected contrast is that of one pattern, averaged over the area of a
-    /// pixel by a fixed number of camera samples.
+    /// Returns whether the expected contrast is known: the contrast of one pattern, averaged over
+    /// the area of a pixel by a fixed number of camera samples.
     fn knows_contrast(&self) -> bool {
         let mut surfaces = self.scene.surfaces.iter();
         self.scene.render.method == Method::Path
@@ -242,8 +242,8 @@ impl Render<'_> {
             && surfaces.all(|surface| surface.speckle == SurfaceSpeckle::default())
     }
 
-    /// Returns the number of samples that a frame took: where they depend on the light, those that
-    /// its pixels are made of.
+    /// Returns the number of samples of a frame. If the number depends on the light, it counts the
+    /// samples in the pixels.
     fn samples_of(&self, frame: &Frame) -> u64 {
         match self.scene.render.sampling {
             Sampling::Even => self.samples_per_frame(),
@@ -266,7 +266,7 @@ impl Render<'_> {
     }
 }
 
-/// Returns whether the images that stand beside a record are those that it was written for.
+/// Returns whether the images next to a record are the images that it was written for.
 fn belong_to(frame: &FrameSummary, paths: &FramePaths) -> bool {
     let is = |path: &Path, hash: &String| hash_of_file(path).is_ok_and(|found| found == *hash);
     is(&paths.preview, &frame.preview_fnv1a) && is(&paths.layers, &frame.layers_fnv1a)

@@ -29,7 +29,7 @@ pub(super) struct Curves {
 pub(super) struct Bin {
     pub(super) from: f64,
     pub(super) to: f64,
-    /// The fraction of the pixels over the width of the bin.
+    /// The fraction of the pixels in the bin, divided by the width of the bin.
     pub(super) density: f64,
     /// The mean density of the exponential law over the bin.
     pub(super) exponential: f64,
@@ -51,10 +51,10 @@ pub(super) struct Lag {
 /// The power spectrum averaged over a ring.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(super) struct Frequency {
-    /// In cycles per pixel. Where speckles are longer than wide, or the other way round, those
-    /// along x and y are scaled so that the spectrum is round.
+    /// The spatial frequency, in cycles per pixel. For elongated speckles, the frequencies along x
+    /// and y are scaled so that the spectrum is round.
     pub(super) frequency: f64,
-    /// In pixels² per unit variance.
+    /// The power spectrum, in pixels² per unit variance.
     pub(super) power: f64,
     /// The spectrum of a circular pupil of the measured size.
     pub(super) chat: Option<f64>,
@@ -106,7 +106,7 @@ impl Measured<'_> {
         bins.collect()
     }
 
-    /// Returns the edges of the bins, in units of the mean; those of a rounded image lie between
+    /// Returns the edges of the bins, in units of the mean; for a rounded image they lie between
     /// its levels.
     fn histogram_edges(&self) -> Vec<f64> {
         // A hot pixel alone can make the contrast exceed 1 by far.
@@ -145,8 +145,9 @@ impl Measured<'_> {
 
     /// Averages the power spectrum over rings.
     ///
-    /// The image is faded out towards its edges by a Hann window, so that their jumps do not show;
-    /// the two rings next to zero frequency, which the window blurs into it, are left out.
+    /// The image is faded out towards its edges by a Hann window, which hides the jumps at the
+    /// edges. The two rings next to zero frequency are left out, because the window blurs zero
+    /// frequency into them.
     fn power_spectrum(&self) -> Result<Vec<Frequency>, StatisticsError> {
         let (width, height) = (self.values.width(), self.values.height());
         let (fade_x, fade_y) = (hann(width), hann(height));
@@ -210,7 +211,7 @@ mod tests {
             let bins = curves.histogram.iter();
             bins.map(|bin| bin.density * (bin.to - bin.from)).sum()
         };
-        // Sums of at most 80 rounded shares.
+        // Sums of at most 80 rounded fractions.
         assert!((shares(&curves(&image(), None)) - 1.0).abs() < 1e-13, "raw");
         let rounded = image().map(|value| value.round());
         let levels = GreyLevels::from_values(rounded.values()).expect("few levels");
@@ -243,7 +244,7 @@ mod tests {
     #[test]
     fn curves_follow_the_theory() {
         let found = curves(&image(), None);
-        // 100² · π/4 / … independent pixels: a bin of the share p has √(p / 8000), 0.016 · √0.18
+        // 100² · π/4 / … independent pixels: a bin of the fraction p has √(p / 8000), 0.016 · √0.18
         // at most, over the width 0.2; 4 σ.
         for bin in &found.histogram {
             let off = bin.density - bin.exponential;

@@ -1,4 +1,4 @@
-//! The rows of the table, measured beside the theory.
+//! The rows of the table: measured values compared with the theory.
 
 use tem00_numerics::Grid;
 use tem00_report::{digits::number, image::LoadedImage};
@@ -20,26 +20,26 @@ const SIGMAS: f64 = 4.0;
 /// The level of the interval of the contrast.
 const CONFIDENCE: f64 = 0.95;
 
-/// The smallest p-value that passes for chance.
+/// The smallest p-value that counts as chance.
 const SIGNIFICANCE: f64 = 1e-3;
 
-/// The fewest independent samples that say something about a distribution.
+/// The minimum number of independent samples for a statement about a distribution.
 const FEWEST_SAMPLES: usize = 20;
 
-/// The smallest mean, in grey levels, from which on rounding hardly moves the fit of a Gamma law:
-/// by 0.8 %, falling with the square.
+/// The smallest mean, in grey levels, at which rounding hardly changes the fit of a Gamma law: by
+/// 0.8 %. The change falls with the square of the mean.
 const COARSE: f64 = 5.0;
 
-/// Rounding of a mean of more grey levels than this shows in nothing that is measured here.
+/// The mean, in grey levels, above which rounding affects none of the measured quantities.
 const FINE: f64 = 100.0;
 
-/// The smallest local mean by the largest below which noise may show in the quotient.
+/// The ratio of the smallest to the largest local mean below which noise may show in the quotient.
 const DARK: f64 = 0.1;
 
 /// The results so far.
 pub(super) struct Findings<'a> {
     pub(super) values: &'a Grid<f32>,
-    /// The image that the values are of, if it was divided by its local mean.
+    /// The flattened image that holds the values, if the image was divided by its local mean.
     pub(super) flat: Option<&'a FlatImage>,
     pub(super) levels: Option<&'a GreyLevels>,
     pub(super) mean: f64,
@@ -71,7 +71,7 @@ impl Findings<'_> {
         self.open("mean", mean);
         if let Some(levels) = self.levels {
             let linear = levels.are_multiples().then(|| levels.step());
-            // The levels of a mean of channels lie closer than those of a channel.
+            // The levels of a mean of channels lie closer than the levels of one channel.
             if let Some(step) = image.step.or(linear.filter(|_| image.unit.is_some())) {
                 self.open("mean (grey levels)", mean / step);
             }
@@ -88,12 +88,12 @@ impl Findings<'_> {
         }
     }
 
-    /// Warns if the darkest values say that darkness has a grey value of its own, in even light.
+    /// Warns if the darkest values in even light show that darkness has a grey value above zero.
     ///
-    /// A thousandth of the pixels of speckle are darker than a thousandth of the mean; where
-    /// patterns are added or pixels are large there are fewer dark ones, but then the law is less
-    /// skew: its skewness is twice the contrast or a little more. A pedestal lowers the contrast
-    /// alone.
+    /// In speckle, a thousandth of the pixels are darker than a thousandth of the mean. Where
+    /// patterns are added or pixels are large, fewer pixels are dark, but then the distribution is
+    /// less skewed: its skewness is twice the contrast or a little more. A pedestal lowers only the
+    /// contrast.
     pub(super) fn pedestal(
         &mut self,
         image: &LoadedImage,
@@ -194,7 +194,7 @@ impl Findings<'_> {
         Ok(())
     }
 
-    /// Returns the contrast of an exponential law, behind the rounding of the image.
+    /// Returns the contrast of an exponential law, after the rounding of the image.
     fn exponential(&self) -> f64 {
         self.levels
             .map_or(1.0, |levels| levels.exponential_contrast(self.mean))
@@ -202,15 +202,15 @@ impl Findings<'_> {
 
     /// Returns the standard deviation, from image to image, of the contrast of evenly lit speckle.
     ///
-    /// It is that of a Gamma law of this contrast, `C √((1 + C²)/2)` over the root of the number of
-    /// independent samples.
+    /// It is the value for a Gamma law of this contrast: `C √((1 + C²)/2)` divided by the square
+    /// root of the number of independent samples.
     fn spread(&self, contrast: f64, size: Option<SpeckleSize>) -> Result<f64, StatisticsError> {
         let of_image = self.of_image(size)?.standard_error() / self.contrast.standard_error();
         let of_sample = contrast * (0.5 * (1.0 + contrast * contrast)).sqrt();
         Ok(of_sample * of_image / (self.values.values().len() as f64).sqrt())
     }
 
-    /// Returns the contrast with the standard error of pixels that share speckles.
+    /// Returns the contrast with its standard error for pixels that share speckles.
     fn of_image(&self, size: Option<SpeckleSize>) -> Result<Contrast, StatisticsError> {
         size.map_or(Ok(self.contrast), |size| {
             self.contrast.with_speckle_size(size.mean())
@@ -245,7 +245,7 @@ impl Findings<'_> {
         }
     }
 
-    /// Compares the contrast with that of point-like pixels and of pixels without gaps.
+    /// Compares the contrast with the contrast for point-like pixels and for pixels without gaps.
     pub(super) fn contrast(&mut self, size: Option<SpeckleSize>) -> Result<(), StatisticsError> {
         let contrast = self.of_image(size)?;
         let scale = size.map_or(1.0, |size| size.mean());
@@ -273,11 +273,12 @@ impl Findings<'_> {
         Ok(())
     }
 
-    /// Returns the contrast behind pixels without gaps, and how much the error of the measured size
+    /// Returns the contrast for pixels without gaps, and how much the error of the measured size
     /// may change it.
     fn gapless_contrast(&self, size: SpeckleSize) -> Option<[f64; 2]> {
         let area = self.values.values().len() as f64;
-        // From image to image the size spreads by the share 0.62 / n in n × n speckles.
+        // From image to image, the relative standard deviation of the size is 0.62 / n in n × n
+        // speckles.
         let spread = 0.62 * size.mean() / area.sqrt();
         let wider = size.mean() * (1.0 + SIGMAS * spread);
         let [theory, bound] = [size.mean(), wider]
@@ -346,7 +347,7 @@ impl Findings<'_> {
             }
             fit => fit?,
         };
-        // The fit is too large by a share below 3/n.
+        // The fit is too large by a fraction below 3/n.
         let bias = 3.0 / samples.len() as f64;
         let theory = Expectation::near(1.0, SIGMAS * fit.standard_error() + bias);
         self.row("shape of Gamma", fit.shape(), theory);

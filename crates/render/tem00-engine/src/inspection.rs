@@ -10,34 +10,35 @@ use crate::{
     walk::{Carried, Met, Roulette, Visitor, Walk, Walker},
 };
 
-/// Rays of each laser, and rays of the camera, that are followed.
+/// The number of rays that are followed from each laser, and from the camera.
 const RAYS: u32 = 4096;
-/// Rays of each laser whose way is kept.
+/// The number of rays of each laser whose path is kept.
 const KEPT: usize = 64;
 /// The maximum number of mirrors and glass surfaces that a ray is followed over.
 const MAX_SPECULAR: u32 = 16;
-/// The fraction of a laser's power from which on it counts as seen in the image.
+/// The minimum fraction of a laser's power in the image for the laser to count as seen.
 const MIN_FRACTION: f64 = 1e-5;
 
 /// Fate of a laser's light on its way to the camera, in one frame.
 ///
 /// It is found from two sides. Rays drawn from the beam are followed over mirrors and through glass
-/// to their first rough surface, and from there straight to the camera. Rays of the camera are
-/// followed over mirrors and through glass to their first rough surface, and from there straight to
+/// to their first rough surface, and from there directly to the camera. Rays of the camera are
+/// followed over mirrors and through glass to their first rough surface, and from there directly to
 /// the laser. Light that meets rough surfaces one after the other does not count.
 ///
 /// # Validity
 ///
-/// 4096 rays from either side: what fewer than one in a thousand of them find may be missed.
+/// 4096 rays are followed from either side: light that fewer than one in a thousand of them find
+/// may be missed.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LaserInspection {
     /// The fates of the light, the largest fraction first.
     pub parts: Vec<LightPart>,
-    /// The part of the laser's power, from 0 to about 1, on what the image shows: rough surfaces
-    /// seen straight, in mirrors or through glass, and lit straight by the laser.
+    /// The fraction of the laser's power, from 0 to about 1, that falls on surfaces in the image:
+    /// rough surfaces seen directly, in mirrors or through glass, and lit directly by the laser.
     pub fraction_in_image: f64,
-    /// The corners of the ways of the first 64 rays, from the aperture to their first rough
+    /// The vertices of the paths of the first 64 rays, from the aperture to their first rough
     /// surface, or out of the scene.
     pub ways: Vec<Vec<DVec3>>,
 }
@@ -48,13 +49,14 @@ pub struct LaserInspection {
 pub struct LightPart {
     /// The fate of this light.
     pub fate: LightFate,
-    /// The index of the surface that it meets, unless it misses all.
+    /// The index of the surface that it meets, unless it misses all surfaces.
     pub surface: Option<usize>,
-    /// The part of the laser's power that it is, from 0 to 1.
+    /// The fraction of the laser's power, from 0 to 1.
     pub fraction: f64,
-    /// The middle of the lit points, in metres; of the aperture, where it misses.
+    /// The middle of the lit points, in metres; the middle of the aperture if the light misses all
+    /// surfaces.
     pub centre: DVec3,
-    /// The image point of the middle, in pixels; `None` where there is none, as behind the camera.
+    /// The image point of this middle, in pixels; `None` where it has none, as behind the camera.
     pub pixel: Option<DVec2>,
 }
 
@@ -62,7 +64,7 @@ pub struct LightPart {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum LightFate {
-    /// The camera sees what it lights.
+    /// The camera sees the lit surface.
     Seen,
     /// The beam meets no rough surface: it leaves the scene, ends on a light or stays among mirrors
     /// and glass.
@@ -75,7 +77,7 @@ pub enum LightFate {
     BehindCamera,
     /// The lit surface lies outside the image, or outside its rendered part.
     OutsideImage,
-    /// Something stands between what it lights and the camera: the surface of this index, or a
+    /// An object stands between the lit surface and the camera: the surface of this index, or a
     /// light for an index beyond those of the surfaces.
     Hidden {
         /// The index among the surfaces, and the area lights behind them.
@@ -84,20 +86,21 @@ pub enum LightFate {
 }
 
 impl LaserInspection {
-    /// Returns whether the camera sees light of the laser: at least a hundred thousandth of it.
+    /// Returns whether the camera sees light of the laser: at least a hundred thousandth of its
+    /// power.
     pub fn is_seen(&self) -> bool {
         self.fraction_in_image >= MIN_FRACTION || self.fraction_of(LightFate::Seen) > 0.0
     }
 
-    /// Returns the part of the laser's power that meets this fate, from 0 to 1.
+    /// Returns the fraction of the laser's power that meets this fate, from 0 to 1.
     pub fn fraction_of(&self, fate: LightFate) -> f64 {
         let parts = self.parts.iter().filter(|part| part.fate == fate);
         parts.map(|part| part.fraction).sum()
     }
 }
 
-/// Tells for each laser what becomes of its light in `frame`, up to the camera: to find out, before
-/// anything is rendered, why the image might stay dark.
+/// Returns for each laser the fate of its light in `frame` on the way to the camera. It shows,
+/// before anything is rendered, why the image might stay dark.
 ///
 /// # Errors
 ///
@@ -115,7 +118,7 @@ pub fn inspect_lasers(scene: &Scene, frame: u32) -> Result<Vec<LaserInspection>,
     Ok(lasers.map(|laser| inspector.laser(&laser)).collect())
 }
 
-/// Returns a length, in metres, beyond which nothing of the scene is seen from any of its parts.
+/// Returns a length, in metres, beyond which no part of the scene is seen from any other part.
 fn reach(scene: &Scene) -> f64 {
     let bounds = scene.surfaces.iter().map(|surface| surface.shape.bounds());
     let points = bounds
@@ -132,7 +135,7 @@ fn reach(scene: &Scene) -> f64 {
     (high - low).length()
 }
 
-/// Looks at the light in one frame.
+/// Follows the light in one frame.
 struct Inspector<'a> {
     scene: &'a Scene,
     camera: Camera,
@@ -142,23 +145,23 @@ struct Inspector<'a> {
     far: f64,
 }
 
-/// A ray at its end.
+/// The end of a ray.
 #[derive(Clone, Copy)]
 struct Arrival {
     /// The rough surface, unless it met none.
     hit: Option<Hit>,
     /// The direction in which it arrived.
     direction: DVec3,
-    /// The length of its way, in metres.
+    /// The length of its path, in metres.
     length: f64,
-    /// The fraction of its light that mirrors and glass have left, from 0 to 1.
+    /// The fraction of its light that is left after mirrors and glass, from 0 to 1.
     weight: f64,
 }
 
 /// Rays that are followed over mirrors and through glass to their first rough surfaces.
 struct Arrivals {
     rays: Vec<Arrival>,
-    /// The corners of the ways of the first.
+    /// The vertices of the paths of the first rays.
     ways: Vec<Vec<DVec3>>,
     far: f64,
 }
@@ -258,7 +261,7 @@ impl Inspector<'_> {
         arrivals
     }
 
-    /// Returns what becomes of light that arrives at a rough surface in this direction.
+    /// Returns the fate of light that arrives at a rough surface in this direction.
     fn fate(&self, hit: &Hit, direction: DVec3, lens: [f64; 2]) -> LightFate {
         let lit_side = -direction.dot(hit.normal);
         let one_sided = self.scene.surfaces[hit.surface].material.is_one_sided();
@@ -299,12 +302,13 @@ impl Inspector<'_> {
         let ray = self
             .intersector
             .ray_from(hit.position, hit.normal, direction);
-        // What hides it by a hair may not be met again: then it is the surface itself.
+        // A surface that only just hides the point may not be met again: then the surface itself
+        // hides it.
         let hiding = self.intersector.intersect(&ray);
         Some(hiding.map_or(hit.surface, |hiding| hiding.surface))
     }
 
-    /// Returns the part of the laser's power on what the image shows.
+    /// Returns the fraction of the laser's power that falls on surfaces in the image.
     ///
     /// ```text
     /// P = Σ E cos θ_i dA,    dA = Ω r² / cos θ_o       Ω the solid angle of each camera ray
@@ -329,7 +333,7 @@ impl Inspector<'_> {
         power / laser.power()
     }
 
-    /// Returns the power with which a laser lights what a camera ray shows, per solid angle of the
+    /// Returns the power of a laser on the surface that a camera ray meets, per solid angle of the
     /// ray, in W/sr.
     fn power_per_solid_angle(&self, laser: &Laser, seen: &Arrival) -> f64 {
         let Some(hit) = &seen.hit else {

@@ -26,8 +26,8 @@ use crate::{
     walk::Roulette,
 };
 
-/// Surfaces that a path always leaves again before it may end by chance. In a box of albedo 0.6 a
-/// second one takes 0.62 of the variance for 1.3 times the time.
+/// Russian roulette: a path always leaves this number of surfaces before it may end by chance. In a
+/// box of albedo 0.6 a second one takes 0.62 of the variance for 1.3 times the time.
 const ROULETTE: Roulette = Roulette { certain: 2 };
 
 /// Everything that one frame needs to turn camera samples into radiance.
@@ -79,7 +79,8 @@ impl<'a> Integrator<'a> {
             .map(|laser| laser.in_frame(frame))
             .collect();
         let counts = sample_counts(options);
-        // The same numbers for all: a laser alone has the bits of one among others.
+        // All lasers draw the same numbers: a laser alone gives the same bits as a laser among
+        // others.
         let key = DrawKey {
             seed: options.seed,
             frame,
@@ -93,7 +94,7 @@ impl<'a> Integrator<'a> {
         } else {
             Vec::new()
         };
-        // Where all light is that of lasers, the first vertices have found most of it by their
+        // Where all light comes from lasers, the first vertices have found most of it by their
         // connections.
         let roulette = match scene.lights.is_empty() && !lit_points.is_empty() {
             true => Roulette { certain: 0 },
@@ -154,7 +155,7 @@ impl<'a> Integrator<'a> {
             self.connect_to_lasers(batch);
             self.connect_to_lit_points(batch);
             self.connect_to_lights(batch);
-            // Remember the first rough surface of each path, whose speckle all of its light has.
+            // Remember the first rough surface of each path: all light of the path has its speckle.
             self.note_speckle(batch);
             // Choose where the paths go on.
             self.scatter(batch);
@@ -166,8 +167,8 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    /// Draws positions in the pupil for the samples that have none yet, from that of the stream
-    /// `first` on; a pinhole has only its middle.
+    /// Draws positions in the pupil for the samples that have none yet, starting with the sample of
+    /// the stream `first`; a pinhole has only its centre.
     pub(crate) fn draw_lens(&self, first: Stream, batch: &mut Batch<'a>) {
         let drawn = batch.lens.len();
         batch.lens.resize(batch.samples.len(), [0.5, 0.5]);
@@ -207,7 +208,8 @@ impl<'a> Integrator<'a> {
         let mut kept = 0;
         for (index, hit) in hits.iter().map(Option::as_ref).enumerate() {
             let (mut path, ray) = (batch.paths[index], batch.rays[index]);
-            // The radiance that a ray meets by chance: that of lights and of sampled lasers.
+            // The radiance that a ray meets by chance: the radiance of lights and of sampled
+            // lasers.
             self.meet_lights(&path, &ray, hit, batch);
             self.meet_lasers(&path, &ray, hit, batch);
             let Some(vertex) = hit.and_then(|hit| self.vertex(&ray, hit)) else {
@@ -269,7 +271,7 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    /// Draws the place in the lines of the lasers, if one of them has a width.
+    /// Draws the position within the spectral lines of the lasers, if one of them has a width.
     fn drawn_wave(&self, stream: Stream) -> f64 {
         let lasers = self.lasers.iter();
         let is_wide = lasers
@@ -286,7 +288,7 @@ impl<'a> Integrator<'a> {
     fn scatter(&self, batch: &mut Batch<'a>) {
         let wavelengths = self.spectrum.wavelengths.len();
         let mut kept = 0;
-        // All paths have met as many surfaces.
+        // All paths have met the same number of surfaces.
         let depth = batch.paths.first().map_or(0, |path| path.depth);
         let ends = depth == self.rules.max_depth && !self.meets_light(true);
         let paths = if ends { 0 } else { batch.paths.len() };

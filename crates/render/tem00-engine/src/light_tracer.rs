@@ -1,15 +1,15 @@
 //! Light followed from the lasers to the camera.
 //!
-//! The path tracer connects what the camera sees straight to the lasers, so it knows no light that
-//! a mirror or a lens has turned on its way to a surface. Here rays drawn from the phase space of a
-//! beam carry its power. Mirrors and glass send them on; at every rough surface they are connected
-//! to the camera.
+//! The path tracer connects the surfaces that the camera sees directly to the lasers, so it finds
+//! no light that a mirror or a lens has deflected on its way to a surface. Here rays drawn from the
+//! phase space of a beam carry its power. Mirrors and glass send them on; at every rough surface
+//! they are connected to the camera.
 //!
-//! What the camera sees in a mirror or through glass cannot be connected to it. Light that meets
-//! specular surfaces on both sides, between laser and rough surface and between rough surface and
-//! camera, is found neither from here nor from there.
+//! A surface that the camera sees in a mirror or through glass cannot be connected to it. Light
+//! that meets specular surfaces on both sides, between laser and rough surface and between rough
+//! surface and camera, is found neither from the laser nor from the camera.
 //!
-//! Light that a mirror or glass has turned keeps its coherence: up to the first rough surface it
+//! Light that a mirror or glass has deflected keeps its coherence: up to the first rough surface it
 //! counts as coherent, and its speckle is looked up at the image point. Where something moves, that
 //! speckle moves and changes as if the light came straight from the laser.
 
@@ -57,14 +57,14 @@ impl Groups {
     }
 }
 
-/// The groups that are followed before their light is put into the image, in their order: memory is
-/// bounded, and the sums have the same bits for any number of threads.
+/// The number of groups that are followed before their light is added to the image, in order. This
+/// bounds the memory, and the sums have the same bits for any number of threads.
 const GROUPS_AT_ONCE: usize = 64;
 
 impl LightTracer<'_> {
     /// Follows the light of one laser, and adds it to its layers.
     ///
-    /// `progress` is told, from any thread, the number of light paths done since its last call.
+    /// `progress` receives, from any thread, the number of light paths done since its last call.
     ///
     /// # Errors
     ///

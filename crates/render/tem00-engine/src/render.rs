@@ -15,7 +15,7 @@ use crate::{
     survey::{Survey, asks_for_survey},
 };
 
-/// Cells along the longer side of an image in which multiple light is surveyed.
+/// The number of cells along the longer side of an image in the survey of multiple light.
 const SURVEY_CELLS: usize = 64;
 
 /// Returns the number of camera samples and light paths that one frame takes, of which
@@ -35,7 +35,7 @@ pub fn samples_per_frame(scene: &Scene, options: &RenderOptions) -> u64 {
 /// Renders one frame, on the threads of the current rayon pool.
 ///
 /// One pass over the image serves all lasers and lights. Without a `speckle` model every speckle
-/// factor is 1. `progress` is told, from any thread, the number of camera samples and light paths
+/// factor is 1. `progress` receives, from any thread, the number of camera samples and light paths
 /// done since its last call; once `cancel` is set, the render stops within some thousand of them
 /// per thread. The result has the same bits for any number of threads.
 ///
@@ -111,8 +111,8 @@ pub fn render_frame(
 
 /// Returns which light is followed from the lasers, if any.
 ///
-/// Paths from the camera find all but the light that a mirror or glass was the first to meet; where
-/// they look for the beams themselves, they find that, too.
+/// Paths from the camera find all light except the light whose first hit is a mirror or glass;
+/// where they look for the beams themselves, they find this light, too.
 fn light_traced(scene: &Scene, options: &RenderOptions) -> Option<LightSelection> {
     match options.method {
         Method::Light => Some(LightSelection::All),
@@ -121,8 +121,8 @@ fn light_traced(scene: &Scene, options: &RenderOptions) -> Option<LightSelection
     }
 }
 
-/// Adds the light that is followed from the lasers: as many paths for each as the whole image has
-/// camera samples.
+/// Adds the light that is followed from the lasers: as many paths for each laser as the whole image
+/// has camera samples.
 fn add_light_traced(
     tracer: &LightTracer<'_>,
     options: &RenderOptions,

@@ -17,20 +17,20 @@ pub(crate) use self::{
 
 /// Sets of points that fill the unit square evenly, anew for every pixel and every use.
 ///
-/// The N points of a pixel are those of a lattice on the torus, which for any N has one
-/// point in each of N columns and of N rows:
+/// The N points of a pixel form a lattice on the torus, which for any N has one point in each of N
+/// columns and of N rows:
 ///
 /// ```text
 /// (i + a, g i + b) mod N        g: generator, of those that keep the points far apart
 /// ```
 ///
 /// The offsets a and b are random, so each point is uniform over the square and every estimate
-/// unbiased; the generator is drawn for each pixel, so that no direction of an edge is a bad one
+/// unbiased; the generator is drawn for each pixel, so that no direction of an edge is unfavourable
 /// throughout an image. Positions in the pixel have whole offsets and lie anywhere in the cell
-/// where column and row cross, which suits edges; those in two neighbouring columns, or rows,
-/// mirror each other, so that light that grows steadily over the pixel is met exactly. All other
-/// points are those of the lattice folded in the middle, which makes every smooth function a
-/// periodic one; those of different uses are in random orders.
+/// where column and row cross, which suits edges; positions in two neighbouring columns, or rows,
+/// mirror each other, so that light that varies linearly over the pixel is integrated exactly. All
+/// other points come from the lattice folded in the middle, which makes every smooth function
+/// periodic; the points of different uses are in random orders.
 ///
 /// # References
 ///
@@ -64,7 +64,7 @@ pub(crate) enum Use {
     Lens,
     /// The direction in which a path goes on from its vertex of this number.
     Scattering(u32),
-    /// The decision if a path goes on from its vertex of this number.
+    /// The decision whether a path goes on from its vertex of this number.
     Survival(u32),
     /// The position on a light: number of the vertex, number of the light.
     Light(u32, u32),
@@ -76,11 +76,11 @@ pub(crate) enum Use {
     LitPoint(u32),
 }
 
-/// The maximum number of times that the least number of samples of a pixel is doubled.
+/// The maximum number of times that the minimum number of samples of a pixel is doubled.
 const DOUBLINGS: u32 = 6;
 
-/// Returns the numbers of samples that a pixel can get. If there are several, the first is that of
-/// the pilot.
+/// Returns the possible sample counts of a pixel. If there are several, the first is the sample
+/// count of the pilot.
 pub(crate) fn sample_counts(options: &RenderOptions) -> Vec<u32> {
     let count = options.samples_per_pixel;
     let counts = |pilot, min: u32| {
@@ -142,8 +142,8 @@ impl Sequence {
         );
     }
 
-    /// Returns a place in the column that begins at `start`, in 2⁻⁶⁴ of the torus: those in two
-    /// neighbouring columns mirror each other.
+    /// Returns a position in the column that begins at `start`, in units of 2⁻⁶⁴ of the torus:
+    /// positions in two neighbouring columns mirror each other.
     #[inline(always)]
     fn place(&self, start: u64, seed: u64) -> f64 {
         let start = word(start >> 32);
@@ -156,7 +156,7 @@ impl Sequence {
 
     /// Returns two numbers in (0, 1).
     ///
-    /// Those of one use fill the square evenly over the samples of a pixel.
+    /// The pairs of one use fill the square evenly over the samples of a pixel.
     pub(crate) fn pair(&self, stream: Stream, purpose: Use) -> [f64; 2] {
         let points = self.points(stream, purpose);
         points.pair(permuted(stream.index, self.count, points.order))
@@ -208,7 +208,7 @@ impl Sequence {
 /// The pairs of the samples of a round for a use.
 struct Points<'a> {
     lattice: &'a Lattice,
-    /// In 2⁻³² of the torus.
+    /// The offsets, in units of 2⁻³² of the torus.
     offsets: [u32; 2],
     /// The seed of the order in which the samples take the points of the lattice.
     order: u64,
@@ -231,8 +231,8 @@ pub(crate) fn point_in_square(key: u64) -> [f64; 2] {
     words(scattered(key)).map(fraction)
 }
 
-/// Combines the seed of a render with three numbers, as those of a frame and of a pixel's column
-/// and row.
+/// Combines the seed of a render with three numbers, such as the numbers of a frame and of a
+/// pixel's column and row.
 pub(crate) fn pixel_key(seed: u64, [first, second, third]: [u64; 3]) -> u64 {
     let key = scattered(scattered(seed) ^ first);
     scattered(scattered(key ^ second.rotate_left(16)) ^ third.rotate_left(48))
@@ -262,9 +262,10 @@ const fn folded(bits: u32) -> u32 {
     below_half << 1 | 1
 }
 
-/// Returns where a random permutation of the numbers below `count` takes `index`.
+/// Returns the image of `index` under a random permutation of the numbers below `count`.
 ///
-/// Each step permutes the numbers below a power of two; those that leave the range go round again.
+/// Each step permutes the numbers below a power of two; numbers that leave the range are permuted
+/// again.
 fn permuted(index: u32, count: u32, seed: u64) -> u32 {
     let mask = word(u64::from(count).next_power_of_two() - 1);
     let mut number = u64::from(index);

@@ -25,9 +25,9 @@ use tem00_shading::SeenPoint;
 
 /// A point of a surface that a path has met, and where in the image it is seen.
 ///
-/// The point need not lie on the chief ray of its pixel: out of focus it is seen beside it, and in
-/// a mirror somewhere else. Its speckle counts as moving by as much as the point would move seen
-/// directly, which in a plane mirror is right but for the reflection.
+/// The point need not lie on the chief ray of its pixel: out of focus it is seen next to this ray,
+/// and in a mirror somewhere else. Its speckle is taken to move as far as the point would move if
+/// it were seen directly, which in a plane mirror is right except for the reflection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SpecklePoint {
     /// The image point of the sample, in pixels.

@@ -31,7 +31,8 @@ pub(crate) struct Batch<'a> {
     pub(super) rays: Vec<Ray>,
     pub(super) hits: Vec<Option<Hit>>,
     pub(super) vertices: Vec<Vertex<'a>>,
-    /// For each sample, what is left of radiance at the end of its path, by wavelength.
+    /// For each sample, the fraction of the radiance at the end of its path that reaches the
+    /// camera, by wavelength.
     pub(super) throughput: Vec<f64>,
     pub(super) connections: Connections,
     pub(super) lit: LaserEventBatch,
@@ -114,7 +115,7 @@ impl Batch<'_> {
     }
 }
 
-/// Ways from surface points to light that may be hidden, with what arrives if it is not.
+/// Pending shadow rays, and what each adds if it is unoccluded.
 #[derive(Debug, Default)]
 pub(super) struct Connections {
     segments: Vec<Segment>,
@@ -157,7 +158,7 @@ impl Arrival {
 }
 
 impl Connections {
-    /// The maximum number of ways that wait to be tested.
+    /// The maximum number of pending shadow rays.
     const CAPACITY: usize = 4096;
 
     pub(super) const fn is_full(&self) -> bool {
@@ -166,14 +167,14 @@ impl Connections {
 }
 
 impl Batch<'_> {
-    /// Notes what arrives over a connection unless something hides it.
+    /// Adds a shadow ray and the light that arrives if it is unoccluded.
     #[inline(always)]
     pub(super) fn connect(&mut self, segment: Segment, arrival: Arrival) {
         self.connections.segments.push(segment);
         self.connections.arrivals.push(arrival);
     }
 
-    /// Adds what arrives over the connections that nothing hides, and forgets them all.
+    /// Adds the light of all unoccluded shadow rays, and clears the list.
     pub(super) fn resolve_connections(&mut self, intersector: &Intersector) {
         let connections = &mut self.connections;
         connections
@@ -206,7 +207,7 @@ pub(super) struct SpeckleLookUps {
 struct LaserLookUps {
     slots: Vec<usize>,
     points: Vec<SpecklePoint>,
-    /// The radiance of the light that has met the surface of each point only.
+    /// The radiance of the light that has met only the surface of each point.
     singles: Vec<f64>,
     factors: Vec<f64>,
 }

@@ -127,7 +127,7 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    /// Returns the weight of light of a laser that a path finds by a direction drawn from the rough
+    /// Returns the weight of laser light that a path finds by a direction drawn at the rough
     /// surface before.
     #[inline(always)]
     fn weight_beside_lit_points(
@@ -167,7 +167,8 @@ impl<'a> Integrator<'a> {
         Some((light, Some(event.pdf)))
     }
 
-    /// Takes the light of the sampled lasers whose beams a ray from a rough surface runs back.
+    /// Adds the light of the sampled lasers whose beams a ray from a rough surface follows
+    /// backwards.
     pub(super) fn meet_lasers(
         &self,
         path: &Path,

@@ -2,8 +2,8 @@
 //! that a laser lights.
 //!
 //! A direction drawn from a rough surface seldom meets a thin line of light on another; a point
-//! drawn where a laser lights a surface always lies on it. Both ways are weighed by how likely each
-//! draws the same path.
+//! drawn where a laser lights a surface always lies on it. Both estimates are weighted by how
+//! likely each is to draw the same path.
 
 use core::iter;
 

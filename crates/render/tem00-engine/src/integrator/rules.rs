@@ -5,7 +5,7 @@ use tem00_tracer::{Laser, Light, LightEvents, Method, RenderOptions, Scene, Surf
 /// materials grey under them.
 pub(super) const WHITE_LIGHT_WAVELENGTH: f64 = 550e-9;
 
-/// Rules for the paths that are followed and for the ways in which they find light.
+/// Rules for the paths that are followed and for the methods by which they find light.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PathRules {
     /// The maximum number of surfaces between source and camera.
@@ -38,7 +38,7 @@ impl From<&RenderOptions> for PathRules {
     }
 }
 
-/// Returns whether a plate is all that light can meet: it meets it once.
+/// Returns whether a plate is the only surface that light can meet, so that light meets it once.
 pub(crate) fn is_plate(scene: &Scene) -> bool {
     matches!(
         scene.surfaces.as_slice(),
@@ -53,9 +53,9 @@ pub(crate) fn is_plate(scene: &Scene) -> bool {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Spectrum {
     pub wavelengths: Vec<f64>,
-    /// For each laser, which of them is its own.
+    /// For each laser, the index of its wavelength.
     pub of_laser: Vec<usize>,
-    /// The index of the one for the lights; 0 if there are none.
+    /// The index of the wavelength for the lights; 0 if there are none.
     pub of_lights: usize,
 }
 

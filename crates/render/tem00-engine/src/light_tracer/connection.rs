@@ -12,7 +12,8 @@ use crate::{
     walk::Met,
 };
 
-/// Follows the light of one laser, group by group, and connects what it meets to the camera.
+/// Follows the light of one laser, group by group, and connects the surfaces that it meets to the
+/// camera.
 #[derive(Debug)]
 pub(super) struct Connector<'a> {
     tracer: &'a LightTracer<'a>,
@@ -43,7 +44,7 @@ impl<'a> Connector<'a> {
         }
     }
 
-    /// Follows a group of `paths` light paths and returns what they bring to the image.
+    /// Follows a group of `paths` light paths and returns their contribution to the image.
     pub(super) fn group(&self, group: u64, paths: usize) -> Splats {
         let tracer = self.tracer;
         let group = LightGroup {
@@ -140,8 +141,8 @@ impl<'a> Connector<'a> {
 }
 
 impl Met<'_> {
-    /// Returns the power with which light that has met no rough surface before lights the side that
-    /// is seen from the unit direction `out`, in watts.
+    /// Returns the power, in watts, of light that has met no rough surface before, on the side that
+    /// is seen from the unit direction `out`.
     fn power_seen_from(&self, out: DVec3) -> f64 {
         let is_lit = self.vertex.cosine * out.dot(self.vertex.hit.normal) > 0.0;
         if is_lit && self.walker.rough == 0 {

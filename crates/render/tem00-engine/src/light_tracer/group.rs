@@ -6,7 +6,8 @@ use crate::{
     walk::{Carried, Met, Roulette, Visitor, Walk, Walker},
 };
 
-/// Surfaces that a light path always leaves again before it may end by chance.
+/// Russian roulette: a light path always leaves this number of surfaces before it may end by
+/// chance.
 const ROULETTE: Roulette = Roulette { certain: 1 };
 
 /// A group of light paths from a laser as it stands in a frame.

@@ -5,19 +5,19 @@ use tem00_tracer::{Scene, TracerError};
 
 use crate::sampler::even;
 
-/// Image points on each side of the grid that is looked through.
+/// The number of image points along each side of the search grid.
 const SIDE: u32 = 64;
-/// Rays of each laser that are followed to their first surface.
+/// The number of rays of each laser that are followed to their first surface.
 const RAYS: u32 = 256;
 
-/// Tells whether, in `frame`, both a laser and the camera look at a mirror or at smooth glass.
+/// Tells whether, in `frame`, both a laser and the camera face a mirror or smooth glass.
 ///
 /// Light that meets such objects on both sides of a rough surface, between laser and surface and
 /// between surface and camera, is found neither by paths from the camera nor by paths from the
 /// lasers: it is missing from the image, unless the lasers are
-/// [sampled](tem00_tracer::LaserEvents::Sampled) and so wide that rays meet them by chance. It is
-/// looked for in a grid of 64 × 64 image points and along 256 rays of each laser, up to their
-/// first surface.
+/// [sampled](tem00_tracer::LaserEvents::Sampled) and so wide that rays meet them by chance. The
+/// search covers a grid of 64 × 64 image points and 256 rays of each laser, up to their first
+/// surface.
 ///
 /// # Errors
 ///

@@ -16,7 +16,7 @@ pub(super) struct Splat {
 pub(super) struct Splats {
     /// Splats, in the end sorted by pixel, one for each.
     list: Vec<Splat>,
-    /// The power on the first rough surface where that is seen, in watts.
+    /// The power on the first rough surface where this surface is seen, in watts.
     pub power: f64,
 }
 
@@ -25,9 +25,9 @@ impl Splats {
         self.list.push(splat);
     }
 
-    /// Adds up what belongs to the same pixel.
+    /// Adds up the splats of each pixel.
     pub(super) fn merge(&mut self) {
-        // Stable: the order of the sums is that of the paths.
+        // A stable sort: the sums are formed in the order of the paths.
         self.list.sort_by_key(|splat| splat.pixel);
         self.list.dedup_by(|next, sum| {
             let same = next.pixel == sum.pixel;
@@ -41,7 +41,7 @@ impl Splats {
     }
 }
 
-/// The image while it is made: 32 bytes per pixel.
+/// The image during light tracing: 32 bytes per pixel.
 #[derive(Debug)]
 pub(super) struct SplatFilm {
     pixels: Vec<PixelSums>,
@@ -54,7 +54,7 @@ struct PixelSums {
     single: f64,
     multiple: f64,
     radiance: f64,
-    /// The sum over groups of the square of what the group brings.
+    /// The sum over groups of the square of the group's contribution.
     squares: f64,
 }
 
@@ -66,7 +66,7 @@ impl SplatFilm {
         }
     }
 
-    /// Adds what one group brings.
+    /// Adds the contribution of one group.
     pub(super) fn add(&mut self, splats: &Splats) {
         for splat in &splats.list {
             let pixel = &mut self.pixels[splat.pixel];
@@ -79,12 +79,12 @@ impl SplatFilm {
         self.power[1] += splats.power.powi(2);
     }
 
-    /// Adds the means after so many groups and paths, each of which stood for the whole laser, to
-    /// the layers of the laser.
+    /// Adds the means over `groups` groups and `paths` paths, each of which stood for the whole
+    /// laser, to the layers of the laser.
     ///
-    /// They are averaged over the square of the pixel: a light path comes upon its image point by
-    /// chance, so that no other reconstruction filter applies. The variance is without bias, from
-    /// groups that are independent of each other, and infinite for a single one.
+    /// The means are averages over the square of the pixel: a light path reaches its image point by
+    /// chance, so that no other reconstruction filter applies. The variance is unbiased, from
+    /// groups that are independent of each other, and infinite for a single group.
     pub(super) fn add_to(&self, layers: &mut LaserLayers, groups: u64, paths: u64) {
         let (groups, paths) = (groups as f64, paths.max(1) as f64);
         let variance = |[sum, squares]: [f64; 2]| {

@@ -30,7 +30,7 @@ const RUN: u32 = 64;
 pub(super) struct PathPass<'a, P> {
     pub integrator: &'a Integrator<'a>,
     pub options: &'a RenderOptions,
-    /// The numbers of samples that a pixel can get.
+    /// The possible sample counts of a pixel.
     pub counts: Vec<u32>,
     pub filter: FilterSampler,
     pub frame: u32,
@@ -76,8 +76,7 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
         Ok(film.into_frame())
     }
 
-    /// Returns by which of the numbers of samples each pixel is rendered, from a pilot with samples
-    /// of its own.
+    /// Returns the index of each pixel's sample count, from a pilot with its own samples.
     fn levels(&self, film: &Mutex<Film>) -> Result<Grid<u8>, RenderError> {
         let pilot = Mutex::new(Pilot::new(self.area.width, self.area.height));
         self.for_each_strip(
@@ -93,7 +92,7 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
         )?;
         let pilot = pilot.into_inner().unwrap_or_else(PoisonError::into_inner);
         let levels = pilot.levels(self.options, &self.counts);
-        // What is left over counts as done.
+        // Samples that no pixel gets count as done.
         let pixels = levels.values();
         let samples = |level: &u8| u64::from(self.counts[usize::from(*level)]);
         let asked: u64 = pixels.iter().map(samples).sum();
@@ -101,8 +100,8 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
         Ok(levels)
     }
 
-    /// Traces the samples of all pixels that have a level, strip by strip, and hands over what was
-    /// found with the number of rays.
+    /// Traces the samples of all pixels that have a level, strip by strip, and hands over the
+    /// results with the number of rays.
     fn for_each_strip(
         &self,
         seed: u64,
@@ -155,7 +154,7 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
         Ok(())
     }
 
-    /// Adds samples of a pixel, from that of the stream `first` on, at most a run.
+    /// Adds samples of a pixel, starting with the sample of the stream `first`, at most one run.
     fn add_samples(&self, slot: usize, [x, y]: [usize; 2], first: Stream, batch: &mut Batch<'a>) {
         let end = first.index.saturating_add(RUN);
         let indices = first.index..end.min(self.count(first));
@@ -206,7 +205,7 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
     }
 }
 
-/// A thread that panicked has left nothing half written: only finished pixels are.
+/// A thread that panicked leaves nothing half written, because only finished pixels are written.
 fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
 }

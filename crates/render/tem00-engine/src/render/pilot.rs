@@ -3,19 +3,19 @@
 use tem00_numerics::{Grid, cast::to_f32};
 use tem00_tracer::{RenderOptions, Sampling, film::PixelSums};
 
-/// The power of the standard deviation that the number of samples is in proportion to. The mean
-/// square error of an image of independent samples, of variance σ²/n, would be least with 1, and
-/// that of edges, of variance σ²/n², with 2/3.
+/// The exponent of the standard deviation to which the number of samples is proportional. The mean
+/// square error of an image is least with 1 for independent samples, of variance σ²/n, and with 2/3
+/// for edges, of variance σ²/n².
 const POWER: f64 = 2.0 / 3.0;
 
-/// The finest step of numbers of samples, in parts of a doubling.
+/// The number of steps between sample counts for each doubling.
 const STEPS: usize = 16;
 
-/// The steps below which pixels get the least number of samples, whatever is left.
+/// The steps below which pixels get the minimum number of samples, however many are left.
 const DARKEST: usize = 64 * STEPS;
 
-/// The radiance below which a pixel's error is compared with this radiance instead of its own, by
-/// the mean radiance of the image.
+/// The radiance, relative to the mean radiance of the image, below which a pixel's error is
+/// compared with this radiance instead of its own.
 const DARK: f64 = 0.1;
 
 /// Results of a pilot.
@@ -39,15 +39,15 @@ impl Pilot {
         }
     }
 
-    /// Tells whether a pilot looks at a pixel of the whole image. Two samples are the least that
-    /// differ: where they would be more than a quarter of all, every second pixel speaks for its
-    /// neighbours, as on a chessboard.
+    /// Returns whether a pilot samples a pixel of the whole image. A deviation needs at least two
+    /// samples: where these would be more than a quarter of all samples, every second pixel
+    /// represents its neighbours, as on a chessboard.
     pub(super) const fn looks_at(options: &RenderOptions, [x, y]: [usize; 2]) -> bool {
         let all = matches!(options.sampling, Sampling::TargetError(_));
         all || options.samples_per_pixel >= 8 || (x + y).is_multiple_of(2)
     }
 
-    /// Writes what was found in a pixel, if it was looked at.
+    /// Writes the results of a pixel, if it was sampled.
     pub(super) fn write(&mut self, at: [usize; 2], pixel: &PixelSums) {
         if pixel.samples == 0 {
             return;
@@ -58,14 +58,14 @@ impl Pilot {
         self.all_samples += u64::from(pixel.samples);
     }
 
-    /// Returns the number of samples that the pilot leaves of those asked for.
+    /// Returns the number of requested samples that the pilot leaves.
     pub(super) fn left(&self, options: &RenderOptions) -> u64 {
         let pixels = self.radiance.values().len() as u64;
         (pixels * u64::from(options.samples_per_pixel)).saturating_sub(self.all_samples)
     }
 
-    /// Returns which of the numbers of samples, the first of which is that of the pilot, each pixel
-    /// gets.
+    /// Returns the index in `counts` of each pixel's sample count; the first is the sample count of
+    /// the pilot.
     pub(super) fn levels(&self, options: &RenderOptions, counts: &[u32]) -> Grid<u8> {
         match options.sampling {
             Sampling::TargetError(target) => self.levels_for(target, counts),
@@ -73,7 +73,7 @@ impl Pilot {
         }
     }
 
-    /// Shares so many samples at most.
+    /// Returns the levels that distribute at most `budget` samples.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -83,7 +83,7 @@ impl Pilot {
         let deviations = around(&self.deviation, f32::max);
         let all = deviations.values().iter().copied();
         let largest = all.fold(f32::MIN_POSITIVE, f32::max);
-        // How much less a pixel gets than the one that gets most, in steps.
+        // How much less a pixel gets than the pixel with the most samples, in steps.
         let below = |deviation: f32| {
             let doublings = POWER * libm::log2(f64::from(largest / deviation));
             ((doublings * STEPS as f64) as usize).min(DARKEST)
@@ -104,7 +104,7 @@ impl Pilot {
                 parts.map(|(below, pixels)| pixels * u64::from(counts[level(below, max)]));
             samples.sum()
         };
-        // The most that the pixel of the largest deviation can get, in steps above the least.
+        // The maximum for the pixel of the largest deviation, in steps above the minimum.
         let max = (0..DARKEST)
             .rev()
             .find(|&max| samples(max) <= budget)
@@ -117,8 +117,8 @@ impl Pilot {
     fn levels_for(&self, target: f64, counts: &[u32]) -> Grid<u8> {
         let all = self.radiance.values().iter().copied();
         let mean = all.map(f64::from).sum::<f64>() / self.radiance.values().len() as f64;
-        // Nine pixels together tell a deviation, but for about 1/√n of it, more where light is
-        // rare.
+        // Nine pixels together determine a deviation except for about 1/√n of it, and less well
+        // where light is rare.
         let raised = (1.0 + 2.0 / (9.0 * f64::from(self.samples)).sqrt()) / 3.0;
         let deviations = around(&self.deviation, libm::hypotf);
         Grid::from_fn(deviations.width(), deviations.height(), |x, y| {
@@ -130,8 +130,8 @@ impl Pilot {
     }
 }
 
-/// Combines the values of each pixel and its eight neighbours, which at the rim of the image it
-/// stands for itself.
+/// Combines the values of each pixel and its eight neighbours, which the pixel itself replaces
+/// beyond the edge of the image.
 fn around(layer: &Grid<f32>, combine: impl Fn(f32, f32) -> f32) -> Grid<f32> {
     let [right, down] = [layer.width() - 1, layer.height() - 1];
     let combined = |layer: &Grid<f32>, [dx, dy]: [usize; 2]| {
@@ -171,7 +171,7 @@ mod tests {
 
     #[test]
     fn samples_go_where_they_differ_and_are_no_more_than_asked_for() {
-        // From 1 to 8 times the deviation, 4 times the samples; where nothing differs the least.
+        // From 1 to 8 times the deviation, 4 times the samples; where nothing differs, the minimum.
         let row = [0.0, 0.0, 1.0, 1.0, 8.0, 8.0, 0.0, 0.0];
         for budget in [30, 40, 56, 100] {
             let shared = counts(&pilot(&row).shared_levels(budget * 24, &COUNTS));

@@ -1,13 +1,13 @@
 use super::lattice::Lattice;
 
-/// The most lattices over which a mean is taken, of those that pixels draw from.
+/// The maximum number of lattices over which a mean is taken, out of all from which pixels draw.
 const LATTICES: usize = 8;
 
 /// Returns the mean of a function of the displacement between two samples of a pixel, in pixels:
-/// over all pairs of samples, each with itself too, and over all pixels.
+/// over all pairs of samples, each sample with itself included, and over all pixels.
 ///
-/// The mean of the autocovariance of a pattern is the variance that the pixels of a render have,
-/// each the mean of `samples_per_pixel` samples.
+/// The mean of the autocovariance of a pattern is the variance of the pixels of a render, each of
+/// which is the mean of `samples_per_pixel` samples.
 ///
 /// # Panics
 ///
@@ -15,7 +15,7 @@ const LATTICES: usize = 8;
 ///
 /// # Examples
 ///
-/// Of four samples one in four pairs is a sample with itself:
+/// With four samples, one in four pairs is a sample with itself:
 ///
 /// ```
 /// use tem00_engine::mean_over_sample_displacements;
@@ -43,8 +43,8 @@ pub fn mean_over_sample_displacements(samples_per_pixel: u32, f: impl Fn([f64; 2
     sum / (pixels * f64::from(count))
 }
 
-/// Returns displacements along one axis of samples whose columns are so many apart on the torus,
-/// with their weights.
+/// Returns the displacements, with their weights, along one axis of two samples whose columns are
+/// `columns` apart on the torus.
 ///
 /// Both samples lie anywhere in their columns. Neighbouring columns mirror each other in pairs, of
 /// which `count` columns have `count / 2`.

@@ -87,7 +87,8 @@ const DIRECTIONS: [[u64; BITS]; 4] = [
 ];
 
 /// Returns the direction numbers of the primitive polynomial of a `degree` whose inner coefficients
-/// are the bits of `inner`, from the `first` odd numbers; those of van der Corput for degree 0.
+/// are the bits of `inner`, from the `first` odd numbers; the numbers of van der Corput for degree
+/// 0.
 const fn directions(degree: usize, inner: u64, first: [u64; 3]) -> [u64; BITS] {
     let mut numbers = [0; BITS];
     let mut k = 0;

@@ -8,7 +8,7 @@ const GOOD: f64 = 0.9;
 /// N.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Lattice {
-    /// The way from a point to the next one: (1, g) / N, rounded up to 2⁻⁶⁴ of the torus.
+    /// The step from a point to the next one: (1, g) / N, rounded up to 2⁻⁶⁴ of the torus.
     step: [u64; 2],
     /// The square of the shortest distance between two points, in columns.
     square_distance: i128,
@@ -61,7 +61,8 @@ impl Lattice {
     }
 }
 
-/// Returns so many columns out of `count`, rounded up to 2⁻⁶⁴ of the torus; the whole torus is 0.
+/// Returns the width of `columns` out of `count` columns, rounded up to 2⁻⁶⁴ of the torus; the
+/// whole torus is 0.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "whole turns of the torus are dropped"

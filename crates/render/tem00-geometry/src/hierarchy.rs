@@ -156,7 +156,7 @@ pub(crate) struct Placement {
 }
 
 impl Placement {
-    /// The placement of what is given in coordinates of the world.
+    /// The placement of a hierarchy that is given in coordinates of the world.
     pub(crate) const WORLD: Self = Self {
         scale: 1.0,
         to_local: DMat3::IDENTITY,
@@ -174,8 +174,8 @@ pub(crate) struct Scale {
 }
 
 impl Scale {
-    /// Returns a distance from the ray's origin, in metres, as one from the start of the traversal
-    /// in the unit of the hierarchy. Everything in it ends before 4.
+    /// Converts a distance from the ray's origin, in metres, to a distance from the start of the
+    /// traversal, in the unit of the hierarchy. Everything in it ends before 4.
     #[inline(always)]
     pub(crate) fn end(&self, distance: f64) -> f32 {
         #[expect(clippy::cast_possible_truncation, reason = "the padding allows for it")]
@@ -201,7 +201,8 @@ impl Scale {
 /// builder chains boxes that coincide, and pairs boxes that differ at random.
 const PADDING: f64 = 1.0 / (1 << 18) as f64;
 
-/// Components of directions below this count as this: their reciprocals stay finite.
+/// The smallest magnitude of a direction's component: smaller ones count as this, so that their
+/// reciprocals stay finite.
 const MIN_COMPONENT: f32 = 1.0 / (1 << 23) as f32;
 
 impl Hierarchy {
@@ -220,7 +221,8 @@ impl Hierarchy {
     }
 
     /// Returns a ray of the world in the unit of the hierarchy, from where it enters the
-    /// surroundings of the bounding sphere, and whether it does so; none that is not finite does.
+    /// surroundings of the bounding sphere, and whether it does so; a ray that is not finite never
+    /// does.
     #[inline(always)]
     pub(crate) fn enter(&self, placement: &Placement, ray: &Ray) -> (LocalRay, bool) {
         const REACH: f64 = 1.0 + 2.0 * PADDING;

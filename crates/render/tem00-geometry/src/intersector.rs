@@ -18,11 +18,11 @@ use crate::{Hit, Refusal, Segment, Shape, hierarchy::Placement};
 
 /// Finds where rays meet shapes.
 ///
-/// A hierarchy of boxes over the scene leads to its shapes, and one of each mesh, which its
-/// instances share, to its triangles. Boxes and triangles are tested in single precision, up to 16
-/// in one instruction, with tolerances larger than single precision errs; what may be met is tested
-/// in double precision, which decides. So the answers are those of double precision, and the same
-/// on every processor, alone and in batches.
+/// A hierarchy of boxes over the scene leads to its shapes, and a hierarchy of each mesh, which its
+/// instances share, leads to its triangles. Boxes and triangles are tested in single precision, up
+/// to 16 in one instruction, with tolerances larger than the error of single precision; the
+/// candidates are then tested in double precision, which decides. So the answers have double
+/// precision and are the same on every processor, alone and in batches.
 ///
 /// Batches are faster: 64 rays that follow each other in the list go through the boxes together,
 /// and part where fewer than eight meet the same box.
@@ -61,7 +61,7 @@ pub struct Intersector {
 }
 
 impl Intersector {
-    /// Builds the hierarchy over `shapes`, and those of meshes that have none yet.
+    /// Builds the hierarchy over `shapes`, and the hierarchies of meshes that have none yet.
     ///
     /// # Errors
     ///
@@ -99,7 +99,7 @@ impl Intersector {
         self.hit(&query)
     }
 
-    /// Finds for each ray what [`intersect`](Self::intersect) finds.
+    /// Finds for each ray the hit that [`intersect`](Self::intersect) finds.
     ///
     /// Rays that run side by side are found fastest where they are neighbours in the list.
     ///
@@ -131,7 +131,7 @@ impl Intersector {
         !query.hidden
     }
 
-    /// Finds for each segment what [`visible`](Self::visible) tells of its ends.
+    /// Finds for each segment the answer of [`visible`](Self::visible) for its ends.
     ///
     /// Segments that run side by side are found fastest where they are neighbours in the list.
     ///
@@ -163,8 +163,8 @@ impl Intersector {
         }
     }
 
-    /// Tells whether a ray's nearest hit hides what lies at `distance` along it, in metres; what
-    /// lies on the surface itself it does not hide.
+    /// Returns whether a ray's nearest hit hides a point at `distance` along it, in metres; a point
+    /// on the surface itself is not hidden.
     pub fn hides(&self, hit: &Hit, ray: &Ray, distance: f64) -> bool {
         let height = (distance - hit.distance) * hit.normal.dot(ray.direction).abs();
         height > self.clearance

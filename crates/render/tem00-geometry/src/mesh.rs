@@ -54,8 +54,8 @@ impl TriangleMesh {
     ///
     /// # Errors
     ///
-    /// Returns an error as [`new`](Self::new) does, or if there are not as many normals as
-    /// vertices, or one is not finite.
+    /// Returns an error as [`new`](Self::new) does, or if the numbers of normals and vertices
+    /// differ, or if a normal is not finite.
     ///
     /// # Examples
     ///
@@ -155,8 +155,8 @@ pub(crate) fn normal([a, b, c]: &[DVec3; 3]) -> Option<DVec3> {
     (u / scale).cross(v / scale).try_normalize()
 }
 
-/// Returns the normal with which a triangle scatters light: the interpolated one on the side of the
-/// triangle's own.
+/// Returns the normal with which a triangle scatters light: the interpolated normal, on the side of
+/// the triangle's own normal.
 pub(crate) fn shading_normal(normal: DVec3, interpolated: Option<DVec3>) -> DVec3 {
     let interpolated = interpolated.unwrap_or(normal);
     let cosine = interpolated.dot(normal);
@@ -166,7 +166,7 @@ pub(crate) fn shading_normal(normal: DVec3, interpolated: Option<DVec3>) -> DVec
     interpolated * 1.0_f64.copysign(cosine)
 }
 
-/// Returns `vector` at unit length, or `None` if it has no direction, whatever its size.
+/// Returns `vector` of any size at unit length, or `None` if it has no direction.
 fn unit(vector: DVec3) -> Option<DVec3> {
     (vector / vector.abs().max_element()).try_normalize()
 }

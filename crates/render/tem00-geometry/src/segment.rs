@@ -1,7 +1,6 @@
 use glam::DVec3;
 
-/// The way from a surface point to another point, of which it is asked whether anything stands in
-/// it.
+/// The segment from a surface point to another point, which is tested for obstacles.
 ///
 /// # Examples
 ///
@@ -29,7 +28,7 @@ pub struct Segment {
 }
 
 impl Segment {
-    /// Creates the way from a surface point out of the scene along `direction`, of unit length.
+    /// Creates the segment from a surface point out of the scene along `direction`, of unit length.
     ///
     /// It ends 10¹⁰ m away: no shape reaches farther than 10⁹ m from the origin.
     pub fn to_infinity(from: DVec3, from_normal: DVec3, direction: DVec3) -> Self {

@@ -24,7 +24,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Returns the shape as a motion takes it; a mesh is shared, not copied.
+    /// Returns the shape after a rigid motion; a mesh is shared, not copied.
     #[must_use]
     pub fn moved(&self, motion: &RigidMotion) -> Self {
         match self {
@@ -51,7 +51,7 @@ impl Shape {
     /// Returns the lowest and the highest corner of an axis-parallel box around the shape, in
     /// metres.
     ///
-    /// The box is tight, except around a mesh that is turned: that one holds the turned box of the
+    /// The box is tight, except around a rotated mesh, where it encloses the rotated box of the
     /// mesh.
     pub fn bounds(&self) -> (DVec3, DVec3) {
         match self {
@@ -64,7 +64,7 @@ impl Shape {
 }
 
 impl From<TriangleMesh> for Shape {
-    /// Puts a mesh where its vertices say.
+    /// Places a mesh at the coordinates of its vertices.
     fn from(mesh: TriangleMesh) -> Self {
         Self::Mesh(mesh.into())
     }
@@ -97,7 +97,8 @@ pub struct Hit {
 impl Hit {
     /// Returns the normal with which light is scattered towards a viewer in this direction.
     ///
-    /// Where the interpolated normal shows the viewer its other side, it is the surface's own.
+    /// Where the interpolated normal shows the viewer its other side, the result is the surface's
+    /// own normal.
     pub fn normal_seen_from(&self, towards: DVec3) -> DVec3 {
         let agree = self.shading_normal.dot(towards) * self.normal.dot(towards) > 0.0;
         if agree {

@@ -10,7 +10,7 @@ use tem00_numerics::seed::scattered;
 
 use super::{Child, Hierarchy, Node, PADDING, WIDTH};
 
-/// The number of things up to which a tree is built as one, by one thread.
+/// The maximum number of things that one thread builds into a tree as a whole.
 ///
 /// It does not depend on the number of threads, and neither does the hierarchy.
 const GROUP: usize = 1 << 15;
@@ -91,9 +91,10 @@ fn padding(corner: u64) -> DVec3 {
     PADDING * (1.0 + DVec3::from_array(excess))
 }
 
-/// Parts things into those that are longer than a quarter of the box around all, and others.
+/// Separates things that are longer than a quarter of the box around all from the others.
 ///
-/// Beside small things a large one makes the box of their half almost as large as that around all.
+/// Among small things, a large one makes the box of their half almost as large as the box around
+/// all.
 fn by_size<'a>(things: &'a mut [u32], boxes: &[Aabb]) -> (&'a mut [u32], &'a mut [u32]) {
     let length = |around: &Aabb| around.diagonal().max_element();
     let longest = 0.25 * length(&union(things, boxes));
@@ -109,7 +110,7 @@ fn union(things: &[u32], boxes: &[Aabb]) -> Aabb {
     boxes.fold(Aabb::empty(), |around, other| around.union(other))
 }
 
-/// Parts things into halves, at the median of their boxes' centres, again and again.
+/// Splits things into halves, at the median of their boxes' centres, again and again.
 fn halves<'a>(things: &'a mut [u32], boxes: &[Aabb], times: u32) -> Vec<&'a mut [u32]> {
     if times == 0 {
         return vec![things];

@@ -50,7 +50,7 @@ impl MeshHierarchy {
     }
 }
 
-/// Stands for the triangle of an empty lane: meshes have fewer.
+/// Stands for the triangle of an empty lane: meshes have fewer triangles.
 const NONE: u32 = u32::MAX;
 
 impl Block {

@@ -24,7 +24,8 @@ pub(super) struct Body {
 enum Content {
     Primitive(Primitive),
     Mesh(MeshInstance),
-    /// A triangle of a mesh too small, beside the scene, for a hierarchy of its own.
+    /// A triangle stored in the hierarchy of the scene, because its mesh is too small for a
+    /// hierarchy of its own.
     Triangle(MeshInstance, u32),
 }
 
@@ -101,15 +102,15 @@ fn placement(instance: &MeshInstance) -> Placement {
     }
 }
 
-/// Tells whether the rounding of coordinates in the scene, 2⁻⁵³ `reach`, is not small beside what
-/// single precision resolves in a mesh, 2⁻²⁴ of its size.
+/// Tells whether the rounding of coordinates in the scene, 2⁻⁵³ `reach`, is not small compared with
+/// the resolution of single precision in a mesh, 2⁻²⁴ of its size.
 fn is_tiny(instance: &MeshInstance, reach: f64) -> bool {
     const LARGE_ENOUGH: f64 = 1.0 / (1 << 24) as f64;
     let (low, high) = instance.bounds();
     (high - low).max_element() <= LARGE_ENOUGH * reach
 }
 
-/// The parts of a scene, as what the leaves of its hierarchy hold.
+/// The parts of a scene, as the content of the leaves of its hierarchy.
 #[derive(Clone, Debug)]
 pub(super) struct Bodies {
     hierarchy: Hierarchy,

@@ -15,7 +15,7 @@ pub(super) const LANES: usize = 64;
 /// The number of rays in one vector.
 const CHUNK: usize = 16;
 
-/// Rays in the unit of a hierarchy, of which each has a bit in a set.
+/// Rays in the unit of a hierarchy, each with a bit in a set.
 #[repr(align(64))]
 pub(super) struct Packet {
     origin: [[f32; LANES]; 3],
@@ -119,14 +119,14 @@ impl Packet {
         }
     }
 
-    /// Returns how far the beam of all rays is from the boxes of a node at least, and which of them
-    /// it may meet.
+    /// Returns the minimum distances of the beam of all rays from the boxes of a node, and the
+    /// boxes that it may meet.
     #[inline(always)]
     pub(super) fn beam_meets<S: Simd>(&self, simd: S, node: &Node) -> (f32x8<S>, u64) {
         self.beam.meet(simd, node)
     }
 
-    /// Returns those of `lanes` whose rays meet a box.
+    /// Returns the lanes among `lanes` whose rays meet a box.
     #[inline(always)]
     pub(super) fn meet_box<S: Simd>(&self, simd: S, [low, high]: [[f32; 3]; 2], lanes: u64) -> u64 {
         let (low, high) = (splat(simd, low), splat(simd, high));
@@ -140,7 +140,7 @@ impl Packet {
         met & lanes
     }
 
-    /// Returns those of `lanes` whose rays meet a triangle.
+    /// Returns the lanes among `lanes` whose rays meet a triangle.
     #[inline(always)]
     pub(super) fn meet_triangle<S: Simd>(
         &self,
@@ -209,8 +209,8 @@ pub(super) fn set(mut lanes: u64) -> impl Iterator<Item = usize> {
 
 /// Intervals that hold the origins of all rays and the reciprocals of their directions.
 ///
-/// Operations of single precision preserve order, so that what they give for the ends of an
-/// interval holds what they give for the rays in it.
+/// Operations in single precision preserve order, so that their results for the ends of an interval
+/// enclose their results for the rays in it.
 #[derive(Clone, Copy, Debug)]
 struct Beam {
     origin: [[f32; 2]; 3],
@@ -237,7 +237,7 @@ impl Beam {
             } else if max < 0.0 {
                 (high[axis] - first, low[axis] - last)
             } else {
-                // Rays to both sides leave nothing out.
+                // Rays to both sides exclude no box.
                 continue;
             };
             let (min, max) = (all(min), all(max));

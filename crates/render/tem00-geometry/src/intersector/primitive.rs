@@ -15,9 +15,9 @@ pub(super) enum Primitive {
 /// A ray with the shear that turns it into the third axis.
 ///
 /// In sheared coordinates a ray meets a triangle where the origin lies inside the triangle's
-/// projection. The test of an edge uses its two corners alone and changes nothing but its sign when
-/// they are swapped, so no ray slips between two triangles that share an edge (Woop, Benthin and
-/// Wald, *Watertight Ray/Triangle Intersection*, 2013).
+/// projection. The test of an edge uses only its two corners and changes only its sign when they
+/// are swapped, so no ray slips between two triangles that share an edge (Woop, Benthin and Wald,
+/// *Watertight Ray/Triangle Intersection*, 2013).
 #[derive(Clone, Debug)]
 pub(super) struct ShearedRay {
     origin: DVec3,
@@ -132,8 +132,8 @@ impl Primitive {
     }
 }
 
-/// Returns the distance to a rectangle and where it is met, as fractions of the half edges. No ray
-/// along its plane has finite ones.
+/// Returns the distance to a rectangle and the point where it is met, as fractions of the half
+/// edges. A ray along its plane has no finite values.
 #[inline(always)]
 fn meet_rectangle(ray: &Ray, rectangle: &Rectangle) -> Option<(f64, f64, f64)> {
     let Ray { origin, direction } = *ray;
@@ -149,8 +149,8 @@ fn meet_sphere(ray: &Ray, sphere: &Sphere) -> Option<f64> {
     let radius = sphere.radius();
     let offset = sphere.centre() - origin;
     let middle = offset.dot(direction);
-    // How far the ray passes the centre keeps its digits where the difference of the squared
-    // distance and the squared radius loses them: at small, distant spheres.
+    // The distance at which the ray passes the centre keeps its digits where the difference of the
+    // squared distance and the squared radius loses them: at small, distant spheres.
     let miss = (offset - middle * direction).length();
     let half_chord_square = (radius - miss) * (radius + miss);
     if half_chord_square < 0.0 {
@@ -169,8 +169,8 @@ fn meet_sphere(ray: &Ray, sphere: &Sphere) -> Option<f64> {
     [near, far].into_iter().find(|&distance| distance > 0.0)
 }
 
-/// Returns the nearest positive distance to a tube, and where along its axis it is met, in
-/// metres from its middle.
+/// Returns the nearest positive distance to a tube, and the position along its axis where it is
+/// met, in metres from its middle.
 fn meet_cylinder(ray: &Ray, cylinder: &Cylinder) -> Option<(f64, f64)> {
     let Ray { origin, direction } = *ray;
     let (axis, radius) = (cylinder.axis(), cylinder.radius());
@@ -179,8 +179,8 @@ fn meet_cylinder(ray: &Ray, cylinder: &Cylinder) -> Option<(f64, f64)> {
     let offset = origin - cylinder.centre();
     let height = offset.dot(axis);
     let offset = offset - height * axis;
-    // Seen along the axis: a circle, and a ray of the length `across`. As with the sphere, how
-    // far it passes the centre and the product of both distances keep their digits.
+    // Seen along the axis: a circle, and a ray of the length `across`. As with the sphere, the
+    // distance at which it passes the centre and the product of both distances keep their digits.
     let square = across.length_squared();
     let middle = -offset.dot(across) / square;
     let miss = (offset + middle * across).length();

@@ -4,7 +4,7 @@ use tem00_camera::Ray;
 use super::primitive::Primitive;
 use crate::Segment;
 
-/// Index of a primitive in a scene: that of the body, and that of the triangle in it.
+/// Index of a primitive in a scene: the index of the body, and the index of the triangle in it.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub(super) struct PrimitiveIndex {
     pub body: u32,
@@ -24,7 +24,7 @@ pub(super) trait Query {
     /// Considers a primitive that the ray may meet.
     fn offer(&mut self, primitive: &Primitive, index: PrimitiveIndex);
 
-    /// Takes note that something is in the way, well before the end.
+    /// Records that something is in the way, well before the end.
     fn settle(&mut self);
 
     /// Tells whether the answer is known.
@@ -76,7 +76,7 @@ impl Query for Nearest {
     }
 }
 
-/// Does any primitive stand in the way?
+/// Query whether any primitive stands in the way.
 #[derive(Clone, Debug)]
 pub(super) struct Shadow {
     ray: Ray,
@@ -123,7 +123,7 @@ impl Query for Shadow {
         self.length
     }
 
-    /// A primitive stands in the way unless it is what the ray ends on.
+    /// A primitive stands in the way unless the ray ends on it.
     #[inline(always)]
     fn offer(&mut self, primitive: &Primitive, _: PrimitiveIndex) {
         let Some(distance) = primitive.distance(&self.ray) else {

@@ -10,7 +10,7 @@ use crate::hierarchy::{Child, Hierarchy, LocalRay, Node, WIDTH};
 pub(super) trait Leaves {
     fn hierarchy(&self) -> &Hierarchy;
 
-    /// Puts what is in a leaf to a query.
+    /// Offers the content of a leaf to a query.
     fn ask_one<S: Simd, Q: Query>(
         &self,
         simd: S,
@@ -20,7 +20,7 @@ pub(super) trait Leaves {
         stacks: &mut Stacks,
     );
 
-    /// Puts what is in a leaf to the queries in `lanes`.
+    /// Offers the content of a leaf to the queries in `lanes`.
     fn ask_many<S: Simd, Q: Query>(
         &self,
         simd: S,
@@ -41,7 +41,7 @@ pub(super) struct Stacks {
     many: Vec<(usize, u64)>,
 }
 
-/// Rays that are fewer than this go on alone.
+/// The number of rays below which each ray continues alone.
 const FEW: u32 = 8;
 
 /// Follows one ray through the node at `index` and everything below.

@@ -6,7 +6,7 @@ use glam::DVec3;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// No triangle with an area is there.
+    /// The mesh has no triangle with an area.
     Empty {
         /// The number of triangles without area.
         degenerate: usize,
@@ -18,7 +18,7 @@ pub enum MeshError {
         /// The rejected position, in metres.
         value: DVec3,
     },
-    /// A triangle refers to a vertex that is not there.
+    /// A triangle refers to a vertex that does not exist.
     Index {
         /// The index of the triangle, from 0.
         triangle: usize,
@@ -27,7 +27,7 @@ pub enum MeshError {
         /// The number of vertices.
         vertices: usize,
     },
-    /// There are not as many vertex normals as vertices.
+    /// The numbers of vertex normals and vertices differ.
     Normals {
         /// The number of vertex normals.
         normals: usize,

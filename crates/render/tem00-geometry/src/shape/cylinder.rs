@@ -84,7 +84,7 @@ impl Cylinder {
         (self.centre - reach, self.centre + reach)
     }
 
-    /// Returns the tube as a motion takes it.
+    /// Returns the tube after a rigid motion.
     #[must_use]
     pub fn moved(&self, motion: &RigidMotion) -> Self {
         Self {

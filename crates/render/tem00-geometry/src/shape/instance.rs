@@ -11,8 +11,8 @@ use crate::{Refusal, TriangleMesh, hierarchy::MeshHierarchy, mesh};
 /// x = s R p + t        p: point of the mesh
 /// ```
 ///
-/// What is placed or moved anew shares the mesh, and with it the hierarchy that finds where rays
-/// meet it.
+/// An instance that is placed or moved anew shares the mesh, and with it the hierarchy that finds
+/// where rays meet it.
 ///
 /// # Examples
 ///
@@ -53,7 +53,7 @@ impl PartialEq for MeshInstance {
 }
 
 impl MeshInstance {
-    /// Puts a mesh where its vertices say.
+    /// Places a mesh at the coordinates of its vertices.
     pub fn new(mesh: Arc<TriangleMesh>) -> Self {
         Self {
             mesh,
@@ -81,7 +81,7 @@ impl MeshInstance {
         .moved(motion))
     }
 
-    /// Returns the instance as a motion takes it.
+    /// Returns the instance after a rigid motion.
     #[must_use]
     pub fn moved(&self, motion: &RigidMotion) -> Self {
         Self {
@@ -91,18 +91,18 @@ impl MeshInstance {
         }
     }
 
-    /// Returns the mesh, where its vertices say.
+    /// Returns the mesh at the coordinates of its vertices.
     pub const fn mesh(&self) -> &Arc<TriangleMesh> {
         &self.mesh
     }
 
-    /// Returns where a point of the mesh is, in metres.
+    /// Returns the position of a point of the mesh in the world, in metres.
     #[inline]
     pub fn point(&self, point: DVec3) -> DVec3 {
         self.rotation * (self.scale * point) + self.translation
     }
 
-    /// Returns where a direction of the mesh points; its length stays.
+    /// Returns a direction of the mesh in the world; its length does not change.
     pub fn direction(&self, direction: DVec3) -> DVec3 {
         self.rotation * direction
     }
@@ -112,8 +112,8 @@ impl MeshInstance {
         if let Some(hierarchy) = self.hierarchy.get() {
             return hierarchy;
         }
-        // Not inside of `get_or_init`: while it waits for others to finish their part, a thread may
-        // take up work that asks for the same hierarchy, and would wait for itself.
+        // This is not done inside `get_or_init`: a thread that waits there for others to finish
+        // their part may take up work that asks for the same hierarchy, and would wait for itself.
         let corners = |triangle| self.mesh.corners(triangle);
         let hierarchy = MeshHierarchy::build(self.mesh.triangles().len(), corners);
         self.hierarchy.get_or_init(|| hierarchy)

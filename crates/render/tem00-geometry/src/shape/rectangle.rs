@@ -104,7 +104,7 @@ impl Rectangle {
         [offset.dot(self.inverse_u), offset.dot(self.inverse_v)]
     }
 
-    /// Returns the point at so many half edges from the centre.
+    /// Returns the point at `u` and `v` half edges from the centre.
     #[inline(always)]
     pub(crate) fn at(&self, u: f64, v: f64) -> DVec3 {
         self.centre + u * self.half_u + v * self.half_v
@@ -115,7 +115,7 @@ impl Rectangle {
         (self.centre - reach, self.centre + reach)
     }
 
-    /// Returns the rectangle as a motion takes it.
+    /// Returns the rectangle after a rigid motion.
     #[must_use]
     pub fn moved(&self, motion: &RigidMotion) -> Self {
         Self {

@@ -48,7 +48,7 @@ impl Sphere {
         (self.centre - self.radius, self.centre + self.radius)
     }
 
-    /// Returns the sphere as a motion takes it.
+    /// Returns the sphere after a rigid motion.
     #[must_use]
     pub fn moved(&self, motion: &RigidMotion) -> Self {
         Self {

@@ -40,11 +40,11 @@ pub(crate) struct Survey<'a> {
     cells: usize,
 }
 
-/// Tells the random numbers of a survey from those of a render.
+/// Separates the random numbers of a survey from the random numbers of a render.
 const SEED: u64 = 0x005e_ed0f;
 
-/// Tells whether a frame shows multiple light whose speckle is not simply that of the single light:
-/// its paths differ by a length that counts, by a motion, or by polarisation.
+/// Tells whether a frame shows multiple light whose speckle differs from the speckle of the single
+/// light: its paths differ by a length that counts, by a motion, or by polarisation.
 pub(crate) fn asks_for_survey(scene: &Scene, frame: u32, options: &RenderOptions) -> bool {
     let is_broad = scene
         .lasers
@@ -60,17 +60,17 @@ fn is_single(scene: &Scene, options: &RenderOptions) -> bool {
     is_plate(scene) || options.max_depth == Some(1)
 }
 
-/// The cells of a survey that plans the slices.
+/// The number of cells along the longer side of the image in a survey that plans the slices.
 const PLANNED_CELLS: usize = 16;
 
 impl SpecklePlan {
     /// Chooses the patterns for a scene.
     ///
     /// Each is the [`StackPlan`](tem00_speckle::StackPlan) for the image, the part of the scene
-    /// that moves into it, and the longest way by which the frames carry the pupil: rays find it in
-    /// every frame. Where the slices of all frames do not fit the memory, or do not lie along one
-    /// line, each frame has slices of its own, a part of a path without end. What the scene file
-    /// sets is kept.
+    /// that moves into it, and the longest displacement of the pupil in the frames, which rays find
+    /// in every frame. Where the slices of all frames do not fit the memory, or do not lie along
+    /// one line, each frame has its own slices, a part of a path without end. Settings of the scene
+    /// file are kept.
     ///
     /// # Errors
     ///
@@ -87,18 +87,18 @@ impl SpecklePlan {
     }
 }
 
-/// The groups of light paths of a laser, and the paths in each. A place of the image sees two
-/// groups, which are independent of each other; the places beside it see others.
+/// The groups of light paths of a laser, and the paths in each. A point of the image sees two
+/// groups, which are independent of each other; neighbouring points see other groups.
 const GROUPS: usize = 16;
 const PATHS: usize = 32;
 
-/// Side of a block of cells, one of which is surveyed in both ways.
+/// Side of a block of cells, one of which is surveyed by both methods.
 const PROBE: usize = 4;
 
 /// Starting point of paths.
 ///
-/// A beam narrow against what is seen hides from paths that start at the camera, and what is small
-/// in a wide beam from paths that start at the laser.
+/// Paths that start at the camera miss a beam that is narrow compared with the visible surface, and
+/// paths that start at the laser miss small objects in a wide beam.
 #[derive(Clone, Copy)]
 enum Way {
     FromLaser,
@@ -109,10 +109,10 @@ enum Way {
 type WayPoints<'a> = Vec<Vec<Vec<Vec<WayPoint<'a>>>>>;
 
 /// Returns a note for each laser and surface where multiple light comes from so small a part of
-/// another surface that its own speckle is as coarse as what the camera resolves: the speckle of
-/// speckle is left out.
+/// another surface that the speckle of that part is as coarse as the resolution of the camera: this
+/// speckle of speckle is left out.
 ///
-/// The reference frame is judged, where the light is not faint.
+/// The notes judge the reference frame, where the light is not faint.
 ///
 /// # Errors
 ///
@@ -140,7 +140,8 @@ pub fn cascade_notes(scene: &Scene) -> Result<Vec<CascadeNote>, TracerError> {
 const CASCADE: f64 = 0.05;
 
 impl<'a> Survey<'a> {
-    /// Surveys a frame, in which the surfaces stand as the intersector has them, in so many cells.
+    /// Creates the survey of a frame in `cells` cells along the longer side of the image; the
+    /// intersector holds the surfaces as they stand in the frame.
     pub(crate) const fn new(
         scene: &'a Scene,
         change: &'a Change,
@@ -168,8 +169,8 @@ impl<'a> Survey<'a> {
         }
     }
 
-    /// Follows light from the lasers, connects what it meets with points that the camera sees, and
-    /// returns the multiple light found there, if any.
+    /// Follows light from the lasers, connects the surfaces that it meets with points that the
+    /// camera sees, and returns the multiple light found there, if any.
     pub(crate) fn map(&self) -> Option<MultipleMap> {
         let camera = self.change.camera();
         let lit = self.way_points();
@@ -196,8 +197,8 @@ impl<'a> Survey<'a> {
         MultipleMap::new(lattice, &sums)
     }
 
-    /// Chooses the way in which the light of a laser is found by more paths, in one of `PROBE`²
-    /// cells.
+    /// Chooses the starting point from which more paths find the light of a laser, in one of
+    /// `PROBE`² cells.
     fn better_way(&self, laser: usize, groups: &[Vec<Vec<WayPoint<'_>>>], lattice: Lattice) -> Way {
         let probed = |cell: &usize| {
             let place = [cell % lattice.columns, cell / lattice.columns];
@@ -273,7 +274,7 @@ impl<'a> Survey<'a> {
         })
     }
 
-    /// The radiance at a vertex of the light of a laser that has met its surface only.
+    /// Returns the radiance at a vertex of laser light that has met only the surface there.
     fn single(&self, laser: usize, vertex: &Vertex<'_>) -> f64 {
         let laser = self.change.laser(laser);
         let Some(light) = laser.next_event(vertex.hit.position) else {

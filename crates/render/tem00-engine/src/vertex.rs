@@ -110,7 +110,7 @@ impl<'a> Vertex<'a> {
         intersector.ray_from(self.hit.position, self.hit.normal, self.axes.to_world(wi))
     }
 
-    /// Returns the way from the surface to a point.
+    /// Returns the segment from the surface to a point.
     pub(crate) const fn segment_to(&self, point: DVec3) -> Segment {
         Segment {
             from: self.hit.position,
@@ -119,7 +119,7 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// Returns the way from the surface out of the scene.
+    /// Returns the segment from the surface out of the scene.
     pub(crate) fn segment_along(&self, direction: DVec3) -> Segment {
         Segment::to_infinity(self.hit.position, self.hit.normal, direction)
     }
@@ -138,8 +138,8 @@ impl<'a> Vertex<'a> {
         self.adjoint_factor(out, [self.back.z, event.wi.z])
     }
 
-    /// Returns what scattering of power towards `out` gains over scattering with the normal of the
-    /// surface itself, so that light carries what a path from the camera would find.
+    /// Returns the gain of the power scattered towards `out` over scattering with the normal of the
+    /// surface itself, so that light carries as much as a path from the camera would find.
     ///
     /// ```text
     /// |i·n_s| |o·n_g| / (|i·n_g| |o·n_s|)     i back along the path, n_s shading, n_g geometric

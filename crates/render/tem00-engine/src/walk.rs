@@ -25,9 +25,9 @@ pub(crate) struct Walk<'a> {
 /// Quantity that a path carries.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Carried {
-    /// Power on from a laser, in watts, of as much at its `start`.
+    /// Power from a laser, in watts; `start` is the power at the start.
     Power { start: f64 },
-    /// Radiance back to the camera, as a part of what it would be without surfaces.
+    /// Radiance back to the camera, as a fraction of the radiance without surfaces.
     Radiance,
 }
 
@@ -71,14 +71,14 @@ pub(crate) trait Visitor<'a> {
     /// surface.
     fn direction(&mut self, path: usize, depth: u32) -> [f64; 2];
 
-    /// Returns a number in [0, 1) that decides if a path leaves its `depth`-th surface.
+    /// Returns a number in [0, 1) that decides whether a path leaves its `depth`-th surface.
     fn survival(&mut self, path: usize, depth: u32) -> f64;
 }
 
 impl Roulette {
-    /// Returns the probability with which a path survived its `depth`-th surface, by which what it
-    /// carries is divided, or `None` if it ends there. `left` is the part of its light that is
-    /// left.
+    /// Returns the probability with which a path survived its `depth`-th surface, by which its
+    /// carried quantity is divided, or `None` if it ends there. `left` is the fraction of its light
+    /// that is left.
     pub(crate) fn survived(self, depth: u32, left: f64, draw: impl FnOnce() -> f64) -> Option<f64> {
         if depth <= self.certain {
             return Some(1.0);
@@ -89,7 +89,7 @@ impl Roulette {
 }
 
 impl Walker {
-    /// Starts a path that carries so much.
+    /// Starts a path with the carried quantity `carries`.
     pub(crate) const fn new(number: usize, ray: Ray, carries: f64) -> Self {
         Self {
             number,
@@ -107,7 +107,7 @@ impl Walker {
 }
 
 impl Met<'_> {
-    /// Returns the part of the power that goes on towards the unit vector `out`, per steradian,
+    /// Returns the fraction of the power that goes on towards the unit vector `out`, per steradian,
     /// where light is scattered in these `axes`.
     pub(crate) fn sent(&self, out: DVec3, axes: &LocalFrame, wavelength: f64) -> f64 {
         let back = -self.walker.ray.direction;

@@ -19,10 +19,10 @@ pub(super) struct Request {
     pub surfaces: Vec<usize>,
 }
 
-/// Requirements of single frames on their slices of a path that has no end.
+/// Requirements of single frames on their slices of a path without end.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct FrameRequest {
-    /// Width and height of what frames look up from slices that they share, in pixels.
+    /// Width and height of the region that frames look up from shared slices, in pixels.
     pub region: [f64; 2],
     /// Range of each frame along the path, in pupil diameters.
     pub spans: Vec<[f64; 2]>,
@@ -48,7 +48,7 @@ pub(super) struct PatternAllocation {
     pub shifts: [f64; 2],
     pub stack: StackPlan,
     /// The lattice points about which the slices of each frame lie, whole diameters along the path;
-    /// empty where one stack holds those of all frames.
+    /// empty where one stack holds the slices of all frames.
     pub middles: Vec<[i64; 2]>,
     /// The number of stacks.
     pub count: usize,
@@ -87,12 +87,13 @@ pub(super) struct Part {
     pub offset: [f64; 2],
 }
 
-/// The path that the slices of a frame hold beyond its span, in pupil diameters: half a one to
-/// either side, as they lie about a whole one, and a quarter for points that no ray has met.
+/// The path that the slices of a frame cover beyond its span, in pupil diameters: half a diameter
+/// to either side, since the slices lie about a whole diameter, and a quarter for points that no
+/// ray has met.
 const MARGIN: f64 = 1.5;
 
 impl Choice {
-    /// Returns the same with what the scene file asks for.
+    /// Returns the same requirements with the settings of the scene file.
     fn asked(self, asked: impl Fn(StackPlan) -> StackPlan) -> Self {
         Self {
             stack: asked(self.stack),
@@ -137,9 +138,10 @@ impl FrameRequest {
 }
 
 impl Request {
-    /// Returns the stacks that hold all that is asked for, the best first.
+    /// Returns the stacks that fulfil the request, the best first.
     ///
-    /// A stack for all frames comes before one for each with as many slices per diameter.
+    /// Of stacks with as many slices per diameter, one stack for all frames comes before one stack
+    /// for each frame.
     fn choices(&self) -> Result<Vec<Choice>, TracerError> {
         let of = |needs: StackNeeds, by_frame: bool| {
             let candidates = StackPlan::candidates(&needs)?.into_iter();
@@ -199,8 +201,9 @@ impl Request {
     }
 }
 
-/// Allocates patterns to requests within a memory in bytes: a stack for each pattern, or else a
-/// position in one stack for all. `asked` makes of a plan what the scene file asks for.
+/// Allocates patterns to requests within a memory in bytes: a stack for each pattern, or else
+/// positions in one stack for all patterns. `asked` applies the settings of the scene file to a
+/// plan.
 pub(super) fn allocate(
     requests: &[Request],
     memory: u64,

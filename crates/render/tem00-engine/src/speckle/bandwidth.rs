@@ -1,4 +1,4 @@
-//! The light of each laser on each surface, by what the camera sees of it.
+//! The light of each laser on each surface, from the points that the camera sees.
 
 use core::iter;
 
@@ -14,8 +14,8 @@ use super::{
     prescan::{LaserGroups, RAYS_PER_SIDE, first_ray, pixels_of, rays_per_side},
 };
 
-/// Follows rays of the reference frame to what the camera sees, and returns the light of each laser
-/// on each surface. Those of other frames show surfaces that are not seen there.
+/// Follows rays of the reference frame to the surfaces that the camera sees, and returns the light
+/// of each laser on each surface. Rays of other frames find the surfaces that are not seen there.
 pub(super) fn laser_lights(
     scene: &Scene,
     laser_groups: LaserGroups<'_>,

@@ -16,13 +16,13 @@ pub struct ReferencePoint {
     pub normal: DVec3,
 }
 
-/// Change of speckle from one frame to another: it moves in the image, and only a part of it is
-/// left.
+/// Change of speckle from one frame to another: the pattern moves in the image and decorrelates in
+/// part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeckleChange {
     /// The displacement of the pattern on the sensor, in pixels to the right and down.
     pub displacement: DVec2,
-    /// The correlation of intensity of what is left, from 0 to 1.
+    /// The correlation of intensity apart from the displacement, from 0 to 1.
     pub correlation: f64,
 }
 
@@ -33,29 +33,30 @@ impl SpeckleChange {
         correlation: 1.0,
     };
 
-    /// Returns what becomes of the speckle of a laser at a point between two frames, by the law
-    /// that frames are [rendered](crate::render_frame) with, the first of the two as their
-    /// reference.
+    /// Returns the change of the speckle of a laser at a point between two frames, by the law with
+    /// which frames are [rendered](crate::render_frame), where the first of the two is the
+    /// reference frame.
     ///
     /// ```text
     /// x' = P⁻¹(P(x) + a)        from the image point x in the first frame to x' in the second
     /// γ  = chat²(s)             s the shift of the pupil over the speckle, in its diameters
     /// ```
     ///
-    /// P leads from the sensor, which may be tilted, behind a lens that may distort, to the plane
-    /// across the axis in which the law gives the displacement a. What is in focus is that at the
-    /// image point, not that on the axis.
+    /// P maps from the sensor, which may be tilted and lie behind a lens with distortion, to the
+    /// plane across the axis in which the law gives the displacement a. This plane is in focus at
+    /// the image point, not on the axis.
     ///
-    /// A head that moves over a still part changes speckle as the part does that moves under it.
+    /// A sensor head that moves over a fixed part changes speckle in the same way as a part that
+    /// moves under a fixed head.
     ///
-    /// Returns `None` where the law has no value, as for a point that one of the frames does not
-    /// see: each frame then has speckle of its own.
+    /// Returns `None` where the law has no value, such as for a point that one of the frames does
+    /// not see: each frame then has its own speckle.
     ///
     /// # Validity
     ///
-    /// Two later frames of a render, neither of them its reference, have both changed from a third
-    /// one. Their displacement is the difference of two. They correlate as said here, within 0.05
-    /// and what the blend of two slices adds, unless
+    /// Two later frames of a render, neither of them its reference frame, have both changed from
+    /// that frame. Their displacement is the difference of their two displacements. They correlate
+    /// as stated here, within 0.05 and the error of blending two slices, unless
     /// [`SpecklePlan::correlation_notes`](crate::SpecklePlan::correlation_notes) has a note.
     ///
     /// # Panics

@@ -37,9 +37,9 @@ struct LaserChange {
     moved: bool,
 }
 
-/// A point of a surface whose speckle the pupil has moved over.
+/// A point of a surface over whose speckle the pupil has moved.
 ///
-/// It tells a motion to one side of the reference frame from one to the other.
+/// It distinguishes motion to one side of the reference frame from motion to the other side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ReferencePoint {
     surface: usize,
@@ -49,7 +49,7 @@ pub(super) struct ReferencePoint {
     position: DVec3,
     /// Its unit normal there.
     normal: DVec3,
-    /// The way of the pupil over its speckle.
+    /// The displacement of the pupil over its speckle.
     way: DVec3,
 }
 
@@ -108,12 +108,12 @@ impl Change {
         }
     }
 
-    /// Tells whether now is the reference frame.
+    /// Returns whether the current frame is the reference frame.
     pub(super) fn is_reference(&self) -> bool {
         self.frames == 0.0
     }
 
-    /// Returns the camera now.
+    /// Returns the camera in the current frame.
     pub(crate) const fn camera(&self) -> &Camera {
         &self.cameras[1]
     }
@@ -123,16 +123,16 @@ impl Change {
         &self.perspective
     }
 
-    /// Returns laser `index` now.
+    /// Returns laser `index` in the current frame.
     pub(crate) fn laser(&self, index: usize) -> &Laser {
         &self.lasers[index].now
     }
 
-    /// Returns on which side of the reference frame now is for the speckle of a laser on the
-    /// surface of a reference point: 1 where the pupil has moved over its speckle as it has where
-    /// it moved farthest, and −1 where it has moved the other way.
+    /// Returns the side of the reference frame on which the current frame is, for the speckle of a
+    /// laser on the surface of a reference point: 1 if the pupil has moved over its speckle in the
+    /// direction of the largest displacement, and −1 if it has moved the other way.
     ///
-    /// Without a reference point, or where the theory has no value, −1 is before the reference
+    /// Without a reference point, or where the theory has no value, −1 means before the reference
     /// frame.
     pub(super) fn side(
         &self,
@@ -152,8 +152,8 @@ impl Change {
         }
     }
 
-    /// Returns what a point tells of the way of the pupil over its speckle, if the theory has a
-    /// value.
+    /// Returns the reference point at a point, with the displacement of the pupil over its speckle,
+    /// if the theory has a value.
     pub(super) fn reference_point(
         &self,
         laser: usize,
@@ -163,7 +163,7 @@ impl Change {
         self.reference_point_along(point, self.way(laser, geometry, point)?)
     }
 
-    /// Returns the point with a way of the pupil over its speckle.
+    /// Returns the reference point for a given displacement of the pupil over its speckle.
     pub(super) fn reference_point_along(
         &self,
         point: &SpecklePoint,
@@ -202,15 +202,16 @@ impl Change {
         (is_inside && is_lit).then_some(SpecklePoint { pixel, ..point })
     }
 
-    /// The way of the pupil over the speckle of a point, if the theory has a value.
+    /// Returns the displacement of the pupil over the speckle of a point, if the theory has a
+    /// value.
     fn way(&self, laser: usize, geometry: &ImagingGeometry, point: &SpecklePoint) -> Option<DVec3> {
         let shift = self.known_shift(laser, geometry, point, LightPath::Direct)?;
         Some(shift.way()).filter(|way| way.is_finite())
     }
 
-    /// Returns what has become of the speckle of a laser at a point.
+    /// Returns the shift of the speckle of a laser at a point since the reference frame.
     ///
-    /// Where the theory has no value, every frame has speckle of its own.
+    /// Where the theory has no value, every frame has its own speckle.
     pub(super) fn speckle_shift(
         &self,
         laser: usize,
@@ -221,7 +222,8 @@ impl Change {
         shift.unwrap_or_else(|| self.new_speckle())
     }
 
-    /// Returns what has become of the speckle of a laser at a point, if the theory has a value.
+    /// Returns the shift of the speckle of a laser at a point since the reference frame, if the
+    /// theory has a value.
     pub(super) fn known_shift(
         &self,
         laser: usize,
@@ -235,7 +237,7 @@ impl Change {
         shift[0]
     }
 
-    /// Speckle that has nothing of that in the reference frame.
+    /// Returns the shift of speckle that has nothing in common with the reference frame.
     pub(super) fn new_speckle(&self) -> SpeckleShift {
         SpeckleShift {
             pupil: self.frames().abs(),
@@ -243,8 +245,8 @@ impl Change {
         }
     }
 
-    /// Writes what has become of the speckle of light of a laser at points of one surface, `None`
-    /// where the theory has no value.
+    /// Writes the shifts of the speckle of a laser at points of one surface, `None` where the
+    /// theory has no value.
     ///
     /// # Panics
     ///
@@ -325,7 +327,7 @@ impl Change {
 }
 
 impl ReferencePoint {
-    /// Returns the way of the pupil across the line of sight, to the right and up.
+    /// Returns the displacement of the pupil across the line of sight, to the right and up.
     pub(super) fn way_across(&self) -> DVec2 {
         self.way.truncate()
     }

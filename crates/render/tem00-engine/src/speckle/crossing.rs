@@ -13,10 +13,11 @@ use super::{
     prescan::{FrameNeeds, MotionPrescan},
 };
 
-/// Two frames whose speckle is rendered with another correlation than the law has.
+/// Two frames whose rendered speckle has another correlation than the law predicts.
 ///
-/// The pupil moves over the speckle in two directions, and bodies share a stack or points move
-/// apart; or the law has no value from the reference frame. Its `Display` is one line that says so.
+/// Either the pupil moves over the speckle in two directions while bodies share a stack or points
+/// move apart, or the law has no value from the reference frame. The `Display` of the note is one
+/// line that says so.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CorrelationNote {
     /// The name of the surface.
@@ -25,8 +26,8 @@ pub struct CorrelationNote {
     pub laser: usize,
     /// The frames.
     pub frames: [u32; 2],
-    /// The correlation of intensity with which a point of the surface is rendered, its displacement
-    /// in the image apart.
+    /// The correlation of intensity with which a point of the surface is rendered, apart from its
+    /// displacement in the image.
     pub rendered: f64,
     /// Correlation by the law.
     pub law: f64,
@@ -44,7 +45,7 @@ impl fmt::Display for CorrelationNote {
     }
 }
 
-/// The way by which slices along a line follow a motion of the pupil.
+/// The method by which slices along a line follow a motion of the pupil.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Following {
     /// Coordinate by the length of the displacement, to either side of the reference frame.
@@ -72,7 +73,7 @@ pub(super) struct Followed {
     worst: Option<FramePair>,
 }
 
-/// Two frames: the correlation with which a surface is rendered, and that of the law.
+/// Two frames: the correlation with which a surface is rendered, and the correlation by the law.
 #[derive(Clone, Copy, Debug)]
 struct FramePair {
     surface: usize,
@@ -105,34 +106,35 @@ impl Followed {
     }
 }
 
-/// The largest error of a correlation that asks for nothing: neither for another way to follow a
-/// motion, nor for a note.
+/// The largest error of a correlation that is accepted: it needs neither another method to follow
+/// the motion nor a note.
 const MAX_ERROR: f64 = 0.05;
 
-/// Frames that are compared, evenly spread; with each, the next.
+/// The number of evenly spread frames that are compared, each together with the next frame.
 const SPREAD: u32 = 32;
 
-/// Frames with which one is compared, of those where the pupil has moved about as far.
+/// The number of frames with which a frame is compared, out of those where the pupil has moved
+/// about as far.
 const NEIGHBOURS: usize = 64;
 
-/// Points that are followed, beside the middle of what each frame sees, where ways differ by less
-/// than this, in pupil diameters.
+/// The number of points that are followed, in addition to the middle of the points that each frame
+/// sees where displacements differ by less than `ALIKE`, in pupil diameters.
 const POINTS: usize = 4;
 const ALIKE: f64 = 0.1;
 
-/// The ways of the pupil over the speckle of some points, of surfaces that move alike, in some
-/// frames.
+/// The displacements of the pupil over the speckle of some points, of surfaces that move alike, in
+/// some frames.
 pub(super) struct Tracks {
     frames: Vec<u32>,
-    /// The middle of the ways of all that each of the frames sees.
+    /// The middle of the displacements of all points that each of the frames sees.
     middles: Vec<DVec2>,
-    /// The axis along which the ways in a frame differ most.
+    /// The axis along which the displacements in a frame differ most.
     axis: DVec2,
-    /// The ways of each point, in the frames that see it.
+    /// The displacements of each point, in the frames that see it.
     points: Vec<Vec<Way>>,
 }
 
-/// The way of the pupil over the speckle of a point.
+/// The displacement of the pupil over the speckle of a point.
 #[derive(Clone, Copy, Debug)]
 struct Way {
     /// The frame, among those of the tracks.
@@ -140,7 +142,7 @@ struct Way {
     vector: DVec2,
     /// Its length, negative on the other side of the reference frame.
     length: f64,
-    /// The way since the frame before, by the law from that one.
+    /// The displacement since the previous frame, by the law from that frame.
     step: Option<DVec2>,
 }
 
@@ -192,8 +194,8 @@ impl Tracks {
         }
     }
 
-    /// Returns how slices can follow the points: by the length of the motion, and as well as they
-    /// can.
+    /// Returns how slices can follow the points: by the length of the motion, and by the best
+    /// method.
     pub(super) fn followed(&self, waves: &[Waves<'_>]) -> [Followed; 2] {
         let follow = |following: Following| {
             let pairs = waves
@@ -246,8 +248,8 @@ impl Tracks {
     }
 }
 
-/// The frames that are compared: some that are spread evenly, and the two that slices along one
-/// line confuse most, each with the next.
+/// Returns the frames that are compared: evenly spread frames and the two frames that slices along
+/// one line confuse most, each with the next frame.
 fn compared(prescan: &MotionPrescan, count: u32) -> Vec<u32> {
     let spread = (0..SPREAD).map(|i| i * (count - 1) / (SPREAD - 1));
     let frames = spread.chain(most_confused(prescan, count));
@@ -257,7 +259,7 @@ fn compared(prescan: &MotionPrescan, count: u32) -> Vec<u32> {
     frames.into_iter().collect()
 }
 
-/// The two frames in which the pupil has moved about as far, but elsewhere.
+/// Returns two frames in which the pupil has moved about as far, but to different places.
 fn most_confused(prescan: &MotionPrescan, count: u32) -> [u32; 2] {
     let middle = |frame: u32| {
         let middle = Way::in_the_middle(&prescan.frames[frame as usize], 0);
@@ -312,7 +314,7 @@ impl<'a> Waves<'a> {
         waves
     }
 
-    /// The direction in which they displace the pupil.
+    /// Returns the direction in which the waves displace the pupil.
     fn axis(&self) -> DVec2 {
         self.line.as_ref().map_or(DVec2::X, |(_, b)| b.axis)
     }
@@ -321,8 +323,8 @@ impl<'a> Waves<'a> {
         self.line.as_ref().map_or(0.0, |(_, b)| b.reach)
     }
 
-    /// Returns the correlation of intensities between which the pupil has moved by so many
-    /// diameters, where waves displace it along an axis.
+    /// Returns the correlation of intensities after the pupil has moved by `shift`, in diameters,
+    /// where the waves displace it along an axis.
     pub(super) fn correlation(&self, shift: DVec2, axis: DVec2) -> f64 {
         let Some((line, bandwidth)) = &self.line else {
             return pupil_overlap_correlation(shift.length());

@@ -31,12 +31,12 @@ pub(crate) struct SpeckleFrame<'a> {
     sides: Vec<Vec<f64>>,
     /// The slices of each pattern of each laser.
     windows: Vec<Vec<Arc<Window>>>,
-    /// The light that has met several rough surfaces, where its speckle is not simply that of the
-    /// single light.
+    /// The light that has met several rough surfaces, where its speckle differs from the speckle of
+    /// the single light.
     multiple: Option<MultipleMap>,
 }
 
-/// Multiple light beside single light at a point.
+/// The mixture of multiple and single light at a point.
 #[derive(Clone, Copy, Debug)]
 struct Mix {
     multiple: MultipleLight,
@@ -59,7 +59,7 @@ impl SpeckleModel {
     ///
     /// # Errors
     ///
-    /// Returns an error if the memory for a stack cannot be had.
+    /// Returns an error if the memory for a stack cannot be allocated.
     pub fn generate(scene: &Scene, plan: &SpecklePlan) -> Result<Self, TracerError> {
         let lasers = scene.lasers.iter().zip(plan.patterns());
         let lasers = lasers
@@ -79,7 +79,7 @@ impl SpeckleModel {
     ///
     /// # Errors
     ///
-    /// Returns an error if the memory for the slices of the frame cannot be had.
+    /// Returns an error if the memory for the slices of the frame cannot be allocated.
     pub(crate) fn in_frame(
         &self,
         scene: &Scene,
@@ -113,14 +113,14 @@ impl SpeckleFrame<'_> {
         &self.change
     }
 
-    /// Looks up the speckle of multiple light by what a survey has found.
+    /// Looks up the speckle of multiple light with the results of a survey.
     pub(crate) fn with_multiple_light(mut self, map: Option<MultipleMap>) -> Self {
         self.multiple = map;
         self
     }
 
-    /// Returns the speckle factor of laser `laser` at a surface point, beside single light as it is
-    /// around there.
+    /// Returns the speckle factor of laser `laser` at a surface point, for the local ratio of
+    /// single to multiple light.
     pub(crate) fn factor(&self, laser: usize, point: &SpecklePoint) -> f64 {
         let key = (laser, point.surface);
         let map = self.multiple.as_ref();
@@ -135,7 +135,7 @@ impl SpeckleFrame<'_> {
     /// Writes the speckle factors of laser `laser` at many surface points into `factors`, the same
     /// bits as one by one.
     ///
-    /// `singles` are the radiances of the light that has met this surface only.
+    /// `singles` are the radiances of the light that has met only this surface.
     ///
     /// Neighbouring points of one surface, one after the other, are looked up fastest.
     ///
@@ -209,7 +209,7 @@ impl SpeckleFrame<'_> {
         }
     }
 
-    /// Writes what has become of the speckle of points of one surface since the reference frame.
+    /// Writes the shifts of the speckle of points of one surface since the reference frame.
     fn shifts(
         &self,
         laser: usize,
@@ -273,7 +273,7 @@ impl Default for Block {
 }
 
 impl Block {
-    /// Moves the coordinates by an offset in periods of a stack of so many samples.
+    /// Moves the coordinates by an offset in periods of a stack of `size` samples.
     fn shift(&mut self, offset: [f64; 2], size: [usize; 2]) {
         let [x0, y0] = in_samples(offset, size);
         self.x.iter_mut().for_each(|x| *x += x0);
@@ -295,7 +295,7 @@ impl Block {
     }
 }
 
-/// An offset in periods of a stack, in samples.
+/// Converts an offset in periods of a stack to samples.
 fn in_samples(offset: [f64; 2], size: [usize; 2]) -> [f64; 2] {
     [0, 1].map(|axis| offset[axis] * size[axis] as f64)
 }

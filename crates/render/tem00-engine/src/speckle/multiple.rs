@@ -1,5 +1,5 @@
-//! Light that has met several rough surfaces: what its speckle has in common with that of the light
-//! which has met one.
+//! Light that has met several rough surfaces, and what its speckle has in common with the speckle
+//! of light that has met one.
 
 mod lattice;
 mod light;
@@ -15,10 +15,10 @@ pub(crate) use self::{
     sums::{MultiplePath, MultipleSums},
 };
 
-/// The laser and the surface whose light is meant.
+/// The key of light: the laser and the surface.
 pub(crate) type LightKey = (usize, usize);
 
-/// The part of the brightest light of a laser below which light is faint.
+/// The fraction of the brightest light of a laser below which light is faint.
 const FAINT: f64 = 0.02;
 
 /// The multiple light over the image, on a lattice of cells.
@@ -31,17 +31,18 @@ pub(crate) struct MultipleMap {
 #[derive(Clone, Debug)]
 pub(crate) struct MultipleLayer {
     lattice: Lattice,
-    /// The light that was found in cells, and for each cell its number among it.
+    /// The light that was found in cells, and for each cell the index of its light in this list.
     lights: Vec<MultipleLight>,
     cells: Vec<Option<u32>>,
     /// The mean over the image.
     overall: MultipleLight,
-    /// The radiance below which light is faint beside the brightest of the laser, in W/(m² sr).
+    /// The radiance below which light is faint compared with the brightest light of the laser, in
+    /// W/(m² sr).
     pub(super) faint: f64,
 }
 
-/// The part that the mean over the whole image has in that over neighbouring cells, in cells: it
-/// decides only where the neighbourhood has found next to nothing.
+/// The weight of the image-wide mean when a cell is smoothed, in cells; it matters only where
+/// neighbouring cells have found almost nothing.
 const PART_OF_ALL: f64 = 0.1;
 
 impl MultipleMap {

@@ -24,11 +24,11 @@ pub struct SpecklePlan {
     patterns: Vec<PatternPlan>,
 }
 
-/// The patterns of one laser: sizes, path of the slices, and why.
+/// The patterns of one laser: their sizes, the path of the slices, and the reasons.
 ///
-/// Surfaces that move alike share a pattern, as one body would. Others have patterns of their own:
-/// what a moving body uncovers shows speckle that has not been seen there before. A surface whose
-/// light is a sum of patterns has several.
+/// Surfaces that move alike share a pattern, as one body would. Other surfaces have their own
+/// patterns: a surface that a moving body uncovers shows speckle that has not been seen there
+/// before. A surface whose light is a sum of patterns has several.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PatternPlan {
     wavelength: f64,
@@ -56,7 +56,7 @@ pub(super) struct SurfacePatterns {
     pub components: usize,
     /// The number of modes.
     pub modes: usize,
-    /// The point that tells one side of the reference frame from the other.
+    /// The point that distinguishes one side of the reference frame from the other.
     pub reference_point: Option<ReferencePoint>,
     /// Assignment of slices to a motion.
     pub following: Following,
@@ -66,7 +66,7 @@ pub(super) struct SurfacePatterns {
 }
 
 impl SurfacePatterns {
-    /// Returns the parts of one component of polarisation, so many whose fields add together.
+    /// Returns the parts of one component of polarisation in groups of `fields`, whose fields add.
     pub(super) fn fields_of(
         &self,
         component: usize,
@@ -117,8 +117,8 @@ impl SpecklePlan {
         Ok(Self { patterns })
     }
 
-    /// Returns a note for each laser and each group of surfaces that move alike whose frames
-    /// correlate otherwise, by more than 0.05, than by the law.
+    /// Returns a note for each laser and each group of surfaces that move alike whose rendered
+    /// correlation between frames differs by more than 0.05 from the law.
     pub fn correlation_notes(&self) -> impl Iterator<Item = &CorrelationNote> {
         self.patterns.iter().flat_map(|pattern| &pattern.notes)
     }
@@ -129,7 +129,8 @@ impl SpecklePlan {
     }
 }
 
-/// The group of each surface: those with the same motion have the same, and all that stand still.
+/// Returns the group of each surface: surfaces with the same motion share a group, and so do all
+/// that stand still.
 fn groups(scene: &Scene) -> Vec<usize> {
     let mut motions: Vec<&Trajectory> = Vec::new();
     let surfaces = scene.surfaces.iter();
@@ -188,7 +189,7 @@ impl PatternPlan {
         bandwidths.max_by(|a, b| a.reach.total_cmp(&b.reach))
     }
 
-    /// Returns the seed of allocation `number`: that of the laser for the first.
+    /// Returns the seed of allocation `number`: the first has the seed of the laser.
     pub(super) const fn seed_of(&self, number: u64) -> u64 {
         derived(self.seed, Purpose::Body, number)
     }

@@ -28,12 +28,12 @@ pub(super) const RAYS_PER_SIDE: u32 = 128;
 const FEWEST_RAYS_PER_SIDE: u32 = 16;
 const RAYS: u32 = 1 << 20;
 
-/// The longest sequence of frames that are sampled.
+/// The maximum number of frames in a sequence that is sampled.
 const MAX_FRAMES: u32 = 1 << 18;
 
-/// Points that are kept: of so many frames so many per image side, and of so many frames the one
-/// whose speckle has changed most. They show what one ray of a frame misses: how the motion differs
-/// over a surface, and where a small part is.
+/// Points that are kept: `KEPT_PER_SIDE` per image side in each of `KEPT_FRAMES` frames, and in
+/// each of `KEPT_FARTHEST` frames the point whose speckle has changed most. They show what one ray
+/// of a frame misses: how the motion differs over a surface, and where a small part is.
 const KEPT_FRAMES: u32 = 4;
 const KEPT_PER_SIDE: u32 = 4;
 const KEPT_FARTHEST: usize = 16;
@@ -47,10 +47,11 @@ pub(super) struct MotionPrescan {
     /// Width and height of the image, in pixels.
     pub image: DVec2,
     /// The corners of the region of the reference frame's image from which speckle is looked up, in
-    /// pixels: that of the image itself, and of where lit points of other frames were.
+    /// pixels: the region of the image itself, and of the places where lit points of other frames
+    /// were.
     region: Region,
     /// The largest motion of the pupil over the speckle to either side of the reference frame, in
-    /// pupil diameters; the second to the side of the farthest.
+    /// pupil diameters; the second is to the side of the farthest motion.
     pub shifts: [f64; 2],
     /// A point over whose speckle the pupil has moved farthest.
     pub reference_point: Option<ReferencePoint>,
@@ -67,7 +68,7 @@ pub(super) struct FrameNeeds {
     /// The smallest and the largest motion of the pupil over the speckle, in pupil diameters,
     /// negative on the other side of the reference frame.
     pub span: [f64; 2],
-    /// The ways of the pupil over the speckle, to the right and up, in pupil diameters.
+    /// The displacements of the pupil over the speckle, to the right and up, in pupil diameters.
     pub ways: Region,
 }
 
@@ -96,15 +97,16 @@ impl MotionPrescan {
         self.region.size()
     }
 
-    /// Returns the axis of the pupil along which the ways of the points of a frame differ most.
+    /// Returns the axis of the pupil along which the displacements of the points of a frame differ
+    /// most.
     pub(super) fn widest_axis(&self) -> DVec2 {
         let sizes = self.frames.iter().map(|frame| frame.ways.size());
         let size = sizes.fold(DVec2::ZERO, DVec2::max);
         if size.y > size.x { DVec2::Y } else { DVec2::X }
     }
 
-    /// Returns width and height of the largest region from which frames look up slices that they
-    /// share, in pixels, where each looks up such a part of the path, in pupil diameters.
+    /// Returns width and height, in pixels, of the largest region from which frames look up shared
+    /// slices, where each frame looks up its span of the path, in pupil diameters.
     pub(super) fn shared_region(&self, spans: &[[f64; 2]]) -> DVec2 {
         // Pupils that overlap stand in the same diameter of the path, or in neighbouring ones.
         let mut parts = BTreeMap::<i64, Region>::new();
@@ -233,7 +235,8 @@ impl LaserGroups<'_> {
         (0..self.geometries.len()).map(of_laser).collect()
     }
 
-    /// Returns what a frame asks of each laser and group; nothing where it sees none of the group.
+    /// Returns the requirements of a frame for each laser and group; nothing where the frame sees
+    /// no surface of the group.
     fn needs(
         &self,
         samples: &mut [Vec<FrameSample>],
@@ -264,7 +267,7 @@ impl LaserGroups<'_> {
 }
 
 impl MotionPrescan {
-    /// Adds what the next frame asks of the pattern, if it asks for something.
+    /// Adds the requirements of the next frame on the pattern, if it has any.
     fn add(&mut self, needs: Option<FrameNeeds>) {
         let before = self.frames.last().copied().unwrap_or(FrameNeeds {
             region: Region::NONE,
@@ -282,7 +285,7 @@ impl MotionPrescan {
     }
 }
 
-/// The rays per image side for each of so many frames.
+/// Returns the rays per image side for each of `frames` frames.
 pub(super) fn rays_per_side(frames: u32) -> u32 {
     (RAYS / frames)
         .isqrt()
@@ -299,8 +302,8 @@ pub(super) fn first_ray(change: &Change, side: u32) -> DVec2 {
     (DVec2::splat(0.5) + farther * DVec2::from_array(StackPlan::place(1))).rem_euclid(DVec2::ONE)
 }
 
-/// Image points evenly spread over the image, in pixels: so many along each side, from a point in
-/// distances between them.
+/// Returns image points evenly spread over the image, in pixels: `side` along each side, starting
+/// at `first`, in distances between them.
 pub(super) fn pixels_of(
     camera: &Camera,
     side: u32,

@@ -9,10 +9,11 @@ use crate::{
     walk::{Carried, Met, Roulette, Visitor, Walk, Walker},
 };
 
-/// Surfaces that a path always leaves again before it may end by chance.
+/// Russian roulette: a path always leaves this number of surfaces before it may end by chance.
 const ROULETTE: Roulette = Roulette { certain: 2 };
 
-/// The paths back from a point that the camera sees, and the light of a laser on what they meet.
+/// The paths back from a point that the camera sees, and the light of a laser on the surfaces that
+/// they meet.
 struct Sight<'s, 'a> {
     survey: &'s Survey<'a>,
     laser: usize,

@@ -49,7 +49,8 @@ impl<'a> Survey<'a> {
         points
     }
 
-    /// The way of light to a surface, on from the last, or from the phase of the beam itself.
+    /// Returns the path of light to a surface, continued from the last surface, or from the phase
+    /// of the beam itself.
     fn way_on(
         &self,
         last: Option<Way>,

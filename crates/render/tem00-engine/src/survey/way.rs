@@ -4,12 +4,12 @@ use tem00_tracer::LocalFrame;
 
 use crate::walk::Met;
 
-/// The way of light between a laser and the camera, over surfaces that may have moved.
+/// The path of light between a laser and the camera, over surfaces that may have moved.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Way {
     /// The optical length, in metres.
     pub length: f64,
-    /// The length less that of the same way in the reference frame.
+    /// The length minus the length of the same path in the reference frame.
     pub change: f64,
     /// The degree of polarisation that the rough surfaces leave.
     pub polarisation: f64,
@@ -17,7 +17,7 @@ pub(super) struct Way {
     pub last: [DVec3; 2],
 }
 
-/// A point of a rough surface that the light of a laser has met, and its way there.
+/// A point of a rough surface that the light of a laser has met, and its path there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WayPoint<'a> {
     pub met: Met<'a>,
@@ -25,7 +25,7 @@ pub(super) struct WayPoint<'a> {
 }
 
 impl Way {
-    /// Goes on to a point, now and in the reference frame, through a medium of this index.
+    /// Continues to a point, now and in the reference frame, through a medium of this index.
     pub(super) fn on_to(self, here: [DVec3; 2], index: f64) -> Self {
         let [now, before] = self.distances(here);
         Self {
@@ -55,7 +55,8 @@ impl WayPoint<'_> {
         (irradiance > 0.0 && irradiance.is_finite()).then_some((irradiance, -out))
     }
 
-    /// Returns the way of the light on to a point, which stood at `origin` in the reference frame.
+    /// Returns the path of the light continued to a point, which stood at `origin` in the reference
+    /// frame.
     pub(super) fn way_to(&self, point: DVec3, origin: DVec3) -> Way {
         let [now, before] = self.way.distances([point, origin]);
         Way {

@@ -12,8 +12,8 @@ use super::{
     Block, Mix, SpeckleFrame, Window, in_samples,
 };
 
-/// The fraction of light below which a pattern counts as even: many such leave a contrast below
-/// 0.04.
+/// The fraction of light below which a pattern counts as even: many such patterns leave a contrast
+/// below 0.04.
 const FAINT_PATTERN: f64 = 0.02;
 
 /// Look-up coordinates of a point.
@@ -31,9 +31,9 @@ impl SpeckleFrame<'_> {
     /// Looks up points in light of one wave number each, drawn from the line of the laser, and in
     /// sums of patterns.
     ///
-    /// Another wave number sees the pupil displaced along the axis of the surface, as after a
-    /// motion; and the heights of the relief in other phases. Multiple light adds patterns, each at
-    /// a position of its own.
+    /// At another wave number the pupil is displaced along the axis of the surface, as after a
+    /// motion, and the heights of the relief have other phases. Multiple light adds patterns, each
+    /// at its own position.
     pub(super) fn look_up_mixes(
         &self,
         laser: usize,
@@ -113,7 +113,7 @@ impl SpeckleFrame<'_> {
         }
     }
 
-    /// The intensities, of mean 1, of one of the independent patterns of a component of
+    /// Returns the intensities, of mean 1, of one of the independent patterns of a component of
     /// polarisation.
     fn intensities(
         &self,
@@ -135,7 +135,7 @@ impl SpeckleFrame<'_> {
             return sums;
         }
         let window = &self.windows[laser][surface.allocation];
-        // A component that the single light does not have takes positions of its own.
+        // A component that the single light does not have has its own positions.
         let planned = component.min(surface.components - 1);
         let number = number + (component - planned) * Recombination::PATTERNS;
         let beside = StackPlan::place(number);
@@ -157,7 +157,8 @@ impl SpeckleFrame<'_> {
                 let mut block = self.block(laser, (window, stack), places, axis);
                 block.shift(part.offset, stack.size());
                 block.shift(beside, stack.size());
-                // Places see the pupil's way from the first slice of all as ramps of their own.
+                // Each position sees the displacement of the pupil from the very first slice as its
+                // own phase ramp.
                 let [x0, y0] = in_samples(part.offset, stack.size());
                 let turns: f64 = [0, 1]
                     .map(|axis| part.offset[axis] * window.middle[axis] as f64)

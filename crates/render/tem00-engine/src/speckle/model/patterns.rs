@@ -29,8 +29,8 @@ pub(super) struct Pattern {
     /// Pupil field of each stack.
     fields: Vec<PupilField>,
     path: SlicePath,
-    /// The lattice points about which the slices of each frame lie; empty where one stack holds
-    /// those of all frames.
+    /// The lattice points about which the slices of each frame lie; empty where one stack holds the
+    /// slices of all frames.
     middles: Vec<[i64; 2]>,
     /// The slices that the last frame has looked up.
     last: Arc<Mutex<Option<Arc<Window>>>>,
@@ -80,7 +80,7 @@ impl Pattern {
         Ok(pattern)
     }
 
-    /// Returns the slices that a frame looks up: those of the last one, or new ones.
+    /// Returns the slices that a frame looks up: the slices of the last frame, or new ones.
     pub(super) fn window(&self, frame: u32) -> Result<Arc<Window>, TracerError> {
         let middle = self.middles.get(frame as usize).copied();
         let middle = middle.unwrap_or([0; 2]);
@@ -88,7 +88,7 @@ impl Pattern {
         if let Some(window) = last.as_ref().filter(|window| window.middle == middle) {
             return Ok(Arc::clone(window));
         }
-        // Its memory is free for the new ones.
+        // This frees the memory for the new slices.
         *last = None;
         let window = Arc::new(self.generate_window(middle)?);
         *last = Some(Arc::clone(&window));
@@ -122,7 +122,8 @@ impl Pattern {
         sign: f64,
         coordinates: &mut [f64],
     ) {
-        // Beyond the reach the speckle is new to the reference frame, wherever the pupil stands.
+        // Beyond the reach the speckle is independent of the reference frame, wherever the pupil
+        // stands.
         let reach = self.reaches[usize::from(sign > 0.0)];
         for (u, shift) in coordinates.iter_mut().zip(shifts) {
             *u = shift.pupil;
@@ -133,7 +134,7 @@ impl Pattern {
 }
 
 impl Window {
-    /// Returns where its stacks have a coordinate in slices.
+    /// Returns the coordinate within its stacks that belongs to a coordinate in slices.
     pub(super) fn local(&self, u: f64) -> f64 {
         (u - self.middle_slice).clamp(-self.reach, self.reach)
     }

@@ -14,7 +14,7 @@ pub(crate) struct Lattice {
 const NEIGHBOURS: usize = 2;
 
 impl Lattice {
-    /// Divides an image into at most so many cells along its longer side.
+    /// Divides an image into at most `cells` cells along its longer side.
     pub(crate) fn over([width, height]: [usize; 2], cells: usize) -> Self {
         const MIN_SIDE: usize = 4;
         let side = width.max(height).div_ceil(cells).max(MIN_SIDE);
@@ -25,7 +25,7 @@ impl Lattice {
         }
     }
 
-    /// The cells about one, itself among them.
+    /// Returns the cells around a cell, itself included.
     pub(super) fn neighbours(self, index: usize) -> impl Iterator<Item = usize> {
         let (row, column) = (index / self.columns, index % self.columns);
         let around = |middle: usize, count: usize| {

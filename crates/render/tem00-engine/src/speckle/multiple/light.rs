@@ -28,16 +28,16 @@ pub(crate) struct MultipleLight {
 }
 
 impl MultipleLight {
-    /// Returns what has become of the speckle of single and multiple light together, of which this
-    /// is the given `fraction`, at a point, from the shifts of both.
+    /// Returns the shift of the speckle of single and multiple light together at a point, from the
+    /// shifts of both; `fraction` is the fraction of the multiple light.
     ///
     /// ```text
     /// γ = |f₁ chat(s₁) + f₂ chat(s₂) ⟨e^{ik(δ − δ₁)}⟩|²
     /// ```
     ///
-    /// s₁ is the displacement of the pupil over the speckle of the single light; s₂ that without
-    /// the source, which other surfaces take the place of: their paths change by δ, over which the
-    /// mean is taken.
+    /// s₁ is the displacement of the pupil over the speckle of the single light; s₂ is the
+    /// displacement without the source, which other surfaces replace: their paths change by δ, over
+    /// which the mean is taken.
     pub(in crate::speckle) fn shift(
         &self,
         [single, multiple]: [SpeckleShift; 2],
@@ -60,19 +60,21 @@ impl MultipleLight {
         }
     }
 
-    /// Tells whether it makes one pattern with single light of this degree of polarisation.
+    /// Returns whether multiple light makes one pattern with single light of this degree of
+    /// polarisation.
     pub(crate) fn is_coherent(&self, polarisation: f64) -> bool {
         let is_same_state = (self.polarisation - polarisation).abs() < 1e-9;
         self.within >= 1.0 && self.with_single >= 1.0 && is_same_state
     }
 
-    /// Returns the fraction of the multiple light beside single light of a radiance.
+    /// Returns the fraction of the multiple light when it is added to single light of a given
+    /// radiance.
     pub(crate) fn fraction_beside(&self, single: f64) -> f64 {
         let all = self.radiance + single;
         if all > 0.0 { self.radiance / all } else { 0.0 }
     }
 
-    /// The mean of two, with the fraction of the other.
+    /// Returns the weighted mean with other light, whose weight is `fraction`.
     pub(super) fn mixed(&self, other: &Self, fraction: f64) -> Self {
         let mean = |a: f64, b: f64| a + fraction * (b - a);
         Self {

@@ -54,8 +54,8 @@ impl MultipleSums {
         }
     }
 
-    /// Sums over the pairs of two independent groups, of so many paths each, to a point that has
-    /// the radiance `single` of light which has met its surface only.
+    /// Sums over the pairs of two independent groups, of `paths` paths each, to a point; `single`
+    /// is the radiance there of light that has met only its surface.
     pub(crate) fn of_groups(
         line: &SpectralLine,
         (point, single): (SpecklePoint, f64),
@@ -97,7 +97,8 @@ impl MultipleSums {
         sums
     }
 
-    /// Returns the number of paths of equal light that would tell as much.
+    /// Returns the effective number of paths: as many paths of equal light would give the same
+    /// information.
     pub(crate) fn effective_paths(&self) -> f64 {
         if self.squares > 0.0 {
             self.radiance * self.radiance / self.squares
@@ -119,7 +120,7 @@ impl MultipleSums {
         self.cascade += factor * other.cascade;
     }
 
-    /// Returns what the sums say of the light, if there is any.
+    /// Returns the light that the sums describe, if there is any.
     pub(super) fn light(&self) -> Option<MultipleLight> {
         let ratio = |part: f64, whole: f64| (whole > 0.0).then(|| part / whole);
         Some(MultipleLight {
@@ -127,7 +128,7 @@ impl MultipleSums {
             single: ratio(self.single, self.samples)?,
             within: self.paths.self_coherence()?.clamp(0.0, 1.0),
             with_single: self.paths.coherence_with_single()?.clamp(0.0, 1.0),
-            // Of few pairs the means may lie beyond.
+            // The means of few pairs may lie outside the range.
             kept: ratio(self.kept[0], self.kept[1])?.clamp(0.0, 1.0),
             kept_with_single: ratio(self.kept_with_single, self.radiance)?.clamp(-1.0, 1.0),
             polarisation: ratio(self.polarised, self.radiance)?.clamp(0.0, 1.0),

@@ -27,8 +27,8 @@ pub(super) struct Planner<'a> {
     pub lights: &'a [SurfaceLight],
 }
 
-/// The largest change of the motion of the pupil from speckle to speckle, in its diameters, that
-/// leaves their size.
+/// The largest change of the pupil's motion from speckle to speckle, in pupil diameters, that
+/// preserves the speckle size.
 const WIDEST_SPREAD: f64 = 0.25;
 
 /// The patterns that the speckle of a surface is the sum of.
@@ -36,7 +36,7 @@ const WIDEST_SPREAD: f64 = 0.25;
 struct Sum {
     /// Fractions of the light whose intensities add.
     fractions: Vec<f64>,
-    /// The number of patterns of each whose fields add.
+    /// The number of patterns in each fraction whose fields add.
     fields: usize,
     polarisation: f64,
     components: usize,
@@ -81,7 +81,7 @@ impl Planner<'_> {
         let mut followed: Vec<_> = chosen(1).collect();
         let (mut requests, mut allocations) = allocate(&followed)?;
         if allocations.len() < requests.len() && chosen(1).any(|f| f.following.axis().is_some()) {
-            // What shares a stack has one line.
+            // Surfaces that share a stack follow one line.
             followed = chosen(0).collect();
             (requests, allocations) = allocate(&followed)?;
         }
@@ -105,7 +105,7 @@ impl Planner<'_> {
         })
     }
 
-    /// Returns how slices can follow the motion of a group: by its length, and as well as they can.
+    /// Returns how slices can follow the motion of a group: by its length, and by the best method.
     fn followed(
         &self,
         group: usize,
@@ -167,7 +167,7 @@ impl Planner<'_> {
         }
         let frames = self.scene.frames;
         let by_frame = frames > 2 && !prescan.frames.is_empty();
-        // What spreads wider makes grains of its own in an image of so many speckles.
+        // A wider span makes its own grains in an image with this many speckles.
         let widest = WIDEST_SPREAD * prescan.image.length() / geometry.speckle_size_in_pixels();
         let needs = prescan.frames.iter();
         let spans: Vec<_> = needs
@@ -287,7 +287,7 @@ fn way_across(moving: Option<&ReferencePoint>) -> DVec2 {
     moving.map_or(DVec2::ZERO, ReferencePoint::way_across)
 }
 
-/// The plan with what the scene file sets.
+/// Returns the plan with the settings of the scene file.
 fn as_asked(plan: StackPlan, settings: &SpeckleSettings) -> StackPlan {
     let plan = match (settings.size, settings.diameter) {
         (None, None) => plan,

@@ -25,8 +25,8 @@ pub(super) struct FrameSample {
     pub kept: Vec<ReferencePoint>,
 }
 
-/// Samples one frame with so many rays per image side, and keeps the points of the middle one of so
-/// many along each.
+/// Samples one frame with `side` rays per image side, and keeps the point of the middle ray of
+/// every `stride` rays along each side.
 pub(super) fn frame_samples(
     laser_groups: LaserGroups<'_>,
     intersector: &Intersector,
@@ -64,7 +64,8 @@ pub(super) fn frame_samples(
     samples
 }
 
-/// Adds what the speckle of light that has met several surfaces asks for, where it is not faint.
+/// Adds the requirements of the speckle of light that has met several surfaces, where this light is
+/// not faint.
 pub(super) fn add_multiple_light(
     samples: &mut [Vec<FrameSample>],
     laser_groups: LaserGroups<'_>,
@@ -89,7 +90,7 @@ pub(super) fn add_multiple_light(
 }
 
 impl FrameSample {
-    /// Adds a point, and what has become of its speckle.
+    /// Adds a point and the shift of its speckle.
     pub(super) fn add_point(
         &mut self,
         change: &Change,
@@ -111,7 +112,8 @@ impl FrameSample {
         }
     }
 
-    /// Returns what the frame asks for on a side of the reference frame, if something was seen.
+    /// Returns the requirements of the frame on a side of the reference frame, if anything was
+    /// seen.
     pub(super) fn needs(&self, side: f64) -> Option<FrameNeeds> {
         let [smallest, largest] = self.shifts;
         let span = if side > 0.0 {

@@ -1,4 +1,4 @@
-//! The options and values that several commands have.
+//! The options and values that several commands share.
 
 mod files;
 mod range;

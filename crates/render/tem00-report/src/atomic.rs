@@ -1,4 +1,4 @@
-//! Files that appear whole or not at all.
+//! Files that appear complete or not at all.
 
 use std::{
     fs::{self, File, OpenOptions},
@@ -16,12 +16,12 @@ const SUFFIX: &str = ".part";
 /// Temporary files that are being written now.
 static PENDING: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Writes the file `path` by `write`, so that no reader ever sees half of it.
+/// Writes the file `path` with `write`, so that no reader ever sees an incomplete file.
 ///
 /// The content goes to a temporary file in the same folder, which takes the name `path` only when
-/// it is complete and on the disk. If `write` fails the temporary file is removed and what stood at
-/// `path` before stays as it was. A temporary file is locked while it is written, so that
-/// [`remove_abandoned`] can recognise those that no process writes any more.
+/// it is complete and on the disk. If `write` fails, the temporary file is removed and an earlier
+/// file at `path` stays as it was. A temporary file is locked while it is written, so that
+/// [`remove_abandoned`] can recognise files that no process writes any more.
 ///
 /// # Errors
 ///
@@ -56,8 +56,7 @@ pub fn remove_abandoned(folder: &Path) {
     }
 }
 
-/// Removes a temporary file that no process has locked. One that cannot be removed is no reason to
-/// stop.
+/// Removes a temporary file that no process has locked. A failure to remove it is ignored.
 fn remove_if_abandoned(path: &Path) {
     if let Ok(file) = OpenOptions::new().write(true).open(path)
         && file.try_lock().is_ok()
@@ -66,14 +65,14 @@ fn remove_if_abandoned(path: &Path) {
     }
 }
 
-/// Sees that the names in a folder are on the disk, where that can be asked for.
+/// Writes the names in a folder to the disk, where the system can be asked to do so.
 fn sync_folder(folder: &Path) {
     if cfg!(unix) {
         let _ = File::open(folder).and_then(|folder| folder.sync_all());
     }
 }
 
-/// Creates the folder with its parents and makes sure that files can be written into it.
+/// Creates the folder with its parents and checks that files can be written into it.
 ///
 /// # Errors
 ///
@@ -86,8 +85,8 @@ pub fn create_writable_folder(folder: &Path) -> io::Result<()> {
     temporary_file_in(folder)?.close()
 }
 
-/// Makes sure that a file can be written at `path`, without touching what stands there, and removes
-/// the temporary files beside it that a process left when it was killed.
+/// Checks that a file can be written at `path`, without touching a file that exists there, and
+/// removes the temporary files next to it that a killed process left.
 ///
 /// # Errors
 ///
@@ -102,7 +101,7 @@ pub fn probe_writable(path: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Removes the temporary files that are being written: the last act before the process is ended.
+/// Removes the temporary files that are being written: the last step before the process ends.
 pub fn discard_pending() {
     discard(|_| true);
 }
@@ -156,7 +155,7 @@ fn temporary_file_in(folder: &Path) -> io::Result<NamedTempFile> {
             .tempfile_in(folder)
             .map_err(|error| io::Error::from(error.kind()))?;
         match file.as_file().lock() {
-            // Before it was locked it looked abandoned, and may have been removed.
+            // Before the file was locked it looked abandoned, and may have been removed.
             Ok(()) if !file.path().exists() => {}
             Err(error) if error.kind() != io::ErrorKind::Unsupported => return Err(error),
             _ => return Ok(file),
@@ -183,7 +182,7 @@ mod tests {
         write_atomically(&path, |writer| writer.write_all(b"old")).expect("written");
         write_atomically(&path, |writer| writer.write_all(b"new")).expect("written");
         let result = write_atomically(&path, |writer| {
-            // What is being written stays.
+            // A file that is being written stays.
             remove_abandoned(folder.path());
             assert_eq!(names(folder.path()).len(), 2);
             writer.write_all(b"half of the next")?;

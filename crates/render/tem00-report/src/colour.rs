@@ -75,7 +75,7 @@ pub fn srgb_decoded(encoded: f64) -> f64 {
     }
 }
 
-/// Returns the cubic through `b` and `c` whose slopes are those of the neighbours' chords.
+/// Returns the cubic through `b` and `c` whose slopes equal the slopes of the neighbours' chords.
 fn catmull_rom([a, b, c, d]: [f64; 4], t: f64) -> f64 {
     b + 0.5 * t * (c - a + t * (2.0 * a - 5.0 * b + 4.0 * c - d + t * (3.0 * (b - c) + d - a)))
 }

@@ -5,7 +5,7 @@ pub fn number(value: f64) -> String {
     rounded(value, 5)
 }
 
-/// Writes a number with so many significant digits, without an exponent where that is readable.
+/// Writes a number with `digits` significant digits, without an exponent where that is readable.
 pub fn rounded(value: f64, digits: u8) -> String {
     let magnitude = value.abs();
     let text = if value.is_nan() {

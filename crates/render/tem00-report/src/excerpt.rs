@@ -8,7 +8,7 @@ use tem00_config::{is_hazard, printable_line};
 /// The longest line that is shown whole, in bytes.
 const WIDEST: usize = 160;
 
-/// A line of a file, or a piece of a long one, in which everything can be printed.
+/// A line of a file, or a piece of a long line, in printable characters only.
 #[derive(Debug)]
 pub(crate) struct Excerpt {
     name: String,

@@ -10,36 +10,38 @@ use tem00_config::{ConfigError, printable_line};
 
 use crate::excerpt::Excerpt;
 
-/// The reason for which the program ends before its work is done.
+/// The reason why the program ends before its work is done.
 #[derive(Debug)]
 pub enum Failure {
-    /// The user gave something that cannot be used. Exit code 2.
+    /// The input of the user cannot be used. Exit code 2.
     Input(Box<Problem>),
-    /// A resource is unavailable, whatever the input says: memory, a readable file, a folder that
-    /// can be written into and that no other process has. Exit code 2.
+    /// A resource is unavailable, whatever the input: memory, a readable file, or a writable folder
+    /// that no other process uses. Exit code 2.
     Unavailable(Box<Problem>),
     /// The work itself failed. Exit code 1.
     Running(Box<Problem>),
     /// The work was done and has no result: nothing was measured, or nothing found. Exit code 3.
     NoResult(Box<Problem>),
-    /// The user asked for the end. Exit code 130, as shells count it.
+    /// The user interrupted the program. Exit code 130, as shells count it.
     Interrupted,
-    /// Nobody reads standard output any more, as after `| head`. Exit code 0: they had enough.
+    /// Nobody reads standard output any more, as after `| head`. Exit code 0: the reader has
+    /// enough.
     NoReader,
 }
 
 impl Failure {
-    /// Returns a complaint about the input: what is wrong with which value, and what is allowed.
+    /// Returns a failure about the input: what is wrong with which value, and what is allowed.
     pub fn input(message: impl Into<String>, help: impl Into<String>) -> Self {
         Self::Input(Problem::new(message.into(), Some(help.into())).into())
     }
 
-    /// Returns what the work needs and does not find now, and what to do about it.
+    /// Returns a failure about a resource that the work needs and does not find now, and what to do
+    /// about it.
     pub fn unavailable(message: impl Into<String>, help: impl Into<String>) -> Self {
         Self::Unavailable(Problem::new(message.into(), Some(help.into())).into())
     }
 
-    /// Returns a complaint about the input or, where `no_memory`, about what there is of it.
+    /// Returns a failure about the input or, if `no_memory`, about the available memory.
     pub fn refused(no_memory: bool, message: String, help: impl Into<String>) -> Self {
         if no_memory {
             Self::unavailable(message, help)
@@ -48,12 +50,12 @@ impl Failure {
         }
     }
 
-    /// Returns why work that was done has no result, and what to change.
+    /// Returns the failure that completed work has no result, and what to change.
     pub fn no_result(message: impl Into<String>, help: impl Into<String>) -> Self {
         Self::NoResult(Problem::new(message.into(), Some(help.into())).into())
     }
 
-    /// Returns a complaint about a position in a text file.
+    /// Returns a failure about a position in a text file.
     pub fn input_at(
         message: impl Into<String>,
         help: Option<String>,
@@ -69,8 +71,8 @@ impl Failure {
         )
     }
 
-    /// Returns a complaint about a scene file, a set-up file or one that they include, with
-    /// `otherwise` for help where the complaint has no position and no help of its own.
+    /// Returns a failure about a scene file, a set-up file or one that they include, with
+    /// `otherwise` for help where the error has no position and no help of its own.
     pub fn file(path: &Path, error: &ConfigError, otherwise: &str) -> Self {
         let help = error.help().map(str::to_owned);
         let path = error.path().unwrap_or(path);
@@ -121,8 +123,7 @@ impl Failure {
         self.problem().map_or("", |problem| &problem.message)
     }
 
-    /// Returns what the work needs and does not find, with a word in front of what it says that it
-    /// is about.
+    /// Returns the failure with its subject in front of its message, if a resource is unavailable.
     pub fn about(mut self, what: impl core::fmt::Display) -> Self {
         if let Self::Unavailable(problem) = &mut self {
             problem.message = format!("{what}: {}", problem.message);
@@ -159,10 +160,10 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// The most characters of a message.
+    /// The maximum number of characters of a message.
     const MAX_CHARS: usize = 2000;
 
-    /// Returns a problem without a position. What it quotes may be long and hold anything.
+    /// Returns a problem without a position. Its quotations may be long and hold any characters.
     fn new(message: String, help: Option<String>) -> Self {
         let shown = |text: String| printable_line(&text, Self::MAX_CHARS);
         Self {

@@ -8,12 +8,12 @@ use std::{
     time::Duration,
 };
 
-/// The file in the folder that is locked. The operating system lets go of the lock with the
-/// process, however it ends.
+/// The file in the folder that is locked. The operating system releases the lock when the process
+/// ends, in any way.
 const NAME: &str = ".tem00.lock";
 
-/// The number of attempts at a shared lock, and the time between them. Those who take it hold it
-/// alone for a moment, to write down what they share.
+/// The number of attempts at a shared lock, and the time between them. A process that takes the
+/// lock first holds it alone for a moment, to write down the work that it shares.
 const TRIES: u32 = 40;
 const PAUSE: Duration = Duration::from_millis(25);
 
@@ -25,10 +25,10 @@ pub struct FolderLock {
     file: Option<File>,
 }
 
-/// The reason for which a folder may not be written into.
+/// The reason why a folder may not be written into.
 #[derive(Debug)]
 pub enum Refused {
-    /// Another process has it, with this number if it is known.
+    /// Another process uses it; its number, if it is known.
     InUse(Option<u32>),
     /// The file system refuses.
     Io(io::Error),
@@ -41,12 +41,13 @@ impl From<io::Error> for Refused {
 }
 
 impl FolderLock {
-    /// Takes a folder for this process alone.
+    /// Locks a folder for this process alone.
     pub fn alone(folder: &Path) -> Result<Self, Refused> {
         Self::by_file(folder.join(NAME))
     }
 
-    /// Takes for this process alone what a file stands for, which is made and removed.
+    /// Locks for this process alone the resource that a file stands for; the file is created and
+    /// removed.
     pub fn by_file(path: PathBuf) -> Result<Self, Refused> {
         loop {
             let mut file = open(&path)?;
@@ -63,7 +64,8 @@ impl FolderLock {
         }
     }
 
-    /// Takes a folder for this process and others that do parts of the same `work`, a single line.
+    /// Locks a folder for this process and others that do parts of the same `work`, a single line
+    /// of text.
     pub fn shared(folder: &Path, work: &str) -> Result<Self, Refused> {
         let path = folder.join(NAME);
         for _ in 0..TRIES {
@@ -77,8 +79,8 @@ impl FolderLock {
                 Err(TryLockError::WouldBlock) => {}
                 Err(TryLockError::Error(error)) => return without_lock(path, error),
             }
-            // Only who holds it alone writes to the file: what it says holds for as long as it is
-            // shared.
+            // Only a process that holds the lock alone writes to the file, so its content holds for
+            // as long as the lock is shared.
             match file.try_lock_shared() {
                 Ok(()) if !is_at(&file, &path) => {}
                 Ok(()) if holder(&mut file).1 == work => return Ok(Self::new(path, Some(file))),
@@ -104,7 +106,7 @@ impl FolderLock {
 impl Drop for FolderLock {
     fn drop(&mut self) {
         if let Some(file) = &self.file {
-            // A file that stays hinders nobody: it is not locked any more.
+            // A file that stays does no harm: it is no longer locked.
             let alone = file.unlock().is_ok() && file.try_lock().is_ok();
             if alone && is_at(file, &self.path) {
                 let _ = fs::remove_file(&self.path);
@@ -113,8 +115,8 @@ impl Drop for FolderLock {
     }
 }
 
-/// Opens the file, which is made if it is missing, and changes nothing in it: it may be a link to
-/// another.
+/// Opens the file, or creates it if it is missing, without changing its content: it may be a link
+/// to another file.
 fn open(path: &Path) -> io::Result<File> {
     let plain = |error: io::Error| io::Error::from(error.kind());
     let mut options = OpenOptions::new();
@@ -141,7 +143,7 @@ fn open(path: &Path) -> io::Result<File> {
     }
 }
 
-/// Returns whether a file has one name only and stands where it seems to.
+/// Returns whether a file has only one name and lies where its path says.
 #[cfg(unix)]
 fn is_own(found: &fs::Metadata) -> bool {
     use std::os::unix::fs::MetadataExt;
@@ -153,8 +155,8 @@ fn is_own(found: &fs::Metadata) -> bool {
     found.is_file()
 }
 
-/// Returns whether the open file is the one that stands at `path`, and no other that a link leads
-/// to.
+/// Returns whether the open file is the file at `path` itself, and not another file to which a link
+/// leads.
 #[cfg(unix)]
 fn is_at(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
@@ -197,7 +199,7 @@ fn in_use(file: &mut File) -> Refused {
     Refused::InUse(holder(file).0)
 }
 
-/// Goes on without a lock where there are none.
+/// Continues without a lock where the file system has no locks.
 fn without_lock(path: PathBuf, error: io::Error) -> Result<FolderLock, Refused> {
     if error.kind() == io::ErrorKind::Unsupported {
         return Ok(FolderLock::new(path, None));

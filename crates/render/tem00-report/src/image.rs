@@ -1,4 +1,4 @@
-//! Image files: OpenEXR and NumPy for light, and what cameras write for grey values.
+//! Image files: OpenEXR and NumPy for light, and the formats of cameras for grey values.
 
 mod common;
 mod exr_file;

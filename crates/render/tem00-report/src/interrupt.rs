@@ -1,5 +1,5 @@
-//! Ctrl-C and the termination signals: the first asks for a clean end, which has less than a
-//! second; the second ends at once.
+//! Ctrl-C and the termination signals: the first asks for a clean end within less than a second;
+//! the second ends the process at once.
 
 use std::{
     io::{self, Write},
@@ -12,8 +12,8 @@ use crate::{atomic, failure::Failure};
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// The time for a clean end. What cannot be interrupted, such as drawing, compressing an image or
-/// waiting for input, is cut off after it.
+/// The time for a clean end. Work that cannot be interrupted, such as drawing, compressing an image
+/// or waiting for input, is cut off after this time.
 const GRACE: Duration = Duration::from_millis(800);
 
 /// Takes over Ctrl-C and the termination signals.
@@ -37,7 +37,7 @@ fn end_after_grace() {
     end();
 }
 
-/// Ends the process. Files that are being written disappear; those that are finished stay.
+/// Ends the process. Files that are being written disappear; finished files stay.
 fn end() -> ! {
     atomic::discard_pending();
     let told = Failure::Interrupted.report().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! The kind of a file, where a command needs another.
+//! The kind of a file, where a command needs another kind.
 
 use std::{fs::File, io::Read, path::Path};
 
@@ -82,7 +82,7 @@ const IMAGES: [&[u8]; 7] = [
 ];
 
 /// Returns the failure that a file is of another kind than a command needs, with the command that
-/// takes it; or `otherwise`, if it is of that kind or of none that is known.
+/// takes it; or `otherwise`, if the file is of the needed kind or of an unknown kind.
 pub fn wrong_or(path: &Path, needed: Kind, otherwise: impl FnOnce() -> Failure) -> Failure {
     match Kind::of(path).filter(|kind| *kind != needed) {
         None => otherwise(),

@@ -23,7 +23,7 @@ const CHUNK: usize = 1 << 16;
 /// bits, complex ones `complex64` or `complex128`; all are kept in single precision. An array of
 /// the shape (height, width) becomes a grid of height rows; further axes may have the length 1.
 ///
-/// Memory is only asked for as the file fills it, whatever its header claims.
+/// Memory is allocated only as the file fills it, regardless of the claims of its header.
 ///
 /// # Examples
 ///
@@ -77,7 +77,7 @@ impl<R: Read> NpyReader<R> {
         &self.header.shape
     }
 
-    /// Returns height and width if the array has two dimensions, beside axes of the length 1.
+    /// Returns height and width if the array has two dimensions, apart from axes of the length 1.
     pub fn grid_shape(&self) -> Option<[u64; 2]> {
         let mut shape = self.header.shape.clone();
         while shape.len() > 2 {
@@ -102,8 +102,8 @@ impl<R: Read> NpyReader<R> {
     /// # Errors
     ///
     /// Returns an error if the reader does, if the array does not have two dimensions or is empty,
-    /// if they are not real, if the file ends too early or if the memory is over the limit or
-    /// refused.
+    /// if the values are not real, if the file ends too early or if the memory exceeds the limit or
+    /// cannot be allocated.
     pub fn into_real(self, memory_limit: u64) -> Result<Grid<f32>, NpyError> {
         self.into_grid(memory_limit)
     }
@@ -113,8 +113,8 @@ impl<R: Read> NpyReader<R> {
     ///
     /// # Errors
     ///
-    /// As [`into_real`](Self::into_real), for values that are not complex, and if one is not finite
-    /// or beyond single precision.
+    /// Returns the errors of [`into_real`](Self::into_real), here for values that are not complex,
+    /// and an error if a value is not finite or beyond single precision.
     pub fn into_complex(self, memory_limit: u64) -> Result<Grid<Complex<f32>>, NpyError> {
         let grid = self.into_grid(memory_limit)?;
         check_finite(&grid)?;
@@ -151,7 +151,7 @@ impl<R: Read> NpyReader<R> {
         let count = shape
             .iter()
             .try_fold(1, |n: u64, side| n.checked_mul(*side));
-        // A transposed copy is made before the first is given up.
+        // A transposed copy is made before the first copy is freed.
         let bytes_each = (1 + u64::from(self.header.columns_first)) * size_of::<T>() as u64;
         let needed = count.map_or(u64::MAX, |count| count.saturating_mul(bytes_each));
         if needed > limit {

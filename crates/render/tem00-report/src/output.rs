@@ -20,8 +20,8 @@ use crate::{
     folder_lock::{FolderLock, Refused},
 };
 
-/// Returns the name of an input file without folder and ending, or `otherwise` if it has none; that
-/// of standard input, `-`, is `standard_input`.
+/// Returns the name of an input file without folder and ending, or `otherwise` if it has none; the
+/// name of standard input, `-`, is `standard_input`.
 pub fn name(input: &Path, otherwise: &str) -> String {
     if is_standard_input(input) {
         return "standard_input".to_owned();
@@ -32,18 +32,18 @@ pub fn name(input: &Path, otherwise: &str) -> String {
     )
 }
 
-/// Returns the folder that was asked for, or `out/<name>`.
+/// Returns the requested folder, or `out/<name>`.
 pub fn folder(asked: Option<&Path>, name: &str) -> PathBuf {
     asked.map_or_else(|| Path::new("out").join(name), Path::to_path_buf)
 }
 
-/// Makes sure, before the work, that files can be written into the folder and that no other process
-/// does, for as long as what is returned lives. Makes the folder if need be, and removes the
-/// temporary files that a process left there when it was killed.
+/// Checks, before the work starts, that files can be written into the folder, and keeps other
+/// processes from writing there for as long as the returned lock lives. Creates the folder if
+/// needed, and removes the temporary files that a killed process left there.
 ///
 /// # Errors
 ///
-/// Returns a failure if they cannot, or if another process has taken the folder.
+/// Returns a failure if files cannot be written, or if another process has taken the folder.
 pub fn prepare(folder: &Path) -> Result<FolderLock, Failure> {
     take(folder, FolderLock::alone)
 }
@@ -85,8 +85,8 @@ pub fn not_writable(folder: &Path, error: &io::Error) -> Failure {
     )
 }
 
-/// Makes a folder within a folder of results, without what killed processes left there, and returns
-/// its path.
+/// Makes a folder within a folder of results, without the files that killed processes left there,
+/// and returns its path.
 ///
 /// # Errors
 ///
@@ -119,8 +119,8 @@ fn in_use(folder: &Path, process: Option<u32>) -> Failure {
     )
 }
 
-/// Writes text for a terminal or a file: what would do something to a terminal is escaped, as names
-/// of files and of surfaces may hold anything.
+/// Writes text for a terminal or a file: characters that would control a terminal are escaped,
+/// since names of files and of surfaces may hold any characters.
 #[derive(Debug)]
 pub struct Printable<W>(pub(crate) W);
 
@@ -185,20 +185,20 @@ pub fn note(text: &str) {
     }
 }
 
-/// Makes sure, before the work, that there is memory for `what`.
+/// Checks, before the work starts, that memory is available for `what`.
 ///
 /// # Errors
 ///
-/// Returns a failure if the system says that there is not so much.
+/// Returns a failure if the system reports less memory than is needed.
 pub fn check_room(what: &str, bytes: u64, help: &str) -> Result<(), Failure> {
     check_memory(bytes).map_err(|error| Failure::unavailable(format!("{what}: {error}"), help))
 }
 
-/// The maximum number of threads for each that the machine runs at a time: more only wait for each
-/// other.
+/// The maximum number of threads for each thread that the machine runs at a time: more threads only
+/// wait for each other.
 const THREADS_PER_CORE: usize = 4;
 
-/// Returns the threads that were asked for, or the most that are of use here, which is noted.
+/// Returns the requested number of threads, or the maximum that is useful here, with a note.
 pub fn bounded(threads: Option<u16>) -> Option<u16> {
     let cores = thread::available_parallelism().map_or(1, NonZero::get);
     let max = u16::try_from(THREADS_PER_CORE * cores).unwrap_or(u16::MAX);
@@ -210,7 +210,7 @@ pub fn bounded(threads: Option<u16>) -> Option<u16> {
     threads.map(|asked| asked.min(max))
 }
 
-/// Starts the threads that were asked for, or one per core.
+/// Starts the requested threads, or one per core.
 ///
 /// # Errors
 ///

@@ -15,8 +15,9 @@ pub use self::{
     heat_map::{HeatMap, Scale, height_colour},
 };
 
-/// Returns whether an item is among the `max` of `count` that are drawn: all are if they are few,
-/// and of many a part that is even over all of them, which multiples of the golden ratio are.
+/// Returns whether an item is among the at most `max` of `count` items that are drawn: all of few
+/// items, and of many items a selection that is spread evenly over all of them, as multiples of the
+/// golden ratio are.
 pub fn is_drawn(index: usize, count: usize, max: usize) -> bool {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     (GOLDEN * index as f64).fract() * count as f64 <= max as f64

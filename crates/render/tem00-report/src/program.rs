@@ -11,9 +11,10 @@ use tem00_config::is_hazard;
 use crate::{failure::Failure, interrupt, output::Printable};
 
 /// Runs a program with the arguments of a process, the first of which is its own name, and returns
-/// the exit code. `run` does the command and prints its results.
+/// the exit code. `run` executes the command and prints its results.
 ///
-/// Takes over Ctrl-C and the termination signals of the process: a second one ends it at once.
+/// Takes over Ctrl-C and the termination signals of the process: a second signal ends the process
+/// at once.
 pub fn run<P: Parser>(
     arguments: &[OsString],
     run: impl FnOnce(&P, &mut Printable<StdoutLock<'static>>) -> Result<(), Failure>,
@@ -37,8 +38,7 @@ pub fn run<P: Parser>(
     }
 }
 
-/// Prints what is wrong with the command line, or the help that was asked for, and returns the exit
-/// code.
+/// Prints what is wrong with the command line, or the requested help, and returns the exit code.
 fn refuse(error: &clap::Error, arguments: &[OsString]) -> u8 {
     // Names of files that a shell fills in may hold anything.
     let is_plain = |argument: &OsString| !argument.to_string_lossy().contains(is_hazard);

@@ -25,7 +25,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Starts a bar that is full after `total` of something, in the plural: "samples".
+    /// Starts a bar that is full after `total` units of `what`, named in the plural: "samples".
     pub fn of(total: u64, what: &'static str) -> Self {
         let target = if is_quiet() {
             ProgressDrawTarget::hidden()
@@ -40,7 +40,7 @@ impl Progress {
                     .with_key(
                         "rate",
                         move |state: &ProgressState, out: &mut dyn core::fmt::Write| {
-                            // A line that cannot be formatted is a line that is not shown.
+                            // A line that cannot be formatted is not shown.
                             let _ = write!(out, "{}{what}/s", si_prefixed(state.per_sec()));
                         },
                     )
@@ -99,7 +99,7 @@ pub struct FrameProgress {
 }
 
 impl FrameProgress {
-    /// Starts a bar over frames that count so many samples each.
+    /// Starts a bar over frames that count `samples_per_frame` samples each.
     pub fn new(frames: u64, samples_per_frame: u64) -> Self {
         Self {
             bar: Progress::of(frames.saturating_mul(samples_per_frame), "samples"),
@@ -108,8 +108,8 @@ impl FrameProgress {
         }
     }
 
-    /// Begins the next frame and returns what moves the bar on. Samples beyond those that a frame
-    /// counts do not, which a target error can take.
+    /// Begins the next frame and returns the function that moves the bar on. Samples beyond the
+    /// count of a frame, which a target error can take, do not move it.
     pub fn begin(&self, name: String) -> impl Fn(u64) + Sync + use<'_> {
         self.bar.name(name);
         let start = self.begun.get() * self.samples_per_frame;

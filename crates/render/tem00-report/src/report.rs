@@ -34,7 +34,7 @@ pub use self::{
 /// - a page shows the verdicts, then the sections with their drawings, in one file that opens
 ///   offline.
 ///
-/// Whatever it is given as text appears as that text. The same calls give the same bytes.
+/// Every text appears exactly as it was given. The same calls give the same bytes.
 #[derive(Clone, Debug)]
 pub struct Report {
     title: String,
@@ -50,7 +50,7 @@ pub struct Report {
 #[derive(Clone, Debug)]
 pub struct Section {
     heading: String,
-    /// The key of the object that holds its quantities; `None` for those of the report itself.
+    /// The key of the object that holds its quantities; `None` for quantities of the report itself.
     key: Option<&'static str>,
     in_detail: bool,
     blocks: Vec<Block>,
@@ -73,7 +73,7 @@ enum Block {
         caption: String,
         turns: bool,
     },
-    /// The content of a PNG file of so many columns and its caption, on pages alone.
+    /// The content of a PNG file with its number of columns and its caption, on pages alone.
     Picture {
         png: Vec<u8>,
         columns: usize,
@@ -99,12 +99,12 @@ impl Report {
         report
     }
 
-    /// Adds what only programs get; a number that is not finite becomes `null`.
+    /// Adds a value that only programs get; a number that is not finite becomes `null`.
     pub fn data(&mut self, key: &str, value: impl Serialize) {
         self.data.insert(key.to_owned(), cell::value(value));
     }
 
-    /// Adds a sentence of what the report comes to; the first is the result.
+    /// Adds a sentence with a conclusion of the report; the first is the result.
     pub fn verdict(&mut self, sentence: impl Into<String>) {
         self.verdicts.push(sentence.into());
     }
@@ -114,7 +114,7 @@ impl Report {
         self.warnings.push(text.into());
     }
 
-    /// Adds what the result assumes.
+    /// Adds an assumption of the result.
     pub fn note(&mut self, text: impl Into<String>) {
         self.notes.push(text.into());
     }
@@ -155,7 +155,7 @@ impl Section {
         self.push(Block::Fact(key, name.into(), value.into()))
     }
 
-    /// Adds what only programs get; a number that is not finite becomes `null`.
+    /// Adds a value that only programs get; a number that is not finite becomes `null`.
     pub fn data(&mut self, key: &str, value: impl Serialize) -> &mut Self {
         self.push(Block::Data(key.to_owned(), cell::value(value)))
     }
@@ -193,7 +193,7 @@ impl Section {
     }
 
     /// Adds a picture with its caption, a small one enlarged. `png` is the content of a PNG file of
-    /// so many columns.
+    /// `columns` columns.
     pub fn picture(
         &mut self,
         png: Vec<u8>,

@@ -13,13 +13,14 @@ use thiserror::Error;
 
 use crate::kind::of_ending;
 
-/// The most pixels that are read from a file: 2²⁸, which is 1 GiB of `f32`.
+/// The maximum number of pixels that are read from a file: 2²⁸, which is 1 GiB of `f32`.
 pub(super) const MAXIMUM_PIXELS: u64 = 1 << 28;
 
-/// The most bytes of an image file: 8 GiB, which hold as many complex numbers and a header.
+/// The maximum size of an image file, in bytes: 8 GiB, enough for `MAXIMUM_PIXELS` complex numbers
+/// and a header.
 pub(super) const MAX_IMAGE_BYTES: u64 = 8 << 30;
 
-/// A byte of compressed data stands for at most so many (zlib, Technical Details).
+/// The maximum number of bytes that a byte of compressed data stands for (zlib, Technical Details).
 pub(super) const MAX_DEFLATION: u64 = 1032;
 
 /// The formats of patterns, told apart by the end of the file's name.
@@ -44,7 +45,7 @@ impl Format {
 /// The relation of grey values to light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Transfer {
-    /// In proportion, as sensors deliver them.
+    /// In proportion to the light, as sensors deliver them.
     Linear,
     /// sRGB curve, as in pictures for the screen.
     Srgb,
@@ -68,9 +69,9 @@ pub struct Crop {
 pub struct Reading<'a> {
     /// Channel by name; by default Y, the mean of R, G and B, or the only one that contains light.
     pub channel: Option<&'a str>,
-    /// The relation of grey values to light, instead of that of the file.
+    /// The relation of grey values to light, instead of the relation in the file.
     pub transfer: Option<Transfer>,
-    /// The value of darkness, in grey values of the file, to be subtracted.
+    /// The black level, in grey values of the file, to be subtracted.
     pub black_level: Option<f64>,
     /// A part of the image.
     pub crop: Option<Crop>,
@@ -83,7 +84,7 @@ pub struct LoadedImage {
     pub values: Grid<f32>,
     /// A description of what was read from the file and how.
     pub interpretation: String,
-    /// The fraction of saturated pixels, where something tells what saturation is.
+    /// The fraction of saturated pixels, where the saturation level is known.
     pub saturated: Option<f64>,
     /// The light of one grey value of the file, where the values are in proportion to the light.
     pub unit: Option<f64>,
@@ -170,7 +171,7 @@ pub enum ImageError {
     BlackLevel { black_level: f64, largest: f64 },
 }
 
-/// Makes sure that a rectangle lies in an image.
+/// Checks that a rectangle lies in an image.
 pub(super) fn check_inside(crop: Crop, [width, height]: [usize; 2]) -> Result<(), ImageError> {
     let inside = |start: usize, length: usize, size: usize| {
         start.checked_add(length).is_some_and(|end| end <= size)
@@ -207,8 +208,8 @@ pub(super) fn checked_area(width: u64, height: u64) -> Result<usize, ImageError>
         .ok_or(ImageError::Size { width, height })
 }
 
-/// Makes sure that a file is as long as its pixels need, `pixels_per_byte` of which take a byte at
-/// least.
+/// Checks that a file is long enough for its pixels, of which at most `pixels_per_byte` fit into a
+/// byte.
 pub(super) fn check_length(
     [width, height]: [u64; 2],
     bytes: u64,
@@ -224,7 +225,7 @@ pub(super) fn check_length(
     })
 }
 
-/// Makes sure that there is memory for so many bytes of each of the pixels.
+/// Checks that memory is available for `area` pixels of `bytes_per_pixel` bytes each.
 pub(super) fn check_room(area: usize, bytes_per_pixel: usize) -> Result<(), ImageError> {
     Ok(check_memory(
         (area as u64).saturating_mul(bytes_per_pixel as u64),

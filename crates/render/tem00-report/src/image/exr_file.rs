@@ -20,7 +20,7 @@ pub struct Layer<'a> {
     pub wavelength: Option<f64>,
     /// A description of the layer. Stored as the standard attribute `comments`.
     ///
-    /// Readers disagree on the encoding of other characters than ASCII: they become `?`.
+    /// Readers disagree on the encoding of characters other than ASCII: these become `?`.
     pub comments: String,
     /// The channels by name.
     pub channels: Vec<(&'static str, &'a Grid<f32>)>,

@@ -19,9 +19,9 @@ const NO_LIGHT: &str = "a alpha ra ga ba ar ag ab opacity \
 
 /// Reads one channel, or the mean of R, G and B.
 ///
-/// `channel` is `channel` or `layer.channel`. Without it light is looked for: Y, else R, G and B,
-/// else the only channel that may be light; in the first part without its layers, else in the only
-/// layer that has any.
+/// `channel` is `channel` or `layer.channel`. Without it the channels of light are looked for: Y,
+/// or else R, G and B, or else the only channel that may be light; in the first part without its
+/// layers, or else in the only layer that has any.
 pub(super) fn read(
     mut reader: impl BufRead + Seek,
     channel: Option<&str>,
@@ -58,7 +58,7 @@ fn checked_size(header: &Header, length: u64) -> Result<(usize, usize), ImageErr
     let area = checked_area(size[0], size[1])?;
     let channels = header.channels.list.iter();
     let of_pixel: usize = channels.map(|c| c.sample_type.bytes_per_sample()).sum();
-    // The others may put whole blocks of one value into a few bytes.
+    // The other compressions may put whole blocks of one value into a few bytes.
     let expansion = match header.compression {
         Compression::Uncompressed => 1,
         Compression::RLE | Compression::ZIP1 | Compression::ZIP16 => MAX_DEFLATION,
@@ -86,7 +86,7 @@ fn samples(Chosen { channels, name }: &Chosen<'_, '_>) -> Samples {
     Samples::of_light([width, height], components, values, name.clone())
 }
 
-/// The channels that are read, and what they are.
+/// The channels that are read, and their description.
 struct Chosen<'a, 'b> {
     channels: Vec<&'b NamedChannel<'a>>,
     name: String,
@@ -192,7 +192,7 @@ fn one<'a, 'b>(channel: &'b NamedChannel<'a>) -> Chosen<'a, 'b> {
     }
 }
 
-/// Returns the light of a layer, if it is plain which of its channels are that.
+/// Returns the light of a layer, if it is clear which of its channels hold light.
 fn light_of<'a, 'b>(
     channels: &'b [NamedChannel<'a>],
     layer: (usize, &str),
@@ -315,7 +315,7 @@ mod tests {
                 || told.contains("differ");
             assert!(is_whole, "{content}: {told}");
         }
-        // By its name any is read.
+        // Any channel is read by its name.
         let alpha = read_light(&parts(":A Y"), Some("A")).expect("there is one");
         assert_eq!(alpha.interpretation, "channel A");
     }

@@ -8,18 +8,18 @@ use super::{
     selection::Components,
 };
 
-/// The bytes of the largest image, of complex numbers that are turned once.
+/// The memory for the largest image, in bytes, of complex numbers that are transposed once.
 const MEMORY: u64 = 16 * MAXIMUM_PIXELS;
 
 /// Reads a two-dimensional array of real values, or the intensity |U|² of complex ones.
 ///
-/// Axes of one value are left out: (height, width, 1) is an image as well.
+/// Axes of length 1 are left out: (height, width, 1) is an image as well.
 pub(super) fn read(reader: impl Read) -> Result<Samples, ImageError> {
     let file = NpyReader::new(reader)?;
     let [height, width] = file
         .grid_shape()
         .ok_or_else(|| ImageError::Shape(file.shape().to_vec()))?;
-    // Values are turned where the file has the columns one after the other.
+    // Values are transposed where the file stores the columns one after the other.
     check_room(
         checked_area(width, height)?,
         BYTES_PER_PIXEL + if file.is_complex() { 20 } else { 8 },
@@ -54,7 +54,7 @@ mod tests {
     use super::*;
     use crate::image::{LoadedImage, Reading};
 
-    /// An array as NumPy writes it, but for the blanks behind the header.
+    /// An array as NumPy writes it, except for the blanks behind the header.
     fn array(element_type: &str, shape: &str, values: &[u8]) -> Vec<u8> {
         let text =
             format!("{{'descr': '{element_type}', 'fortran_order': False, 'shape': {shape}, }}");

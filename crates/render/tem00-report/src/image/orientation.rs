@@ -28,7 +28,7 @@ pub(super) fn of_exif(exif: &[u8]) -> Option<u16> {
     two(entry + 8)
 }
 
-/// Returns pixels, of so many components each, turned as the orientation asks, and their new size.
+/// Returns pixels of `components` values each, turned by the orientation, and their new size.
 pub(super) fn turned(
     values: &[f32],
     [width, height]: [usize; 2],

@@ -42,8 +42,8 @@ pub fn write_grey_png(
     })
 }
 
-/// Writes a PNG file of the bytes of its pixels, with text chunks and what `more` tells the
-/// encoder.
+/// Writes a PNG file from the bytes of its pixels, with text chunks and the settings that `more`
+/// makes in the encoder.
 pub(crate) fn write_png<'a, W: Write>(
     writer: W,
     size: [usize; 2],
@@ -215,7 +215,7 @@ mod tests {
         packed.write_all(b"any profile").expect("memory");
         let profile = packed.finish().expect("memory");
         let profile: String = profile.iter().map(|byte| format!("{byte:02x}")).collect();
-        // Chunks, what becomes of 0.2, and what is said.
+        // Chunks, the result for 0.2, and the message.
         let table = "
             => linear => taken as linear, the file does not say
             gAMA:0000b18f => power => gamma 0.45455 undone

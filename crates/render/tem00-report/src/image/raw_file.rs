@@ -3,7 +3,7 @@
 //!
 //! Files that are written have 8 or 16 bits per value. Values of 10, 12 and 14 bits stand in files
 //! of 16 bits as they are, not scaled up; a text entry `bit_depth` says so. The chunk sBIT of PNG
-//! means the opposite, values scaled up to 16 bits, and is undone in the files of others.
+//! means the opposite, values scaled up to 16 bits, and is undone in files of other programs.
 
 mod bmp_frame;
 mod curve;
@@ -38,13 +38,14 @@ use crate::atomic::write_atomically;
 /// Reads a frame.
 ///
 /// `channel` picks one channel of a coloured file; without it the mean of R, G and B is taken. Grey
-/// values are taken as they are, whatever curve the file names, and rows are those of the sensor,
-/// however the image is to be shown. `bits` are those of the camera, if they are known.
+/// values are taken as they are, regardless of the curve that the file names, and rows are the rows
+/// of the sensor, regardless of the orientation for display. `bits` is the bit depth of the camera,
+/// if it is known.
 ///
 /// # Errors
 ///
-/// Returns an error if the file cannot be read, is none of the formats, is cut, empty or too large,
-/// or has pixels that are not supported.
+/// Returns an error if the file cannot be read, has none of the formats, is cut, empty or too
+/// large, or has pixels that are not supported.
 pub fn read_raw(
     path: &Path,
     channel: Option<&str>,

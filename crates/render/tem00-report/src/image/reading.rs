@@ -14,12 +14,12 @@ use super::{
 ///
 /// # Errors
 ///
-/// Returns an error if the file cannot be read, is none of the formats, is empty or too large, does
-/// not have the part or the channel wanted, or holds a value that is no amount of light.
+/// Returns an error if the file cannot be read, has none of the formats, is empty or too large,
+/// lacks the requested part or channel, or holds a value that is not an amount of light.
 pub fn read_image(path: &Path, reading: &Reading<'_>) -> Result<LoadedImage, ImageError> {
     let mut reading = *reading;
     let samples = match Format::of_path(path) {
-        // Channels of OpenEXR are as many as there are: its reader chooses.
+        // OpenEXR files may have any number of channels: their reader chooses.
         Some(Format::Exr) => exr_reader::read(open(path)?, reading.channel.take())?,
         Some(Format::Npy) => npy_file::read(open(path)?)?,
         Some(Format::Png) | None => {
@@ -39,7 +39,7 @@ pub fn read_image(path: &Path, reading: &Reading<'_>) -> Result<LoadedImage, Ima
     Ok(image)
 }
 
-/// Makes sure that values are light; above a black level noise may be negative.
+/// Checks that values are amounts of light; above a black level noise may be negative.
 fn check_values(values: &Grid<f32>, above_black: bool) -> Result<(), ImageError> {
     let bad = |value: &&f32| !(value.is_finite() && (above_black || **value >= 0.0));
     for (y, row) in values.rows().enumerate() {

@@ -1,12 +1,12 @@
 //! The judgement from which value on an image is saturated.
 
-/// The values below the largest that a pile at it is compared with.
+/// The number of values below the largest with which a pile at the largest value is compared.
 const NEIGHBOURS: usize = 16;
 
-/// The fewest pixels of a pile.
+/// The minimum number of pixels in a pile.
 const FEWEST: usize = 8;
 
-/// The pixels of a pile by those of any value just below it.
+/// The minimum ratio of the pixels in a pile to the pixels with any value just below it.
 ///
 /// The peak of a line without noise, A − c d² at the distance d, has `√1` pixels within a step of A
 /// for each `√2 − √1` within the next one: 2.4 times as many.
@@ -15,11 +15,11 @@ const PILE: usize = 4;
 /// The bits that cameras give to grey values.
 const CAMERA_BITS: [u32; 5] = [8, 10, 12, 14, 16];
 
-/// Returns the value from which on a component is saturated; infinite if nothing tells.
+/// Returns the value from which on a component is saturated; infinite if it is not known.
 ///
 /// It is `full`, the largest value that the file can hold, unless the values end below it: at the
 /// largest value of a camera of fewer bits, in the lower bits of a word or in its upper ones; or at
-/// a pile, as values are clipped by what a camera computes before it writes them.
+/// a pile, where the processing of a camera clips values before it writes them.
 pub(super) fn saturation_level(values: impl Iterator<Item = f32>, full: Option<f32>) -> f32 {
     let largest = largest_values(values);
     let otherwise = full.unwrap_or(f32::INFINITY);

@@ -1,10 +1,10 @@
-//! The values of a NumPy file, there and back.
+//! The values of a NumPy file, read and written.
 
 use num_complex::Complex;
 
 /// A value of one or two numbers that files hold and grids keep.
 pub(super) trait Element: Copy {
-    /// The type as a file names it that is written.
+    /// The type as a written file names it.
     const WRITTEN: &'static str;
     /// The types that are read, in words.
     const READABLE: &'static str;
@@ -36,9 +36,9 @@ enum Number {
     Single,
     /// `float64`.
     Double,
-    /// `uint8` to `uint64`, and `bool`, of so many bytes.
+    /// `uint8` to `uint64`, and `bool`, with the number of bytes.
     Unsigned(usize),
-    /// `int8` to `int64`, of so many bytes.
+    /// `int8` to `int64`, with the number of bytes.
     Signed(usize),
 }
 
@@ -97,7 +97,7 @@ impl Number {
         }
     }
 
-    /// The number that `bytes` stand for, which are as many as it takes.
+    /// Returns the number that `bytes` stand for; their count fits the type.
     #[expect(clippy::cast_possible_truncation, reason = "grids keep f32")]
     fn value(self, bytes: &[u8], highest_first: bool) -> f32 {
         let mut word = [0; 8];

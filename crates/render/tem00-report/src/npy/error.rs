@@ -40,7 +40,7 @@ pub enum NpyError {
         /// The bytes that it may take.
         limit: u64,
     },
-    /// The machine refused the memory of the array, of so many bytes.
+    /// The memory of the array, of this number of bytes, could not be allocated.
     #[error("memory for the array refused: {0} bytes")]
     Memory(u64),
     /// The reader failed.

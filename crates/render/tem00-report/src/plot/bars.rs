@@ -31,7 +31,7 @@ impl Bars {
         }
     }
 
-    /// Adds a category with the value of each series; what is not finite has no bar.
+    /// Adds a category with the value of each series; a value that is not finite has no bar.
     pub fn group(mut self, name: &str, values: &[f64]) -> Self {
         let bar = |&value: &f64| if value.is_finite() { value } else { 0.0 };
         let values = values.iter().map(bar).collect();

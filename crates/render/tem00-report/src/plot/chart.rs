@@ -14,14 +14,14 @@ use super::{
 };
 use crate::digits::number;
 
-/// The largest number with a position on an axis: differences and squares of such are numbers
-/// still.
+/// The largest number with a position on an axis: differences and squares of such numbers stay
+/// finite.
 const LARGEST: f64 = 1e100;
 
 /// Points and lines over two axes, each linear or logarithmic.
 ///
 /// A point that has no position on its axes, because it is not finite, beyond 1e100 or not positive
-/// on a logarithmic axis, is left out, and breaks the line or the band that it is of.
+/// on a logarithmic axis, is left out, and breaks the line or the band that it belongs to.
 #[derive(Clone, Debug)]
 pub struct Chart {
     title: String,
@@ -202,7 +202,7 @@ impl Series {
         pieces
     }
 
-    /// Returns what is drawn of each piece; only the first is in the legend.
+    /// Returns the plots of each piece; only the first is in the legend.
     fn plots(&self, pieces: &[Vec<[f64; 3]>]) -> Vec<Plot> {
         let pieces = pieces.iter().enumerate();
         let names = pieces.map(|(index, piece)| (if index == 0 { &*self.name } else { "" }, piece));

@@ -1,6 +1,6 @@
 //! The meanings of colours: one colour has one meaning in all diagrams of a report.
 
-/// A colour on white paper, and the one that stands for the same on a dark screen.
+/// A colour on white paper, and the colour with the same meaning on a dark screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Colour {
     pub light: &'static str,
@@ -37,7 +37,7 @@ colours! {
     KEPT = "#3f4a8a", "#98a4ee";
     /// Set-ups that break a constraint.
     BROKEN = "#b8bec6", "#565c66";
-    /// Set-ups that no other is better than.
+    /// Set-ups than which no other is better.
     FRONT = "#d6249f", "#ff70cc";
     /// Less of a parameter.
     LESS = "#e0a030", "#f5c060";

@@ -43,7 +43,7 @@ impl Drawing {
         Self::of_scene(render_multiple(plots, layout))
     }
 
-    /// Takes what was drawn element by element.
+    /// Creates a drawing from a scene that was drawn element by element.
     pub fn of_scene(mut scene: Scene) -> Self {
         scene.height = scene.height.max(lowest_text(&scene) + MARGIN);
         let svg = svg(&mut scene);
@@ -83,9 +83,9 @@ impl Drawing {
     }
 }
 
-/// Returns what is drawn with the axes about it, and no axes of their own without anything. It is
-/// read on a telephone, and two diagrams stand side by side on a desk: hence its size and the sizes
-/// of its letters.
+/// Returns the plots with the axes around them; without plots the axes have a default range. The
+/// diagram is read on a telephone, and two diagrams stand side by side on a desk: hence its size
+/// and the sizes of its letters.
 pub(super) fn panel(plots: Vec<Plot>, title: &str, [across, up]: [&str; 2]) -> Panel {
     const EMPTY: (f64, f64) = (0.0, 1.0);
     let layout = if plots.is_empty() {

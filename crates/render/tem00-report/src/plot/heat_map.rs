@@ -10,7 +10,7 @@ use super::{
     drawing::{Drawing, Panel, panel},
 };
 
-/// The most cells that are drawn along an axis.
+/// The maximum number of cells that are drawn along an axis.
 const MAX_CELLS: usize = 200;
 
 /// Values over a plane, as colours beside a scale; a value that is not finite is a hole.
@@ -68,7 +68,7 @@ impl HeatMap<'_> {
         (plots, layout)
     }
 
-    /// Returns what is drawn, from the bottom up.
+    /// Returns the cells that are drawn, from the bottom up.
     fn cells(&self) -> Vec<Vec<f64>> {
         let size = [self.values.width(), self.values.height()];
         let [columns, rows] = size.map(|cells| cells.min(MAX_CELLS));
@@ -88,7 +88,7 @@ impl HeatMap<'_> {
 }
 
 impl Scale {
-    /// Returns the colours, and one of its own for holes.
+    /// Returns the colours, and a separate colour for holes.
     fn colours(self) -> ColorMap {
         let colours = match self {
             Self::Height => ColorMap::Viridis,
@@ -109,7 +109,7 @@ pub fn height_colour(height: f64) -> String {
     ColorMap::Viridis.map(height)
 }
 
-/// Returns the mean of the finite values of a block, or the NaN of 0 / 0, a hole, without any.
+/// Returns the mean of the finite values of a block, or 0 / 0 = NaN, a hole, if there are none.
 fn mean(values: &Grid<f32>, (x0, x1): (usize, usize), (y0, y1): (usize, usize)) -> f64 {
     let cells = (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y)));
     let finite = cells

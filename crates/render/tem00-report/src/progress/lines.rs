@@ -13,7 +13,8 @@ use crate::digits::si_prefixed;
 const FIRST: Duration = Duration::from_secs(2);
 const LONGEST: Duration = Duration::from_secs(60);
 
-/// Tells the progress in lines that become rarer: each after as long again as the work has taken.
+/// Prints the progress in lines that become rarer: each line waits as long again as the work has
+/// taken so far.
 #[derive(Debug)]
 pub(super) struct Lines {
     total: u64,
@@ -30,7 +31,7 @@ struct State {
 }
 
 impl Lines {
-    /// Starts with nothing done, of `total` of something.
+    /// Starts with nothing done, of `total` units of `what`.
     pub(super) fn new(total: u64, what: &'static str) -> Self {
         Self {
             total,
@@ -71,7 +72,7 @@ impl Lines {
         let percent = (100.0 * share).floor();
         let left = if share > 0.0 {
             let seconds = elapsed.as_secs_f64() * (1.0 / share - 1.0).max(0.0);
-            // Beyond a million years nobody counts.
+            // Beyond a million years the number does not matter.
             let left = Duration::from_secs_f64(seconds.min(3e13));
             format!("{} left", HumanDuration(left))
         } else {

@@ -12,9 +12,9 @@ pub struct Cell {
     pub(super) text: String,
 }
 
-/// Returns what a value is in JSON; numbers that are not finite are `null`.
+/// Returns a value as JSON; numbers that are not finite become `null`.
 pub(super) fn value(value: impl Serialize) -> Value {
-    // Only keys that are no text fail, and there are none.
+    // Only keys that are not text fail, and there are none.
     serde_json::to_value(value).unwrap_or_default()
 }
 

@@ -11,13 +11,13 @@ use crate::{
 /// The script that turns the points; without it they stand as in print.
 pub(super) const SCRIPT: &str = include_str!("cloud.js");
 
-/// The most points that are drawn.
+/// The maximum number of points that are drawn.
 pub(super) const MAX_POINTS: usize = 6_000;
 
 /// The number of colours.
 const COLOURS: usize = 32;
 
-/// From where the points are seen at first, in degrees.
+/// The direction from which the points are seen at first, in degrees.
 const AZIMUTH: f64 = 30.0;
 const ELEVATION: f64 = 35.0;
 
@@ -34,7 +34,7 @@ pub struct Cloud<'a> {
     pub labels: [&'a str; 3],
     /// `true` if the first two axes have the unit of the third.
     pub to_scale: bool,
-    /// The points; those that are not finite are left out.
+    /// The points; points that are not finite are left out.
     pub points: Vec<[f64; 3]>,
 }
 
@@ -94,7 +94,7 @@ impl Cloud<'_> {
                 let [x, y, z] = frame.label(axis, value);
                 let (across, up) = projected([x, y, z]);
                 let text = escaped(text);
-                // Memory takes whatever it is given.
+                // Writing to memory never fails.
                 let _ = write!(
                     svg,
                     "<text class=\"label\" data-p=\"{x:.0} {y:.0} {z:.0}\" \
@@ -136,7 +136,7 @@ impl Frame {
         if points.is_empty() || !longest.is_finite() || longest <= 0.0 {
             return None;
         }
-        // Sides beside the longest.
+        // Sides relative to the longest.
         let wanted = [1.0, 0.6, 0.35];
         let sides = [0, 1, 2].map(|axis| {
             if spans[axis] <= 0.0 {
@@ -235,7 +235,7 @@ fn path(svg: &mut String, class: &str, colour: &str, places: &[[f64; 3]]) {
             _ => ("L", ""),
         };
         let space = if index == 0 { "" } else { " " };
-        // Memory takes whatever it is given.
+        // Writing to memory never fails.
         let _ = write!(positions, "{space}{x:.0} {y:.0} {z:.0}");
         let _ = write!(d, "{command}{across:.1} {down:.1}{end}");
     }
@@ -314,7 +314,7 @@ mod tests {
         assert!(drawn.abs_diff(MAX_POINTS) < 20, "{drawn}");
         let said = format!("{drawn} of the 50000 valid points");
         assert!(caption.starts_with(&said), "{caption}");
-        // 99 beside 499 is less than a quarter.
+        // 99 / 499 is less than a quarter.
         assert!(
             caption.ends_with("; along the scan stretched 1.3 times."),
             "{caption}"

@@ -6,8 +6,8 @@ use tem00_config::is_hazard;
 
 /// Returns text as HTML and XML show it, between tags and in quoted attributes.
 ///
-/// Characters that no such file may have, and those that turn the direction of writing, become the
-/// replacement character.
+/// Characters that no such file may contain, and characters that change the direction of writing,
+/// become the replacement character.
 pub fn escaped(text: &str) -> Cow<'_, str> {
     let special = |c: char| matches!(c, '&' | '<' | '>' | '"' | '\'') || is_unwanted(c);
     if !text.contains(special) {
@@ -28,7 +28,7 @@ pub fn escaped(text: &str) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
-/// Returns whether a character does something other than show itself, or may be in no file of XML.
+/// Returns whether a character does something other than show itself, or may not appear in XML.
 pub fn is_unwanted(c: char) -> bool {
     is_hazard(c) || matches!(c, '\u{fffe}' | '\u{ffff}')
 }

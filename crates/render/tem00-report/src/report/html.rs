@@ -25,7 +25,7 @@ impl Report {
         let (title, style, dark) = (escaped(&self.title), style::CSS, style::dark());
         let version = env!("CARGO_PKG_VERSION");
         let mut body = String::new();
-        // Memory takes whatever it is given.
+        // Writing to memory never fails.
         let _ = self.write_body(&mut body);
         let (policy, script) = if self.sections.iter().any(Section::turns) {
             let script = format!("<script>\n{}</script>\n", cloud::SCRIPT);

@@ -7,7 +7,7 @@ use crate::plot::colours;
 /// Plain on paper, light or dark on a screen as the reader has it.
 pub(super) const CSS: &str = include_str!("page.css");
 
-/// Returns what differs on a dark screen: the page, and every colour of a drawing.
+/// Returns the styles that differ on a dark screen: the page, and every colour of a drawing.
 pub(super) fn dark() -> String {
     let mut css = String::from(
         "@media screen and (prefers-color-scheme: dark) { :root { --ink: #e4e4e4; --paper: #17191c; \
@@ -22,13 +22,13 @@ pub(super) fn dark() -> String {
         .iter()
         .map(|colour| (colour.light, colour.dark));
     for (light, dark) in frame.into_iter().chain(colours) {
-        // Memory takes whatever it is given.
+        // Writing to memory never fails.
         let _ = writeln!(
             css,
             "svg [fill=\"{light}\"] {{ fill: {dark}; }} svg [stroke=\"{light}\"] {{ stroke: {dark}; }}"
         );
     }
-    // Dark heights want brighter paper, and bright ones darker.
+    // Dark heights need brighter paper, and bright heights darker paper.
     css.push_str(".cloud { background: #9aa0a8; color: #101010; } }\n");
     css
 }

@@ -10,7 +10,7 @@ pub struct Table {
     pub(super) caption: String,
     pub(super) columns: Vec<Column>,
     pub(super) rows: Vec<Vec<Cell>>,
-    /// The rows that sum up those above, which only people see.
+    /// The rows that sum up the rows above, which only people see.
     pub(super) totals: Vec<Vec<Cell>>,
 }
 
@@ -65,12 +65,13 @@ impl Table {
         self
     }
 
-    /// Adds a row. Missing cells stay empty, those too many are left out.
+    /// Adds a row. Missing cells stay empty, surplus cells are left out.
     pub fn row(&mut self, cells: impl Into<Vec<Cell>>) {
         self.rows.push(cells.into());
     }
 
-    /// Adds a row that sums up those above, for people alone: in JSON, sums have keys of their own.
+    /// Adds a row that sums up the rows above, for people alone: in JSON, sums have keys of their
+    /// own.
     pub fn total(&mut self, cells: impl Into<Vec<Cell>>) {
         self.totals.push(cells.into());
     }

@@ -9,8 +9,8 @@ use super::{Block, Report, Section, Table};
 use crate::{failure::Failure, output::note};
 
 impl Report {
-    /// Prints the report: as JSON if that is asked for, or for people with the names of its files,
-    /// and what there is to doubt on standard error.
+    /// Prints the report: as JSON on request, or for people with the names of its files, and the
+    /// reasons for doubt on standard error.
     ///
     /// # Errors
     ///
@@ -30,13 +30,12 @@ impl Report {
         printed.map_err(|error| Failure::stdout(&error))
     }
 
-    /// Writes the verdicts to standard error, for commands that print nothing but the names of
-    /// files.
+    /// Writes the verdicts to standard error, for commands that print only the names of files.
     pub fn tell_verdicts(&self) {
         self.verdicts.iter().for_each(|line| note(line));
     }
 
-    /// Tells warnings and notes, the first few of many.
+    /// Prints warnings and notes; of many, only the first few.
     fn print_warnings(&self) {
         const TOLD: usize = 8;
         for (kind, lines) in [("warning", &self.warnings), ("note", &self.notes)] {

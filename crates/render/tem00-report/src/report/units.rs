@@ -3,7 +3,7 @@
 use super::cell::Cell;
 use crate::digits::rounded;
 
-/// A unit in which a quantity is shown, and the number of digits that are.
+/// A unit in which a quantity is shown, and the number of digits shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
     /// The symbol; empty for numbers.
@@ -46,13 +46,13 @@ impl Unit {
         }
     }
 
-    /// Returns the unit for values with so many significant digits.
+    /// Returns the unit for values with `digits` significant digits.
     pub const fn with_digits(self, digits: u8) -> Self {
         Self { digits, ..self }
     }
 
-    /// Returns the unit for a value known no better than this: to the place of the second digit of
-    /// its uncertainty.
+    /// Returns the unit for a value with this uncertainty, with digits up to the second digit of
+    /// the uncertainty.
     pub fn with_digits_known(self, value: f64, uncertainty: f64) -> Self {
         let place = |number: f64| number.abs().log10().floor();
         let digits = place(value) - place(uncertainty) + 2.0;

@@ -6,7 +6,7 @@ use super::{
     BYTES_PER_PIXEL, Components, ImageError, Samples, check_length, check_room, checked_area,
 };
 
-/// The length of the smallest header of Windows, `BITMAPINFOHEADER`, and of the one before it.
+/// The length of the smallest header of Windows, `BITMAPINFOHEADER`, and of the header before it.
 const HEADER: u32 = 40;
 const FILE_HEADER: usize = 14;
 

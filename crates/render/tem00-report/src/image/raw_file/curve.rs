@@ -33,7 +33,7 @@ impl StoredCurve {
         }
     }
 
-    /// Returns what is to be known where grey values are taken as they are.
+    /// Returns the remark for grey values that are taken as they are.
     pub(super) const fn of_grey_values(self) -> &'static str {
         match self {
             Self::Unknown | Self::Light | Self::Linear => "",
@@ -56,7 +56,7 @@ pub(super) struct Curve {
 }
 
 impl Curve {
-    /// Takes what was asked for, else what the file says.
+    /// Takes the requested relation, or else the relation in the file.
     pub(super) const fn new(
         stored: StoredCurve,
         transfer: Option<Transfer>,
@@ -90,7 +90,8 @@ impl Curve {
         }
     }
 
-    /// Returns what was done to grey values, to be added to what they are.
+    /// Returns a description of the conversion of grey values, to follow the description of the
+    /// values.
     pub(super) fn description(&self) -> String {
         match self.stored {
             StoredCurve::Light => String::new(),

@@ -12,7 +12,7 @@ pub(super) const BIT_DEPTH: &str = "bit_depth";
 /// The bits that a grey value may have.
 pub(super) const BIT_DEPTHS: [u32; 5] = [8, 10, 12, 14, 16];
 
-/// The bytes that it takes to keep a pixel as a number, to find lines there and to draw them.
+/// The memory needed to keep a pixel as a number, to find lines there and to draw them, in bytes.
 pub(in crate::image) const BYTES_PER_PIXEL: usize = 28;
 
 /// A frame to be written.
@@ -29,14 +29,14 @@ pub struct GreyFrame<'a> {
 pub struct RawImage {
     /// The grey values, in DN.
     pub values: Grid<f32>,
-    /// The bits of a grey value; none of numbers without a largest value.
+    /// The bits of a grey value; `None` for numbers without a largest value.
     pub bit_depth: Option<u32>,
     /// The pixels of which a chosen channel is saturated.
     pub saturated: Grid<bool>,
     /// A description of what was read from the file.
     pub interpretation: String,
-    /// The way in which viewers turn the image, from 1 (not at all) to 8; here its rows are those
-    /// of the sensor.
+    /// The way in which viewers turn the image, from 1 (not at all) to 8; here its rows are the
+    /// rows of the sensor.
     pub orientation: u16,
     /// `true` if the file has images after this one.
     pub has_further_images: bool,

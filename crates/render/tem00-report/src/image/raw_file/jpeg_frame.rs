@@ -8,10 +8,10 @@ use super::{
     checked_area, orientation::of_exif,
 };
 
-/// The most pixels along a side: what the format can say.
+/// The maximum number of pixels along a side that the format allows.
 const LONGEST_SIDE: usize = 65_535;
 
-/// The most pixels of a byte of coded data: a block of 64 has a bit at least.
+/// The maximum number of pixels per byte of coded data: a block of 64 has at least one bit.
 const PIXELS_PER_BYTE: u64 = 64 * 8;
 
 /// Coded ones, which no complete image reads: no Huffman code consists of ones (ITU-T T.81, annex
@@ -31,7 +31,7 @@ pub(super) fn read(mut reader: impl Read) -> Result<Samples, ImageError> {
     reader.read_to_end(&mut file)?;
     let end = end_of_image(&file).ok_or(ImageError::CutJpeg)?;
     let bytes = file.len() as u64;
-    // The decoder fills what is missing with grey: here it meets what cannot be.
+    // The decoder fills missing data with grey: here it meets data that cannot be.
     file.splice(end..end, ONES);
     let options = DecoderOptions::default()
         .set_strict_mode(true)
@@ -83,7 +83,7 @@ fn without_the_end(error: DecodeErrors) -> ImageError {
     error.into()
 }
 
-/// Returns the position of the marker at the end of the first image; none if it is not there, or if
+/// Returns the position of the marker at the end of the first image; `None` if it is missing, or if
 /// restarts or scans before it are missing.
 fn end_of_image(file: &[u8]) -> Option<usize> {
     const END: u8 = 0xd9;
@@ -114,7 +114,7 @@ fn end_of_image(file: &[u8]) -> Option<usize> {
             0xda => {
                 let here = byte(at + 4)?;
                 scans.add(file.get(at + 5..at + 8 + 2 * here)?);
-                // Of several scans each has units of its own.
+                // Each of several scans has its own units.
                 if interval > 0 && here == components {
                     due = usize::div_ceil(units, interval).saturating_sub(1);
                 }

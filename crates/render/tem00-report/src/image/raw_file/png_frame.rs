@@ -46,8 +46,8 @@ pub(super) fn read(reader: impl BufRead + Seek) -> Result<Samples, ImageError> {
 }
 
 /// Returns the reader of a PNG file of any colour type and depth, and its number of pixels, once it
-/// is known that the file can have as many and that there is memory for them: what the reader
-/// needs, and so many bytes of each component and of each pixel.
+/// is known that the file can hold as many pixels and that memory is available: for the reader, and
+/// for the given bytes of each component and of each pixel.
 fn decoder<R: BufRead + Seek>(
     mut source: R,
     [per_component, per_pixel]: [usize; 2],
@@ -91,7 +91,7 @@ fn curve(info: &png::Info<'_>) -> StoredCurve {
     } else if info.srgb.is_some() {
         StoredCurve::Srgb
     } else if let Some(gamma) = gamma.filter(|gamma| *gamma > 0) {
-        // Beside a profile it stands for those who do not read that.
+        // Next to a profile, it serves readers that do not read the profile.
         StoredCurve::Gamma(f64::from(gamma) / 1e5)
     } else if info.icc_profile.is_some() {
         StoredCurve::Profile

@@ -67,10 +67,10 @@ fn number(rest: &mut &[u8]) -> Option<u32> {
     str::from_utf8(digits).ok()?.parse().ok()
 }
 
-/// Returns the values of one or two bytes, and what stands behind them.
+/// Returns the values of one or two bytes, and the content behind them.
 ///
-/// One white space ends the header. On Windows it may be two characters, as those of the other
-/// lines of the header tell or, if it has one line only, the length of the file.
+/// One white space ends the header. On Windows it may be two characters, as the other lines of the
+/// header show or, if it has only one line, the length of the file.
 fn binary<'a>(
     file: &[u8],
     rest: &'a [u8],

@@ -18,12 +18,12 @@ pub(in crate::image) struct Samples {
     pub(super) components: Components,
     /// Components of all pixels, in DN.
     pub(super) values: Vec<f32>,
-    /// The bits of a grey value, as the file says or as it stores them; none of numbers without a
-    /// largest value.
+    /// The bits of a grey value, as the file says or as it stores them; `None` for numbers without
+    /// a largest value.
     pub(super) bit_depth: Option<u32>,
     /// The relation of grey values to light, from the file.
     pub(super) curve: StoredCurve,
-    /// The way in which the image is to be shown, from 1 (as stored) to 8.
+    /// The orientation in which the image is to be shown, from 1 (as stored) to 8.
     pub(super) orientation: u16,
     /// The name of the chosen component, where the reader has chosen.
     pub(super) name: Option<String>,
@@ -33,7 +33,7 @@ pub(in crate::image) struct Samples {
 }
 
 impl Samples {
-    /// Returns the samples of a file that says nothing else.
+    /// Returns the samples of a file without further information.
     pub(super) fn new(
         [width, height]: [usize; 2],
         components: Components,
@@ -68,11 +68,12 @@ impl Samples {
         }
     }
 
-    /// Judges from which value on pixels are saturated; the user may know the bits of the camera.
+    /// Determines the value from which on pixels are saturated; the user may know the bit depth of
+    /// the camera.
     ///
     /// # Errors
     ///
-    /// Returns an error if the file has fewer bits, or a grey value is larger than those allow.
+    /// Returns an error if the file has fewer bits, or a grey value is larger than these allow.
     pub(in crate::image) fn judged(self, bits: Option<u32>) -> Result<JudgedSamples, ImageError> {
         let mut samples = self;
         let largest = samples.values.iter().copied().fold(0.0, f32::max);
@@ -85,7 +86,7 @@ impl Samples {
                 return Err(ImageError::Bits { expected, found });
             }
         }
-        // A file that claims fewer bits than its values have does not know them.
+        // A file that claims fewer bits than its values have does not know its bit depth.
         let own = samples.bit_depth;
         let known = own.map(|own| if largest <= full_scale(own) { own } else { 16 });
         samples.bit_depth = bits.or(known);
@@ -123,7 +124,7 @@ pub(in crate::image) struct JudgedSamples {
 }
 
 impl JudgedSamples {
-    /// Returns the part of the pixels in a rectangle; the whole image tells what is saturated.
+    /// Returns the part of the pixels in a rectangle; the whole image determines what is saturated.
     pub(in crate::image) fn cropped(self, crop: Crop) -> Result<Self, ImageError> {
         let whole = &self.samples;
         check_inside(crop, [whole.width, whole.height])?;
@@ -158,8 +159,8 @@ impl JudgedSamples {
         })
     }
 
-    /// Returns the light: in units of the largest that the grey values can hold, if there is one.
-    /// What `reading` asks for overrules what the file says.
+    /// Returns the light: in units of the largest value that the grey values can hold, if there is
+    /// one. The options of `reading` override the information in the file.
     pub(in crate::image) fn light(self, reading: &Reading<'_>) -> Result<LoadedImage, ImageError> {
         let samples = &self.samples;
         let selection = Selection::new(samples.components, reading.channel)?;
@@ -237,14 +238,14 @@ impl JudgedSamples {
         grid(self.samples.width, self.samples.height, saturated)
     }
 
-    /// Returns whether anything tells from which value on a chosen component is saturated.
+    /// Returns whether it is known from which value on a chosen component is saturated.
     fn is_judged(&self, selection: &Selection) -> bool {
         let mut levels = self.levels[selection.chosen.clone()].iter();
         levels.all(|level| level.is_finite())
     }
 
-    /// Returns what was taken from the file, and from which value on it counts as saturated where
-    /// that is not its largest.
+    /// Returns a description of what was taken from the file, and of the value from which on it
+    /// counts as saturated where that is not its largest value.
     fn description(&self, selection: &Selection, differ: &str) -> String {
         let samples = &self.samples;
         let bits = samples
@@ -283,7 +284,7 @@ impl JudgedSamples {
     }
 }
 
-/// The largest grey value of so many bits.
+/// Returns the largest grey value of `bit_depth` bits.
 pub(super) const fn full_scale(bit_depth: u32) -> f32 {
     ((1_u32 << bit_depth) - 1) as f32
 }

@@ -15,7 +15,8 @@ use super::{
     tiff_pixels::{Pixels, number, read_all},
 };
 
-/// A byte of coded data stands for at most so many: LZW grows its words by a byte each, to 4096.
+/// The maximum number of bytes that a byte of coded data stands for: LZW grows its words by a byte
+/// each, to 4096.
 const MAX_EXPANSION: u64 = 4096;
 
 pub(super) fn read(mut reader: impl Read + Seek) -> Result<Samples, ImageError> {
@@ -90,8 +91,8 @@ fn whole(mut decoder: Decoder<impl Read + Seek>, area: usize) -> Result<Pixels, 
     })
 }
 
-/// Returns numbers in single precision, their bits where they have a largest value, and what they
-/// are.
+/// Returns numbers in single precision, their bits where they have a largest value, and their
+/// description.
 fn numbers(read: DecodingResult) -> (Vec<f32>, Option<u32>, &'static str) {
     const SIGNED: &str = ", signed numbers";
     const FRACTIONS: &str = ", floating-point numbers";

@@ -1,7 +1,7 @@
 //! TIFF files whose grey values are not whole bytes, or are indices of a palette.
 //!
-//! The library for TIFF leaves them out. Its rows of bytes are what both consist of: the tags are
-//! changed so that it reads those, and the values are taken out of them here.
+//! The library for TIFF does not read them. Both kinds consist of rows of bytes: the tags are
+//! changed so that the library reads these rows, and the values are unpacked here.
 
 use std::io::{Cursor, Read, Seek};
 
@@ -83,7 +83,7 @@ impl Packing {
         }))
     }
 
-    /// Changes the tags so that each row is one of bytes.
+    /// Changes the tags so that each row is a row of bytes.
     fn relabel(&self, file: &mut [u8]) {
         let bytes = |pixels: usize| (pixels * self.samples * self.bits).div_ceil(8);
         let new = [
@@ -99,7 +99,7 @@ impl Packing {
         }
     }
 
-    /// Gives a tag that is there a number.
+    /// Sets the number of an existing tag.
     fn set(&self, file: &mut [u8], tag: Tag, value: usize) -> Option<()> {
         const LONG: u64 = 4;
         let is_big = matches!(file.get(2..4)?, [43, 0] | [0, 43]);
@@ -184,8 +184,8 @@ pub(super) fn read(
     Ok(coloured(numbers, palette))
 }
 
-/// Returns the colours of a palette: grey where all of them are, and of 8 bits where 16 say no
-/// more.
+/// Returns the colours of a palette: as grey where all of them are grey, and with 8 bits where 16
+/// bits add nothing.
 fn coloured(numbers: impl Iterator<Item = usize>, palette: &[u16]) -> Pixels {
     let count = palette.len() / 3;
     let colour = |index: usize| [0, 1, 2].map(|part| palette[part * count + index]);

@@ -23,7 +23,7 @@ pub(super) fn number<T: TryFrom<u64>>(
     decoder.find_tag_unsigned(tag).ok().flatten()
 }
 
-/// Reads all planes, at most so many bytes, and returns them with their number.
+/// Reads all planes, at most `bytes` bytes, and returns them with their number.
 pub(super) fn read_all(
     decoder: Decoder<impl Read + Seek>,
     bytes: usize,

@@ -74,7 +74,7 @@ impl Assets {
         Ok(mesh)
     }
 
-    /// Reads a map of radiance, whose values are multiplied by `scale`.
+    /// Reads a radiance map, whose values are multiplied by `scale`.
     pub(crate) fn radiance_map(
         &mut self,
         path: &Path,

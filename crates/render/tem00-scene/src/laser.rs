@@ -96,7 +96,7 @@ fn laser(section: &Section<'_>) -> Result<Laser, Problem> {
     Ok(laser.with_trajectory(trajectory(section, pivot)?))
 }
 
-/// Reads a beam, round or elliptic, whose waists are, unless they are given, at `distance`.
+/// Reads a beam, round or elliptic, with its waists at `distance` unless they are given.
 fn spot(section: &Section<'_>, distance: f64) -> Result<BeamShape, Problem> {
     Ok(BeamShape::Spot {
         waist_radius: along_and_across(
@@ -125,7 +125,7 @@ fn along_and_across<'a>(
     }
 }
 
-/// Reads a laser line that is, unless it is given, in focus at `distance`.
+/// Reads a laser line, with its focus at `distance` unless it is given.
 fn line(section: &Section<'_>, distance: f64, wavelength: f64) -> Result<BeamShape, Problem> {
     let fan_angle = section.required("fan_angle", "\"30 deg\"")?.within(
         &ANGLE,

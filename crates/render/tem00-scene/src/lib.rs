@@ -2,8 +2,8 @@
 //!
 //! # Conventions
 //!
-//! - Scene files are TOML in the syntax of [`tem00_config`]: SI units or units in strings, files
-//!   beside the one that names them, errors at line and column.
+//! - Scene files are TOML in the syntax of [`tem00_config`]: SI units or units in strings, file
+//!   names relative to the file that states them, errors at line and column.
 //! - Coordinates of meshes are multiplied by the length of the file's unit in metres.
 //!
 //! # Main types
@@ -14,7 +14,8 @@
 //!
 //! # Scope and non-goals
 //!
-//! Geometry only of meshes: no colours, materials, textures or animations. Nothing is written.
+//! Only the geometry of meshes is read: no colours, materials, textures or animations. The crate
+//! writes no files.
 
 mod assets;
 mod camera;

@@ -59,7 +59,7 @@ pub(crate) fn read(surface: &Section<'_>, lasers: &[Laser]) -> Result<Finished, 
     })
 }
 
-/// Reads the material of a section. What its constructor refuses is not placed yet.
+/// Reads the material of a section. An error of its constructor is not placed yet.
 fn of_kind(kind: &str, section: &Section<'_>) -> Result<Result<Material, TracerError>, Problem> {
     Ok(match kind {
         "lambertian" => Material::lambertian(reflectance(section, REFLECTANCE)?),

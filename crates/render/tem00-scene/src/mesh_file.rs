@@ -32,11 +32,11 @@ pub enum MeshFormat {
 }
 
 impl MeshFormat {
-    /// Returns the format that the extension of a file name, in any case, stands for.
+    /// Returns the format that the extension of a file name, in upper or lower case, stands for.
     ///
     /// # Errors
     ///
-    /// Returns an error if it is not one of those above.
+    /// Returns an error if the extension belongs to none of these formats.
     pub fn from_path(path: &Path) -> Result<Self, MeshFileError> {
         let extension = path.extension().unwrap_or_default();
         let extension = extension.to_string_lossy().to_lowercase();
@@ -53,25 +53,25 @@ impl MeshFormat {
 
 /// Reads a triangle mesh from an OBJ, PLY, STL or glTF file.
 ///
-/// The extension of the file name says which, see [`MeshFormat`]. Coordinates are multiplied by
-/// `scale`, the length of the file's unit in metres: 1e−3 for a file in millimetres, 1 for glTF,
-/// whose unit is the metre. All groups, solids, nodes and instances become one mesh.
+/// The extension of the file name determines the format, see [`MeshFormat`]. Coordinates are
+/// multiplied by `scale`, the length of the file's unit in metres: 1e−3 for a file in millimetres,
+/// 1 for glTF, whose unit is the metre. All groups, solids, nodes and instances become one mesh.
 ///
 /// Faces of any number of corners are cut into triangles in the plane that is closest to them,
 /// convex or not. Triangle strips and fans are read. Normals of vertices are kept as they are, also
-/// where they point to the back of a triangle; one that is zero or NaN is none, and STL has none.
-/// Everything else is passed over: points, lines, colours, materials, textures, skins, animations;
-/// of a scene, [`SceneFile::notes`](crate::SceneFile::notes) says what was left out of the shapes.
-/// Text may begin with a byte order mark. Files with the data of a glTF file lie below its folder.
-/// No file has more than [4 GiB](tem00_config::MAX_ASSET_BYTES).
+/// where they point to the back of a triangle; a normal that is zero or NaN counts as missing, and
+/// STL has no normals of vertices. Everything else is ignored: points, lines, colours, materials,
+/// textures, skins, animations; for a scene, [`SceneFile::notes`](crate::SceneFile::notes) says
+/// what was left out of the shapes. Text may begin with a byte order mark. Files with the data of a
+/// glTF file lie below its folder. No file has more than [4 GiB](tem00_config::MAX_ASSET_BYTES).
 ///
 /// # Errors
 ///
-/// Returns an error that names the file if the scale is not positive and finite, the extension is
-/// that of no format, the file cannot be read or breaks its format, or its content is not a mesh
-/// (see [`TriangleMesh::new`]). Errors of text files say the line. Of glTF, sparse accessors are
-/// refused, and extensions that the file requires unless they concern materials, textures, lights
-/// or animations alone.
+/// Returns an error that names the file if the scale is not positive and finite, the extension
+/// belongs to no format, the file cannot be read or breaks its format, or its content is not a mesh
+/// (see [`TriangleMesh::new`]). Errors of text files say the line. In glTF, sparse accessors are
+/// refused, and so are extensions that the file requires unless they concern only materials,
+/// textures, lights or animations.
 ///
 /// # Examples
 ///
@@ -90,7 +90,7 @@ pub fn read_mesh(path: &Path, scale: f64) -> Result<TriangleMesh, MeshFileError>
 }
 
 /// Reads a triangle mesh as [`read_mesh`] does, and says what was left out; the data of a glTF file
-/// may lie where `access` says.
+/// may lie where `access` allows.
 pub(crate) fn read_mesh_with(
     path: &Path,
     scale: f64,
@@ -129,8 +129,8 @@ pub fn read_mesh_bytes(
     Ok(mesh)
 }
 
-/// The bytes that a mesh takes for each of its file: vertices, triangles and the hierarchy of boxes
-/// around them.
+/// The memory that a mesh takes for each byte of its file, in bytes: vertices, triangles and the
+/// hierarchy of boxes around them.
 const BYTES_PER_BYTE: u64 = 8;
 
 fn read(

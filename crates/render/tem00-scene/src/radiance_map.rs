@@ -10,19 +10,20 @@ use tem00_numerics::{Grid, cast::to_f32};
 
 pub use error::RadianceMapError;
 
-/// Reads a map of radiance, for an [`Environment`](tem00_tracer::Environment), from an OpenEXR or
-/// PFM file.
+/// Reads a radiance map, for an [`Environment`](tem00_tracer::Environment), from an OpenEXR or PFM
+/// file.
 ///
-/// The extension of the file name, in any case, says which. Of colours the luminance is taken: the
-/// channels R, G and B by the chromaticities that an OpenEXR file states, or else those of Rec.
-/// 709; or the only channel there is. Of an OpenEXR file with several parts the first is read. The
-/// values are multiplied by `scale`, the radiance of the file's unit in W/(m² sr).
+/// The extension of the file name, in upper or lower case, determines the format. Colours are
+/// converted to luminance: the channels R, G and B by the chromaticities that an OpenEXR file
+/// states, or else by the chromaticities of Rec. 709; or the only channel there is. In an OpenEXR
+/// file with several parts, the first part is read. The values are multiplied by `scale`, the
+/// radiance of the file's unit in W/(m² sr).
 ///
 /// # Errors
 ///
 /// Returns an error that names the file if the scale is not positive and finite, the extension is
-/// none of the two, the file cannot be read or breaks its format, or has channels of another kind
-/// or more than 2²⁸ pixels. Whether all values are possible radiances is checked by
+/// neither of the two, the file cannot be read or breaks its format, or has channels of another
+/// kind or more than 2²⁸ pixels. Whether all values are possible radiances is checked by
 /// [`Environment::from_radiance`](tem00_tracer::Environment::from_radiance).
 ///
 /// # Examples

@@ -9,7 +9,7 @@ use crate::{assets::Assets, camera, laser, light, settings, surface};
 
 /// Files of scenes.
 ///
-/// The last four sections are for what becomes of the image: they are not read with the scene.
+/// The last four sections concern the use of the image: they are not read with the scene.
 const SCENE: Format = Format {
     noun: "scene",
     keys: &[
@@ -32,8 +32,8 @@ const SCENE: Format = Format {
 /// Reads a scene file, and with it the files that it includes.
 ///
 /// The format is TOML. Lengths, angles and powers are numbers in SI units, or strings with a unit.
-/// Files are looked for beside the one that names them; those that it includes lie below its
-/// folder, see [`FileAccess::WithinFolder`].
+/// File names are relative to the file that states them; included files lie below its folder, see
+/// [`FileAccess::WithinFolder`].
 ///
 /// # Errors
 ///
@@ -58,7 +58,7 @@ pub struct SceneFile {
 }
 
 impl SceneFile {
-    /// Reads a scene file, as [`read_scene`] does, and keeps the names of all files that it took.
+    /// Reads a scene file, as [`read_scene`] does, and keeps the names of all files that were read.
     ///
     /// # Errors
     ///
@@ -67,13 +67,12 @@ impl SceneFile {
         Self::read_with(path, FileAccess::WithinFolder, |_, _| Ok(())).map(|(file, ())| file)
     }
 
-    /// Reads a scene file, and with `further` those of its sections that say what becomes of the
-    /// image: `[sensor]`, `[detector]`, `[calibration]` and `[scan]`. The path `-` is standard
-    /// input.
+    /// Reads a scene file, and with `further` its sections on the use of the image: `[sensor]`,
+    /// `[detector]`, `[calibration]` and `[scan]`. The path `-` is standard input.
     ///
     /// # Errors
     ///
-    /// Returns the errors of [`read_scene`], and those of `further`, placed in the file.
+    /// Returns the errors of [`read_scene`], and the errors of `further`, placed in the file.
     pub fn read_with<'a, T>(
         path: &Path,
         reading: impl Into<Reading<'a>>,

@@ -65,7 +65,7 @@ pub(crate) fn render(root: &Document<'_>, scene: &mut Scene) -> Result<(), Probl
     Ok(())
 }
 
-/// Reads how the samples are shared among the pixels.
+/// Reads how the samples are distributed among the pixels.
 fn sampling(section: &Section<'_>) -> Result<Sampling, Problem> {
     let target = section.or("target_error", None, |value| {
         let error = value.within(&NUMBER, 1e-6..=1.0, "from 1e-6 to 1")?;

@@ -140,8 +140,8 @@ fn mesh(section: &Section<'_>, assets: &mut Assets) -> Result<(MeshInstance, DVe
     ))
 }
 
-/// The unit of a mesh file that does not say it, in metres: glTF is defined in metres, drawings of
-/// parts are in millimetres.
+/// The unit of a mesh file that does not state one, in metres: glTF is defined in metres, drawings
+/// of parts are in millimetres.
 fn usual_unit(file: &str) -> f64 {
     let name = file.to_lowercase();
     if name.ends_with(".gltf") || name.ends_with(".glb") {

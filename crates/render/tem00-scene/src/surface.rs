@@ -84,7 +84,7 @@ fn surface(
 }
 
 /// Returns the surface, or its instances if the file lists some: each is turned about the pivot,
-/// then displaced, and moves about a pivot that it took along.
+/// then displaced, and moves about its displaced pivot.
 fn instances(
     section: &Section<'_>,
     PlacedSurface { surface, pivot }: &PlacedSurface,
@@ -125,5 +125,5 @@ fn speckle(section: &Section<'_>) -> Result<SurfaceSpeckle, Problem> {
     })
 }
 
-/// More patterns than these leave a contrast below 1/32, which hardly anybody could tell from none.
+/// The maximum number of patterns: more leave a contrast below 1/32, which is hardly visible.
 const MAX_PATTERNS: u64 = 1 << 10;

@@ -11,7 +11,7 @@ pub enum MeshFileError {
     Mesh(MeshError),
     /// The scale, in metres per unit of the file, is not positive and finite.
     Scale(f64),
-    /// The extension of the file name is that of no mesh format known here.
+    /// The extension of the file name belongs to no mesh format known here.
     Extension(String),
     /// The file is in glTF, which the crate reads with its feature `gltf`.
     LeftOut,
@@ -34,7 +34,7 @@ pub enum MeshFileError {
 }
 
 impl MeshFileError {
-    /// Returns whether the file could not be read, whatever stands in it.
+    /// Returns whether the file could not be read, regardless of its content.
     pub(crate) fn is_unreadable(&self) -> bool {
         match self {
             Self::File { source, .. } => source.is_unreadable(),
@@ -42,7 +42,7 @@ impl MeshFileError {
         }
     }
 
-    /// Returns the error without what stands in the file.
+    /// Returns the error without quotations from the file.
     pub(crate) fn unquoted(self) -> Self {
         match self {
             Self::Format { line, .. } => Self::Format {

@@ -7,8 +7,8 @@ use super::error::{MeshFileError, wrong};
 /// their square.
 const MAX_CORNERS: usize = 1 << 15;
 
-/// The part of the area of a face that its triangles may cover the wrong way round: coordinates in
-/// single precision are not exact.
+/// The fraction of the area of a face that its triangles may cover the wrong way round: coordinates
+/// in single precision are not exact.
 const TOLERANCE: f64 = 1e-6;
 
 /// Faces of any number of corners, one after the other.
@@ -18,7 +18,7 @@ pub(super) struct Faces<T> {
     ends: Vec<usize>,
 }
 
-/// The triangles of all faces, and what is to be said about the others.
+/// The triangles of all faces, and findings about the other faces.
 #[derive(Debug)]
 pub(super) struct Cut<T> {
     pub(super) triangles: Vec<[T; 3]>,
@@ -108,10 +108,10 @@ struct Cutter {
 impl Cutter {
     /// Cuts the face with the corners `points`, and returns whether it crosses itself.
     ///
-    /// Triangles that all turn as the face does cover it once. Halves of halves do so in a convex
-    /// face. They keep the triangles as wide as the corners allow: a fan around one corner would
-    /// make slivers, which overlap so much that no hierarchy of boxes tells them apart. Other faces
-    /// are cut by their ears, in the plane that their corners are closest to.
+    /// Triangles that all have the orientation of the face cover it once. Repeated halving gives
+    /// such triangles in a convex face, and keeps them as wide as the corners allow: a fan around
+    /// one corner would make slivers, which overlap so much that no hierarchy of boxes separates
+    /// them. Other faces are cut by their ears, in the plane that their corners are closest to.
     fn cut(&mut self) -> Result<bool, TooManyCorners> {
         let count = u32::try_from(self.points.len()).map_err(|_| TooManyCorners)?;
         self.triangles.clear();
@@ -150,7 +150,7 @@ impl Cutter {
     }
 
     /// Multiplies the points by a power of two, so that areas neither overflow nor vanish; returns
-    /// whether there are finite ones.
+    /// whether all points are finite.
     fn scale(&mut self) -> bool {
         let first = self.points[0];
         let offsets = self.points.iter().map(|&point| (point - first).abs());

@@ -98,7 +98,7 @@ fn leave_out_appearance(root: &mut Root) -> Result<(), MeshFileError> {
 }
 
 /// Returns whether an extension is one of materials, textures, lights, animations or remarks, as
-/// its name says behind the mark of who made it: `KHR_materials_ior`, `EXT_texture_webp`.
+/// its name says after the prefix of its maker: `KHR_materials_ior`, `EXT_texture_webp`.
 fn concerns_appearance(extension: &str) -> bool {
     const WORDS: [&str; 6] = [
         "animation",
@@ -182,7 +182,7 @@ fn read_uri(uri: &str, folder: Option<(&Path, FileAccess)>) -> Result<Vec<u8>, S
     read_input(&canonical, MAX_ASSET_BYTES).map_err(|error| named(&error))
 }
 
-/// Replaces `%20` by a space, and so on; what is no such code stays.
+/// Replaces `%20` by a space, and so on; other text stays unchanged.
 fn decode_percent(uri: &str) -> String {
     let mut parts = uri.split('%');
     let mut bytes = parts.next().unwrap_or_default().as_bytes().to_vec();
@@ -223,7 +223,7 @@ const BYTES_PER_ELEMENT: u64 = 2 * 2 * size_of::<DVec3>() as u64;
 
 struct Reader {
     buffers: Vec<Vec<u8>>,
-    /// The vertices and triangles that there is memory for.
+    /// The vertices and triangles for which memory is available.
     room: u64,
     /// The number of primitives without triangles.
     left_out: usize,
@@ -269,7 +269,7 @@ impl Reader {
             Some(indices) => self.indices(&indices, positions.len())?,
             None => (0_u32..).take(positions.len()).collect(),
         };
-        // Most corners of a strip or a fan are those of three triangles.
+        // Most corners of a strip or a fan belong to three triangles.
         let uses = if mode == Mode::Triangles { 1 } else { 3 };
         self.check_room(positions.len(), corners.len().saturating_mul(uses))?;
         self.add_triangles(&triangles(mode, &corners)?, placement)?;
@@ -277,8 +277,8 @@ impl Reader {
         Ok(())
     }
 
-    /// Checks that there is memory for so many more vertices and corners. Few bytes can ask for
-    /// many: nodes and primitives may share their data.
+    /// Checks that memory is available for `vertices` more vertices and `corners` more corners. A
+    /// short file can ask for many, since nodes and primitives may share their data.
     fn check_room(&mut self, vertices: usize, corners: usize) -> Result<(), String> {
         let held = self.polygons.vertices.len() + self.polygons.triangles.len();
         let needed = held.saturating_add(vertices).saturating_add(corners) as u64;

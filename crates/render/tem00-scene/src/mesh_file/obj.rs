@@ -66,7 +66,7 @@ struct ObjFile {
     /// The number of points, lines, curves and curved surfaces.
     left_out: usize,
     /// The highest vertex and normal that a face refers to, counted from 1, and its line. Faces may
-    /// refer to what comes later, so these are judged at the end.
+    /// refer to later vertices and normals, so these indices are judged at the end.
     highest_vertex: (u64, usize),
     highest_normal: (u64, usize),
 }

@@ -31,7 +31,7 @@ pub(super) fn parse(content: &[u8]) -> Result<Polygons, MeshFileError> {
         let has_normals = ["nx", "ny", "nz"]
             .iter()
             .all(|name| is_number(element, name));
-        // What has no properties has no bytes either, however many the header announces.
+        // Elements without properties have no bytes either, however many the header announces.
         let count = if element.properties.is_empty() {
             0
         } else {

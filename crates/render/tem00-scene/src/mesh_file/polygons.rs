@@ -20,7 +20,8 @@ pub(super) struct Polygons {
 impl Polygons {
     /// Makes a mesh, and says what was left out of it.
     ///
-    /// Vertices that no triangle uses may be anything; normals that are not finite are none.
+    /// Vertices that no triangle uses may have any values; normals that are not finite count as
+    /// missing.
     pub(super) fn into_mesh(
         mut self,
         scale: f64,
@@ -96,7 +97,7 @@ pub(super) fn note(count: usize, [one, many]: [&str; 2]) -> Option<String> {
 
 /// Reads a number, which may be NaN in any of the ways that programs write it.
 ///
-/// Those of Microsoft write `nan(ind)` and `1.#QNAN`.
+/// Programs of Microsoft write `nan(ind)` and `1.#QNAN`.
 pub(super) fn parse_number(word: &str) -> Option<f64> {
     let no_number = || {
         let digits = word.trim_start_matches(['-', '+']).to_ascii_lowercase();
@@ -109,7 +110,8 @@ pub(super) fn parse_number(word: &str) -> Option<f64> {
     word.parse().ok().or_else(no_number)
 }
 
-/// Returns the point, or what else `of` is, whose three coordinates are the first three words.
+/// Returns the point, or the vector that `of` names, whose three coordinates are the first three
+/// words.
 pub(super) fn parse_point<'a>(
     words: impl Iterator<Item = &'a str>,
     of: &str,

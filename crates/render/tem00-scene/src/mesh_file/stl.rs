@@ -11,8 +11,8 @@ const PREAMBLE: usize = 84;
 /// A normal, three corners and two spare bytes.
 const RECORD: usize = 50;
 
-/// The first bytes, among which a binary file has one that is zero: in its number of triangles, if
-/// not before.
+/// The number of first bytes among which a binary file has a zero byte: in its number of triangles,
+/// if not before.
 const HEAD: usize = 512;
 
 /// Reads an STL file, text or binary.

@@ -3,7 +3,7 @@ use std::path::PathBuf;
 
 use tem00_camera::MAXIMUM_PIXELS;
 
-/// An error of a file with a map of radiance.
+/// An error of a file with a radiance map.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RadianceMapError {
@@ -34,7 +34,7 @@ pub enum RadianceMapError {
 }
 
 impl RadianceMapError {
-    /// Returns whether the file could not be read, whatever stands in it.
+    /// Returns whether the file could not be read, regardless of its content.
     pub(crate) fn is_unreadable(&self) -> bool {
         match self {
             Self::File { source, .. } => source.is_unreadable(),

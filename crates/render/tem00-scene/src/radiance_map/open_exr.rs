@@ -69,11 +69,11 @@ const OF_REC_709: Chromaticities = Chromaticities {
     white: Vec2(0.3127, 0.329),
 };
 
-/// Returns the parts of red, green and blue in the luminance: those of the primaries that together
-/// make white, of luminance 1.
+/// Returns the fractions of red, green and blue in the luminance: the fractions of the primaries
+/// that together make white, of luminance 1.
 ///
 /// In the chromaticity diagram white is a mean of the primaries, with weights b. A primary of
-/// chromaticity (x, y) takes part with the luminance `b y / y_white` (CIE 15:2018; SMPTE RP 177).
+/// chromaticity (x, y) contributes the luminance `b y / y_white` (CIE 15:2018; SMPTE RP 177).
 fn parts(colours: Chromaticities) -> Result<[f32; 3], RadianceMapError> {
     if colours == OF_REC_709 {
         return Ok(REC_709);

@@ -19,7 +19,7 @@ pub(super) fn parse(content: &[u8]) -> Result<Grid<f32>, RadianceMapError> {
     let little_endian = number::<f64>(&mut rest, "the byte order")? < 0.0;
     let needed = width * height * channels * size_of::<f32>();
     // One character of white space ends the header, or the two that end a line on Windows: its
-    // other lines tell, and if it has none the length.
+    // other lines tell, or the length if it has no other lines.
     let header = &content[..content.len() - rest.len()];
     let is_windows = header.windows(2).any(|pair| pair == b"\r\n") || rest.len() == needed + 2;
     let end = 1 + usize::from(rest.starts_with(b"\r\n") && is_windows);

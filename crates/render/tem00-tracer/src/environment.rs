@@ -11,10 +11,10 @@ use crate::{LightSample, TracerError};
 
 /// Light from all around, so far away that it is the same everywhere in the scene.
 ///
-/// Its radiance is constant, or that of a map of latitude by longitude: the rows go from `up` down
+/// Its radiance is constant, or given by a map of latitude by longitude: the rows go from `up` down
 /// to the opposite direction in equal steps of the angle, the columns once around, from left to
-/// right as one sees it who looks at the middle of the map. A map has one radiance for each of
-/// its pixels, without interpolation, so that directions are drawn in exact proportion to it.
+/// right as seen by an observer who looks at the middle of the map. A map has one radiance for each
+/// of its pixels, without interpolation, so that directions are drawn in exact proportion to it.
 ///
 /// # Examples
 ///
@@ -72,10 +72,10 @@ impl Environment {
         })
     }
 
-    /// Creates an environment from a map of radiance, in W/(m² sr).
+    /// Creates an environment from a radiance map, in W/(m² sr).
     ///
     /// `up` is the direction of the upper edge of the map. `middle` is a direction that appears in
-    /// its middle column; of it only the part across `up` counts.
+    /// its middle column; only its component across `up` counts.
     ///
     /// # Errors
     ///

@@ -17,7 +17,7 @@ pub enum TracerError {
         /// The allowed values, with the unit.
         allowed: &'static str,
     },
-    /// A vector that must point somewhere is zero, not finite or parallel to its partner.
+    /// A vector that needs a direction is zero, not finite or parallel to its partner.
     Direction {
         /// The name of the parameter.
         parameter: &'static str,

@@ -12,13 +12,13 @@ pub use self::sample::{LaserSample, Sample, Seen};
 pub use self::sums::{LaserSums, Moments, PixelSums};
 use crate::TracerError;
 
-/// The rendered layers of one frame, or of the part of it that was cropped.
+/// The rendered layers of one frame, or of its cropped part.
 ///
 /// All radiances are in W/(m² sr), averaged over the pixel (by the reconstruction filter), at the
-/// wavelength of their source. The variances are those of a pixel's value from render to render, in
+/// wavelength of their source. The variances describe a pixel's value from render to render, in
 /// (W/(m² sr))²; they are estimated from the pixel's samples as if these were independent. The
-/// samples are spread more evenly than that, so the variances are upper bounds on average. One
-/// sample alone tells nothing: its variance is infinite.
+/// samples are spread more evenly than that, so the variances are upper bounds on average. A single
+/// sample gives no estimate: its variance is infinite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     /// The layers of each laser, in the order of the scene.
@@ -27,13 +27,13 @@ pub struct Frame {
     pub lights: Grid<f32>,
     /// The variance of `lights`.
     pub lights_variance: Grid<f32>,
-    /// The distance from the camera to what is seen, along the axis of the camera, in metres: the
-    /// mean over the pixel's samples that meet something, and 0 where none does.
+    /// The distance from the camera to the surface seen, along the axis of the camera, in metres:
+    /// the mean over the pixel's samples that meet something, and 0 where none does.
     pub depth: Grid<f32>,
-    /// The components x, y and z of the unit normal of what is seen, on the side that is seen and
-    /// as it is shaded: the mean over the pixel's samples, with 0 for those that meet nothing.
+    /// The components x, y and z of the unit normal of the surface seen, on the visible side and as
+    /// it is shaded: the mean over the pixel's samples, with 0 for those that meet nothing.
     pub normal: [Grid<f32>; 3],
-    /// The number of samples that the pixel is made of, those of a pilot left out.
+    /// The number of samples in the pixel, without the samples of a pilot.
     pub samples: Grid<f32>,
     /// The column and the row of the first pixel in the whole image.
     pub origin: [usize; 2],
@@ -66,8 +66,8 @@ pub struct LaserLayers {
     /// Surfaces seen in a mirror or through glass do not count.
     pub power_on_target: f64,
     /// The standard error of `power_on_target`, as if the samples of a pixel were independent;
-    /// infinite with one sample in a pixel. A spot that few samples hit has a large one, and one
-    /// that no sample hits has none.
+    /// infinite with one sample in a pixel. A spot that few samples hit has a large standard error,
+    /// and a spot that no sample hits has none.
     pub power_error: f64,
 }
 
@@ -120,7 +120,7 @@ impl Film {
         self.frame.rays += rays;
     }
 
-    /// Writes what the samples of a pixel of a strip have found.
+    /// Writes the results of the samples of a pixel in a strip.
     pub fn write(&mut self, strip: usize, at: [usize; 2], pixel: &PixelSums) {
         let at = at.into();
         for (layers, laser) in self.frame.lasers.iter_mut().zip(&pixel.lasers) {

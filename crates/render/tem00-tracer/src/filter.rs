@@ -13,7 +13,7 @@ const MAXIMUM_RADIUS: f64 = IMAGE_MARGIN;
 /// in pixels from the centre of the pixel, 0 beyond its radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Filter {
-    /// k = 1. With the radius ½ pixels do not overlap and are what the pixels of a sensor are.
+    /// k = 1. With the radius ½, pixels do not overlap, like the pixels of a sensor.
     Box {
         /// The radius, in pixels.
         radius: f64,
@@ -85,7 +85,7 @@ impl Filter {
 pub struct FilterSample {
     /// The offset from the centre of the pixel, in pixels.
     pub offset: DVec2,
-    /// The factor on what is seen there, of mean 1.
+    /// The factor on the light found there, of mean 1.
     pub weight: f64,
 }
 

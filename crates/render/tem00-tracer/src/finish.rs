@@ -2,12 +2,12 @@ use core::f64::consts::FRAC_PI_2;
 
 use crate::Metal;
 
-/// A process that finishes metal, and how rough it leaves it.
+/// A process that finishes metal, and the roughness that it leaves.
 ///
-/// The ranges are typical ones and no measurements: of the process as it is usually run, not of a
-/// part. Its arithmetic mean deviation Ra says how high a surface is, not how steep: the roughness
-/// α of a material, which makes the width of its lobe, does not follow from it. Neither does the
-/// lay that a tool leaves.
+/// The ranges are typical values and not measurements: they hold for the process as it is usually
+/// run, not for a part. The arithmetic mean deviation Ra says how high a surface is, not how steep:
+/// the roughness α of a material, which makes the width of its lobe, does not follow from it.
+/// Neither does the lay that a tool leaves.
 ///
 /// # Examples
 ///

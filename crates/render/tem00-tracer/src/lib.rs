@@ -5,8 +5,8 @@
 //! - Lengths are in metres, powers in watts, radiances in W/(m² sr), all in `f64`; images are
 //!   `f32`.
 //! - Image points are in pixels, x to the right and y down; the image is upright.
-//! - One frame, the first unless said otherwise, is the reference that the speckle of the others
-//!   has moved and changed from.
+//! - One frame, the first by default, is the reference frame: the speckle of the other frames has
+//!   moved and changed since then.
 //! - The same seed gives the same bits for any number of threads.
 //!
 //! # Main types

@@ -9,7 +9,7 @@ use crate::TracerError;
 /// more memory than the map.
 const BLOCK: usize = 32;
 
-/// A map of latitude by longitude with what it takes to draw directions from it.
+/// A map of latitude by longitude with the sums needed to draw directions from it.
 ///
 /// In its own axes the middle of the map is towards x, its right towards y, and its upper edge
 /// towards z.

@@ -9,7 +9,7 @@ pub struct FilmLayout<'a> {
     pub area: Crop,
     /// The number of strips into which the area is divided.
     pub strips: usize,
-    /// True if first samples tell how many each pixel gets.
+    /// True if pilot samples determine the sample count of each pixel.
     pub has_pilot: bool,
     /// True if light is followed from the lasers, too.
     pub light_traced: bool,

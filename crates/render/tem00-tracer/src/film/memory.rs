@@ -9,8 +9,8 @@ use crate::TracerError;
 const LAYERS_PER_LASER: u64 = 5;
 const COMMON_LAYERS: u64 = 7;
 
-/// Layers of what first samples tell: two, two for neighbours, and a quarter for what follows from
-/// it.
+/// The number of layers for the results of pilot samples: two, two for neighbours, and a quarter
+/// for the levels that follow.
 const PILOT_LAYERS: u64 = 5;
 
 /// Layers of the light followed from one laser, before it is added to its own: four sums in double

@@ -1,6 +1,6 @@
 use glam::DVec3;
 
-/// The light that a camera sample finds, and what it sees.
+/// The light that a camera sample finds, and the surface that it sees.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
     /// The weight of the sample in its pixel, of mean 1.

@@ -48,7 +48,7 @@ impl Moments {
         self.squares += value * value;
     }
 
-    /// Returns the variance of the mean of so many independent values.
+    /// Returns the variance of the mean of `samples` independent values.
     fn variance_of_mean(&self, samples: u32) -> f64 {
         if samples < 2 {
             return f64::INFINITY;
@@ -93,12 +93,12 @@ impl PixelSums {
         }
     }
 
-    /// Returns the mean over the samples of what adds up to `sum`.
+    /// Returns the mean over the samples of a quantity whose sum is `sum`.
     pub fn mean(&self, sum: f64) -> f64 {
         sum / f64::from(self.samples.max(1))
     }
 
-    /// Returns the variance of the mean of what has these `moments`.
+    /// Returns the variance of the mean of a quantity with these `moments`.
     pub fn variance(&self, moments: &Moments) -> f64 {
         moments.variance_of_mean(self.samples)
     }

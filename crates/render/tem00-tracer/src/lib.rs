@@ -20,7 +20,7 @@
 //! glass; moving objects, lasers and cameras. Each laser is traced at its own wavelength, and other
 //! lights are white. There is no polarisation, no dispersion, and nothing scatters between
 //! surfaces. Laser light that meets mirrors or glass both before and after a rough surface is not
-//! found unless lasers are [sampled](LaserEvents::Sampled). Nothing is read from files.
+//! found unless lasers are [sampled](LaserEvents::Sampled). The crate reads no files.
 
 mod environment;
 mod error;

@@ -10,8 +10,8 @@ pub use self::sample::LightSample;
 use self::spherical_rectangle::SphericalRectangle;
 use crate::{Environment, TracerError};
 
-/// The solid angle, in steradian, below which near rectangles are sampled by area as far ones are:
-/// its rounding error is 1e−11 of this.
+/// The solid angle, in steradian, below which near rectangles are sampled by area, as far
+/// rectangles are: its rounding error is 1e−11 of this.
 const SMALL_SOLID_ANGLE: f64 = 1e-4;
 
 /// A source of incoherent light, without colour of its own.
@@ -87,7 +87,7 @@ impl Light {
     ///
     /// Rectangles are drawn uniformly over their area from afar and, nearer than their diagonal,
     /// over the solid angle that they cover; environments in proportion to their radiance. Returns
-    /// `None` where the light does not reach. Whether the way is free is left to the caller.
+    /// `None` where the light does not reach. The caller checks whether the path is free.
     pub fn sample(&self, from: DVec3, u: [f64; 2]) -> Option<LightSample> {
         match self {
             Self::Point { position, power } => sample_point(*position - from, *power),
@@ -198,7 +198,7 @@ fn faces(rectangle: &Rectangle, from: DVec3) -> bool {
 }
 
 /// Returns the image of a rectangle for a point in front of it and nearer to its centre than its
-/// diagonal is long. Farther away points drawn by area do as well and cost a tenth.
+/// diagonal is long. Farther away, points drawn by area do as well at a tenth of the cost.
 fn near_image(rectangle: &Rectangle, from: DVec3) -> Option<SphericalRectangle> {
     let half_diagonal_squared =
         rectangle.half_u().length_squared() + rectangle.half_v().length_squared();

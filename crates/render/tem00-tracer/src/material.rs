@@ -27,12 +27,13 @@ use crate::{Metal, TracerError, metal::fresnel_reflectance};
 /// Scattering of light by a surface.
 ///
 /// Directions are unit vectors in a [local frame](crate::LocalFrame) whose z axis is the normal,
-/// and point away from the surface: `wo` to where the light goes, `wi` to where it comes from. What
-/// is carried from `wi` to `wo` is radiance. Wavelengths are in metres, in vacuum; directions are
-/// drawn alike for every wavelength, only what they carry differs.
+/// and point away from the surface: `wo` to where the light goes, `wi` to where it comes from. The
+/// quantity carried from `wi` to `wo` is radiance. Wavelengths are in metres, in vacuum; directions
+/// are drawn alike for every wavelength, and only their weights differ.
 ///
-/// Materials are isotropic. All but glass are opaque and alike on both sides: what holds above the
-/// surface holds mirrored below it, unless the material is [`one_sided`](Self::one_sided).
+/// Materials are isotropic. All materials except glass are opaque and alike on both sides: the
+/// properties above the surface hold mirrored below it, unless the material is
+/// [`one_sided`](Self::one_sided).
 ///
 /// A material is either rough or *specular*: [mirrors](Self::mirror), [polished
 /// metal](Self::polished) and [glass](Self::dielectric) send light into single directions, which
@@ -93,7 +94,7 @@ impl Material {
 
     /// Checks that the material is known at a wavelength, in metres.
     ///
-    /// Whoever brings a material and a light together does so once; the other methods take the
+    /// Code that combines a material with a light makes this check once; the other methods take the
     /// nearest wavelength that was measured.
     ///
     /// # Errors
@@ -199,7 +200,7 @@ impl Material {
     }
 
     /// Returns the direction as if seen from above, or `None` for one along the surface or behind a
-    /// one-sided one.
+    /// one-sided material.
     fn facing_up(&self, wo: DVec3) -> Option<DVec3> {
         if wo.z > 0.0 {
             return Some(wo);

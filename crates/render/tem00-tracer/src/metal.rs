@@ -15,10 +15,10 @@ use crate::TracerError;
 ///
 /// # Validity
 ///
-/// Vacuum wavelengths from 368 nm to 1088 nm. The tables are those of clean, smooth surfaces,
-/// mostly films: oxide, alloying and the way a film is made change the reflectance. Where two
-/// laboratories measured a metal, their reflectances in red differ by 1 % of the light for the best
-/// mirrors and by up to 9 % for chromium, platinum and titanium.
+/// Vacuum wavelengths from 368 nm to 1088 nm. The tables are for clean, smooth surfaces, mostly
+/// films: oxide, alloying and the way a film is made change the reflectance. Where two laboratories
+/// measured a metal, their reflectances in red differ by 1 % of the light for the best mirrors and
+/// by up to 9 % for chromium, platinum and titanium.
 ///
 /// # Examples
 ///
@@ -208,7 +208,7 @@ pub(crate) fn fresnel_reflectance(cosine: f64, (n, k): (f64, f64)) -> f64 {
     let cross = 2.0 * a * cosine;
     let perpendicular = (modulus + c2 - cross) / (modulus + c2 + cross);
     let ratio = (c2 * modulus + s2 * s2 - cross * s2) / (c2 * modulus + s2 * s2 + cross * s2);
-    // An index of 1 reflects nothing. Rounding may say less, and along the surface both
+    // An index of 1 reflects nothing. Rounding may give less, and along the surface both
     // polarisations are 0/0: `max` answers 0 to both.
     (0.5 * perpendicular * (1.0 + ratio)).max(0.0)
 }

@@ -8,8 +8,8 @@ pub enum Method {
     /// From the camera; and from the lasers through mirrors and glass, where the scene has them.
     #[default]
     Path,
-    /// From the lasers to the camera; lights as by the other method. What the camera sees in
-    /// mirrors and through glass has no light of lasers.
+    /// From the lasers to the camera; lights as by the other method. Surfaces that the camera sees
+    /// in mirrors and through glass have no light of lasers.
     Light,
 }
 
@@ -57,26 +57,26 @@ pub enum Sampling {
     /// Every pixel gets [`samples_per_pixel`](RenderOptions::samples_per_pixel) samples.
     #[default]
     Even,
-    /// Pixels get so many on average at most, and more of them where samples differ: at edges, in
-    /// the light of a narrow beam, where rare paths bring light.
+    /// Pixels get at most [`samples_per_pixel`](RenderOptions::samples_per_pixel) samples on
+    /// average, and more where samples differ: at edges, in the light of a narrow beam, where rare
+    /// paths bring light.
     ///
-    /// A pilot of a quarter of the samples, 8 at most, tells how much the samples of a pixel and
+    /// A pilot of a quarter of the samples, 8 at most, shows how much the samples of a pixel and
     /// its eight neighbours differ: the largest of their standard deviations σ. It takes 2 in every
-    /// second pixel where a quarter is less than 2. Then the pixel gets a number in proportion to
-    /// σ^⅔, from half of `samples_per_pixel` to 32 times as many. The samples of the pilot are not
-    /// used for the image, so that it is as unbiased as with even samples. What it cannot see, as
-    /// light that one path in a thousand finds, has up to twice the variance. Fewer than 4 samples
-    /// per pixel are shared evenly.
+    /// second pixel where a quarter is less than 2. Then the pixel gets a number of samples in
+    /// proportion to σ^⅔, from half of `samples_per_pixel` to 32 times as many. The samples of the
+    /// pilot are not used for the image, so that it is as unbiased as with even samples. Light that
+    /// it cannot see, such as light that one path in a thousand finds, has up to twice the
+    /// variance. Fewer than 4 samples per pixel are shared evenly.
     Adaptive,
     /// Every pixel gets enough samples for this relative standard error, positive.
     ///
-    /// A pilot of 16 samples in a pixel and in each of its eight neighbours tells the error that a
-    /// mean of independent samples would have; it is raised by a sixth, as the estimate is
-    /// uncertain. The pixel gets `samples_per_pixel` times a power of two, 64 at most, that brings
-    /// it below this fraction of the pixel's radiance, or of a tenth of the mean radiance of the
-    /// image where the pixel is darker. The samples of the pilot are not used for the image, so
-    /// that it is as unbiased as with even samples. Light that is followed from the lasers does not
-    /// count.
+    /// A pilot of 16 samples in a pixel and in each of its eight neighbours estimates the error of
+    /// a mean of independent samples; the estimate is raised by a sixth, because it is uncertain.
+    /// The pixel gets `samples_per_pixel` times a power of two, 64 at most, that brings it below
+    /// this fraction of the pixel's radiance, or of a tenth of the mean radiance of the image where
+    /// the pixel is darker. The samples of the pilot are not used for the image, so that it is as
+    /// unbiased as with even samples. Light that is followed from the lasers does not count.
     TargetError(f64),
 }
 
@@ -100,7 +100,8 @@ pub struct RenderOptions {
     pub samples_per_pixel: u32,
     /// Distribution of samples among the pixels.
     pub sampling: Sampling,
-    /// The seed of everything random: camera samples, and speckle where its plan takes the same.
+    /// The seed of all random numbers: camera samples, and speckle where its plan takes the same
+    /// seed.
     pub seed: u64,
     /// The maximum number of surfaces that light may meet between source and camera; `None` for no
     /// limit.
@@ -119,7 +120,7 @@ pub struct RenderOptions {
     pub crop: Option<Crop>,
     /// True if the layer of speckle factors has speckle where a laser sends no light, too;
     /// otherwise camera samples that find no light of the laser count with a factor of 1 there.
-    /// Radiances are the same, and take less time without.
+    /// Radiances are the same either way; `false` takes less time.
     pub speckle_in_the_dark: bool,
     /// The radiance that previews show as white, in W/(m² sr); `None` to choose it from the first
     /// frame. No layer depends on it.

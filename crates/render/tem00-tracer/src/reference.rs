@@ -1,9 +1,9 @@
 //! The reference integrator: one camera sample at a time, from the lens to the light.
 //!
 //! It is written to be read, and to judge `tem00-engine`, which renders the same scenes fast: all
-//! means are the same, and no code is shared beyond the scene itself. Here meet the beam of a
-//! laser, which lights a point, and the speckle, which multiplies that light by a factor that has
-//! moved with the surface.
+//! means are the same, and no code is shared beyond the scene itself. Here the beam of a laser
+//! lights a point, and the speckle multiplies that light by a factor that has moved with the
+//! surface.
 
 mod from_laser;
 mod lights;
@@ -29,15 +29,15 @@ use crate::{
 /// The wavelength of lights in metres: they are white, and materials grey under them.
 const WHITE: f64 = 550e-9;
 
-/// Surfaces after which a path may end by chance.
+/// The number of surfaces after which a path may end by chance.
 const CERTAIN_SURFACES: u32 = 2;
 
 /// Renders one frame, sample by sample, on the threads of the current rayon pool.
 ///
-/// Every pixel gets the same number of samples. Without `speckle` every factor is 1. `progress` is
-/// told the number of samples done since its last call; once `cancel` is set, the render stops
+/// Every pixel gets the same number of samples. Without `speckle` every factor is 1. `progress`
+/// receives the number of samples done since its last call; once `cancel` is set, the render stops
 /// after the rows in work. The result has the same bits for any number of threads, and its means
-/// are those of the engine.
+/// equal the means of the engine.
 ///
 /// # Errors
 ///
@@ -111,10 +111,10 @@ struct Reference<'a> {
 /// A path from the camera.
 struct Path {
     ray: Ray,
-    /// The radiance at the camera by that at the end of the path: of each laser, and behind them of
-    /// lights.
+    /// The ratio of the radiance at the camera to the radiance at the end of the path: for each
+    /// laser, and behind them for lights.
     throughput: Vec<f64>,
-    /// The number of surfaces met, and of rough ones left.
+    /// The number of surfaces met, and of rough surfaces left.
     depth: u32,
     rough: u32,
     /// The change of radiance by refraction, which is no loss of power.
@@ -305,7 +305,7 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// Takes the light of sampled lasers whose beams a ray from a rough surface runs back.
+    /// Adds the light of sampled lasers whose beams a ray from a rough surface follows backwards.
     fn meet_lasers(&self, path: &Path, hit: Option<&Hit>, lasers: &mut [LaserSample]) {
         if !self.options.samples_beams() || !self.finds_lasers() || path.rough == 0 {
             return;

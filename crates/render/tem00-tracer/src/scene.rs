@@ -17,7 +17,8 @@ pub struct Surface {
     pub trajectory: Trajectory,
     /// The composition of its speckle.
     pub speckle: SurfaceSpeckle,
-    /// The relief that is finer than what the camera resolves; of no height where it is not known.
+    /// The relief that is finer than the resolution of the camera; of height zero where it is not
+    /// known.
     pub relief: Relief,
 }
 
@@ -53,7 +54,7 @@ impl Default for SurfaceSpeckle {
     }
 }
 
-/// Choices about the speckle patterns; what is `None` is chosen from camera, image and motion.
+/// Choices about the speckle patterns; a choice of `None` is made from camera, image and motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeckleSettings {
     /// The pattern size Q, in samples.
@@ -79,8 +80,8 @@ impl Default for SpeckleSettings {
 
 /// Everything that is rendered, validated.
 ///
-/// One frame is the reference: the speckle of the others has moved and changed by what has moved
-/// between.
+/// One frame is the reference frame: the speckle of the other frames has moved and changed by the
+/// motion since then.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// The camera, before its trajectory moves it.
@@ -99,7 +100,7 @@ pub struct Scene {
     pub render: RenderOptions,
     /// The number of frames.
     pub frames: u32,
-    /// The frame whose speckle the others' has moved and changed from.
+    /// The reference frame, from which the speckle of the other frames has moved and changed.
     pub reference_frame: u32,
 }
 

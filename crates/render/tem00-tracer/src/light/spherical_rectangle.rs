@@ -70,7 +70,7 @@ impl SphericalRectangle {
         let half = libm::sin(0.5 * tau);
         let squared = (high - low) * (high - low) + 4.0 * low * high * half * half;
         let x = length(libm::sin(tau) / squared.sqrt(), d).clamp(self.low[0], self.high[0]);
-        // Along y, the density of directions is that of y / √(x² + y² + d²).
+        // Along y, the density of directions is the density of y / √(x² + y² + d²).
         let d = DVec2::new(x, d).length();
         let (low, high) = (part(self.low[1], d), part(self.high[1], d));
         let y = length(low + v * (high - low), d).clamp(self.low[1], self.high[1]);

@@ -35,8 +35,8 @@ impl Albedo {
         self.at_root(cosine.sqrt().sqrt())
     }
 
-    /// Returns the mean `∫ 2 E(μ) μ dμ` of the interpolated albedo: what is reflected of light that
-    /// comes evenly from everywhere.
+    /// Returns the mean `∫ 2 E(μ) μ dμ` of the interpolated albedo: the reflected fraction of light
+    /// that comes evenly from everywhere.
     pub(super) const fn mean(&self) -> f64 {
         self.mean
     }
@@ -76,7 +76,7 @@ impl Albedo {
     }
 }
 
-/// Averages what the facets reflect over those that are seen, by the midpoint rule.
+/// Averages the reflectance of the facets over the visible ones, by the midpoint rule.
 fn directional(facets: Ggx, cosine: f64, reflectance: &impl Fn(f64) -> f64) -> f64 {
     const RINGS: u32 = 48;
     const ANGLES: u32 = 32;

@@ -57,7 +57,8 @@ impl Material {
     ///
     /// # Validity
     ///
-    /// A metal that absorbs nothing would lose, to second facets, of light from everywhere:
+    /// A metal that absorbs nothing would lose this fraction of light from everywhere to second
+    /// facets:
     ///
     /// ```text
     /// α      0.1    0.2    0.3    0.5    0.7    1
@@ -86,17 +87,18 @@ impl Material {
     }
 
     /// Creates a plastic, lacquer or glaze: a clear coat of the given `index` with a rough surface
-    /// over a diffuse base that reflects the fraction `reflectance` of what reaches it.
+    /// over a diffuse base that reflects the fraction `reflectance` of the light that reaches it.
     ///
-    /// `roughness` is that of [`conductor`](Self::conductor). Light that the first facet does not
-    /// reflect enters the coat; the base and the inner side of the coat pass it to and fro until it
-    /// is absorbed or leaves. A white base loses nothing. A grey one looks darker than it is: with
-    /// an index of 1.5 and a nearly smooth coat, a base of 0.5 returns 0.29 of the light that
-    /// enters.
+    /// `roughness` is the parameter α of [`conductor`](Self::conductor). Light that the first facet
+    /// does not reflect enters the coat; the base and the inner side of the coat pass it to and fro
+    /// until it is absorbed or leaves. A white base loses nothing. A grey one looks darker than it
+    /// is: with an index of 1.5 and a nearly smooth coat, a base of 0.5 returns 0.29 of the light
+    /// that enters.
     ///
     /// # Validity
     ///
-    /// The coat absorbs nothing and is thin beside what the image resolves. Energy is kept to 3e-4.
+    /// The coat absorbs nothing and is thin compared with the resolution of the image. Energy is
+    /// kept to 3e-4.
     ///
     /// # Examples
     ///
@@ -167,9 +169,9 @@ impl Material {
     /// above is air or vacuum.
     ///
     /// Reflectance is Fresnel's for unpolarised light, refraction follows Snell's law, and nothing
-    /// is absorbed. The index is the same at every wavelength: a path then takes one way for all
+    /// is absorbed. The index is the same at every wavelength: a path is then the same for all
     /// lasers of a scene, and every light costs one path. Take the index at the laser's wavelength;
-    /// from 450 nm to 650 nm that of crown glass falls by 0.7 %.
+    /// the index of crown glass falls by 0.7 % from 450 nm to 650 nm.
     ///
     /// # Examples
     ///

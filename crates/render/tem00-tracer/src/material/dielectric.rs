@@ -12,8 +12,8 @@ pub(super) struct Dielectric {
 impl Dielectric {
     /// Draws reflection or refraction by `choice`, uniform in [0, 1).
     ///
-    /// Reflection is drawn with the probability R that light is reflected. What refraction carries
-    /// then has no loss, but radiance is per solid angle, which the boundary changes:
+    /// Reflection is drawn with the probability R that light is reflected. Refracted light then has
+    /// no loss, but radiance is per solid angle, which the boundary changes:
     ///
     /// ```text
     /// L_o = (1 − R) (n_o / n_i)² L_i

@@ -7,7 +7,7 @@ use core::{
 use super::{Material, Scattering, constructors::check};
 use crate::TracerError;
 
-/// The circumstances in which a surface has to be rough for speckle theory to hold.
+/// The conditions under which a surface has to be rough for speckle theory to hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OpticalRoughnessQuery {
     /// The vacuum wavelength, in metres.
@@ -16,7 +16,7 @@ pub struct OpticalRoughnessQuery {
     pub incidence: f64,
     /// The angle between the surface normal and the camera, in radians.
     pub viewing: f64,
-    /// The diameter of what the camera resolves on the surface, in metres.
+    /// The diameter of the resolution cell of the camera on the surface, in metres.
     pub resolution_cell: f64,
     /// The rms height of the surface, in metres, where it is known.
     pub rms_height: Option<f64>,
@@ -25,8 +25,8 @@ pub struct OpticalRoughnessQuery {
 /// Optical roughness of a surface for light that is scattered from one direction into another.
 ///
 /// Speckle is fully developed where two things hold: heights spread the phase over more than a
-/// turn, so that no light is left in step, and what the camera resolves has many patches whose
-/// phases are independent.
+/// turn, so that no light is left in step, and a resolution cell of the camera has many patches
+/// whose phases are independent.
 ///
 /// With `c = cos θi + cos θo`, the rms height `σ_h`, and the height correlation `exp(−r²/ℓ²)` of a
 /// Gaussian surface with the roughness α:
@@ -40,14 +40,14 @@ pub struct OpticalRoughnessQuery {
 /// ```
 ///
 /// The light's correlation length does not depend on the height: where only α is known, it alone
-/// says how many patches there are, provided that the surface is high enough.
+/// determines the number of patches, provided that the surface is high enough.
 ///
 /// # Validity
 ///
-/// GGX has no rms slope of its own: its roughness is taken for that of Beckmann's facets, whose
-/// lobe has the same height, and whose light is therefore correlated over the same area. The
+/// GGX has no rms slope of its own: its roughness is taken as the roughness of Beckmann's facets,
+/// whose lobe has the same height, and whose light is therefore correlated over the same area. The
 /// relations hold for Gaussian surfaces without shadowing. For N patches the variance of the
-/// intensity departs from that of fully developed speckle by the order of 1/N.
+/// intensity departs from its value for fully developed speckle by the order of 1/N.
 ///
 /// # Examples
 ///
@@ -168,7 +168,7 @@ impl Material {
     /// Judges whether the surface is rough enough for the theory of speckle, or returns `None` for
     /// a specular material, which makes no speckle.
     ///
-    /// Metals are judged by their roughness, plastics by that of their coat, which matters
+    /// Metals are judged by their roughness, plastics by the roughness of their coat, which matters
     /// where the camera sees it shine. Diffuse materials scatter everywhere and count as a
     /// roughness of 1.
     ///

@@ -7,11 +7,11 @@ use super::{
     diffuse::{choose_first, cosine_pdf, sample_cosine, sample_hemisphere},
 };
 
-/// `½ − 2/(3π)`: what retro-reflection adds to the albedo at grazing incidence, per ratio.
+/// `½ − 2/(3π)`: the albedo that retro-reflection adds at grazing incidence, per ratio.
 const GRAZING: f64 = 0.5 - 2.0 / (3.0 * PI);
 
-/// `6/(5π) − 1/6`: the mean over all directions of what is [missing](OrenNayar::missing), per
-/// ratio.
+/// `6/(5π) − 1/6`: the mean over all directions of the albedo that is
+/// [missing](OrenNayar::missing), per ratio.
 const MEAN_MISSING: f64 = 6.0 / (5.0 * PI) - 1.0 / 6.0;
 
 /// Lambertian facets that shadow and light each other. All directions are above the surface.
@@ -34,14 +34,14 @@ pub(super) struct OrenNayar {
     ratio: f64,
     /// ρ A / π.
     single: f64,
-    /// The factor of what is missing in both directions.
+    /// The factor of the albedo that is missing in both directions.
     multiple: f64,
 }
 
 impl OrenNayar {
     /// Creates facets from their reflectance and the rms angle of their slopes, in radians.
     ///
-    /// The ratio is that of the qualitative model of Oren and Nayar (1994, eq. 30):
+    /// The ratio is the one of the qualitative model of Oren and Nayar (1994, eq. 30):
     ///
     /// ```text
     /// r = (0.45 σ² / (σ² + 0.09)) / (1 − 0.5 σ² / (σ² + 0.33))

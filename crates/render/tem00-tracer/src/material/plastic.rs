@@ -21,7 +21,8 @@ use super::{
 /// κ = ρ (1 − R_in) / (1 − ρ R_in)        1 − R_in = (1 − Ē) / n²
 /// ```
 ///
-/// `R_in`, what the inner side of the coat throws back of diffuse light, follows from reciprocity.
+/// `R_in`, the fraction of diffuse light that the inner side of the coat throws back, follows from
+/// reciprocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Plastic {
     facets: Ggx,

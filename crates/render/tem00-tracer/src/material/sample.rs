@@ -12,9 +12,9 @@ pub struct BsdfSample {
     pub pdf: f64,
     /// True if the material sends light into single directions only.
     pub specular: bool,
-    /// The square of the index on the side of `wi`, relative to that on the side of `wo`; 1 for
-    /// reflection. `weight` is that of radiance carried from `wi` to `wo`; `weight · eta_squared`
-    /// is that of power carried from `wo` to `wi`, for paths that start at a light.
+    /// The square of the index on the side of `wi`, relative to the index on the side of `wo`; 1
+    /// for reflection. `weight` is for radiance carried from `wi` to `wo`; `weight · eta_squared`
+    /// is for power carried from `wo` to `wi`, on paths that start at a light.
     pub eta_squared: f64,
 }
 

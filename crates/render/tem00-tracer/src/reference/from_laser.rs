@@ -12,7 +12,7 @@ use tem00_numerics::cast::{to_f32, to_usize};
 use super::{CERTAIN_SURFACES, Random, Reference};
 use crate::{Crop, Frame, LocalFrame, Material, RenderError};
 
-/// Independent parts of the paths, whose scatter tells the variance.
+/// The number of independent groups of paths, whose scatter gives the variance.
 const GROUPS: u64 = 64;
 
 /// Contribution of light paths to one pixel, or to the camera as a whole.
@@ -26,8 +26,8 @@ struct Splat {
     power: f64,
 }
 
-/// Sums over the paths of a laser in one pixel; of the radiance, and of the squares of that of
-/// groups.
+/// Sums over the paths of a laser in one pixel; of the radiance, and of the squares of the
+/// radiances of groups.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     single: f64,
@@ -35,7 +35,7 @@ struct Sums {
     radiance: [f64; 2],
 }
 
-/// Returns the variance of a sum over groups, from the sum and that of the squares.
+/// Returns the variance of a sum over groups, from the sum and the sum of the squares.
 fn variance([sum, squares]: [f64; 2]) -> f64 {
     let groups = GROUPS as f64;
     groups / (groups - 1.0) * (squares - sum * sum / groups).max(0.0)
@@ -167,8 +167,8 @@ impl Reference<'_> {
         }
     }
 
-    /// Returns what the light at a rough surface brings to the pixel that sees it through a drawn
-    /// point of the lens.
+    /// Returns the contribution of the light at a rough surface to the pixel that sees it through a
+    /// drawn point of the lens.
     fn splat(
         &self,
         laser: usize,

@@ -1,7 +1,7 @@
 use tem00_numerics::seed::scattered;
 
-/// Random numbers of one pixel or of one group of light paths: `SplitMix64` from a place of its
-/// own.
+/// Random numbers of one pixel or of one group of light paths: `SplitMix64` from its own starting
+/// point.
 pub(super) struct Random(u64);
 
 impl Random {

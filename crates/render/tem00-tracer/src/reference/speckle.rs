@@ -5,8 +5,8 @@ use tem00_shading::{Motion, PreparedSpeckle, Speckle, SpeckleFrame};
 
 use crate::{Scene, TracerError};
 
-/// Rays to each side of the image that look for the points from which the largest shift of speckle
-/// is found.
+/// The number of rays along each side of the image that look for the points from which the largest
+/// shift of speckle is found.
 const SIDE: usize = 16;
 
 /// The speckle of a scene as any host of `tem00-shading` has it: prepared once for each laser and
@@ -75,8 +75,8 @@ impl ReferenceSpeckle {
     }
 }
 
-/// Returns what has moved from the reference frame to `frame`. Surfaces with the same trajectory
-/// are one body.
+/// Returns the motion from the reference frame to `frame`. Surfaces with the same trajectory are
+/// one body.
 fn motion(scene: &Scene, laser: usize, surface: usize, frame: u32) -> Motion {
     let since = |trajectory: &crate::Trajectory| {
         let before = trajectory.pose_at(scene.reference_frame);
@@ -94,9 +94,9 @@ fn motion(scene: &Scene, laser: usize, surface: usize, frame: u32) -> Motion {
     }
 }
 
-/// Returns points of each surface, with their normals, as they stand in the reference frame: those
-/// that the camera sees there or, of a surface that is hidden there, in the first frame that shows
-/// it.
+/// Returns points of each surface, with their normals, as they stand in the reference frame: the
+/// points that the camera sees there or, for a surface that is hidden there, in the first frame
+/// that shows it.
 fn points_seen(scene: &Scene) -> Result<Vec<Vec<(DVec3, DVec3)>>, TracerError> {
     let mut seen = vec![Vec::new(); scene.surfaces.len()];
     for frame in [scene.reference_frame].into_iter().chain(0..scene.frames) {

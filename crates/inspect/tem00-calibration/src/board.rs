@@ -6,7 +6,7 @@ use tem00_triangulation::TriangulationError;
 /// The maximum number of corners along a side of a board.
 const MAX: usize = 50;
 
-/// A checkerboard, by its inner corners: where four squares meet.
+/// A checkerboard, given by its inner corners, where four squares meet.
 ///
 /// The board has one square more than inner corners along each side. Its own frame has its origin
 /// at the lower left inner corner, x to the right and y up on the board, z out of it towards the
@@ -65,7 +65,7 @@ impl Checkerboard {
         self.corner_at((columns - 1) as f64 / 2.0, (rows - 1) as f64 / 2.0)
     }
 
-    /// Returns the point of the board so many squares to the right and up.
+    /// Returns the point of the board `right` squares to the right and `up` squares up.
     pub fn corner_at(&self, right: f64, up: f64) -> DVec3 {
         self.square * DVec3::new(right, up, 0.0)
     }

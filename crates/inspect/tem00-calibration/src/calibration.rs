@@ -13,7 +13,7 @@ use tem00_triangulation::{LaserPlane, TriangulationError, Triangulator};
 /// [`PARAMETERS`](crate::PARAMETERS).
 ///
 /// The errors of a calibration are common to all points that are measured with it: they do not
-/// average out, but a difference of heights near each other hardly feels them, see
+/// average out, but they hardly affect the difference of neighbouring heights, see
 /// [`step_uncertainty`](Self::step_uncertainty).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
@@ -39,7 +39,7 @@ pub struct CalibrationQuality {
     pub boards: usize,
     /// The number of corners in the images of all boards.
     pub corners: usize,
-    /// The root mean square of the distances of the corners from where they are expected, in
+    /// The root mean square of the distances of the corners from their expected positions, in
     /// pixels.
     pub rms_reprojection: f64,
     /// The number of points of the line from which the plane follows.
@@ -64,8 +64,8 @@ impl Calibration {
     ///
     /// # Errors
     ///
-    /// Returns an error if a camera that differs by a hundred-thousandth of what is estimated is
-    /// not possible: the calibration stands at the edge of its range.
+    /// Returns an error if a camera whose parameters differ by a hundred-thousandth of their
+    /// estimates is not possible: the calibration stands at the edge of its range.
     pub fn with_covariance(
         self,
         covariance: CalibrationCovariance,
@@ -81,7 +81,7 @@ impl Calibration {
         })
     }
 
-    /// Returns the calibration with what is known about its quality.
+    /// Returns the calibration with the residuals that show its quality.
     #[must_use]
     pub fn with_quality(self, quality: CalibrationQuality) -> Self {
         Self {
@@ -128,11 +128,11 @@ impl Calibration {
         ))
     }
 
-    /// Returns the standard uncertainty that the calibration leaves to the height of a point of the
-    /// laser plane, in metres, or `None` if the camera does not see the point.
+    /// Returns the standard uncertainty of the height of a point of the laser plane by the
+    /// calibration, in metres, or `None` if the camera does not see the point.
     ///
     /// Heights are along `up`, a direction of any length. They are counted from the world's origin,
-    /// which is the first board's for an estimated calibration.
+    /// which is the origin of the first board for an estimated calibration.
     pub fn height_uncertainty(&self, point: DVec3, up: DVec3) -> Option<f64> {
         let Some(known) = &self.uncertainty else {
             return self.camera().project(point).map(|_| 0.0);
@@ -141,11 +141,10 @@ impl Calibration {
             .map(|sensitivities| known.along(sensitivities, up))
     }
 
-    /// Returns the standard uncertainty that the calibration leaves to the difference of the
-    /// heights of two points of the laser plane, in metres, or `None` if the camera does not see
-    /// one of them.
+    /// Returns the standard uncertainty of the difference of the heights of two points of the laser
+    /// plane by the calibration, in metres, or `None` if the camera does not see one of them.
     ///
-    /// What moves both alike drops out.
+    /// An error that moves both points alike cancels.
     pub fn step_uncertainty(&self, points: [DVec3; 2], up: DVec3) -> Option<f64> {
         let [one, two] = points.map(|point| self.camera().project(point));
         let Some(known) = &self.uncertainty else {

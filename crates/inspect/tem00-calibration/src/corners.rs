@@ -4,25 +4,25 @@ use tem00_numerics::{Grid, Refusal};
 use crate::{Checkerboard, flat_field::flattened, lattice::ordered, ring::corner_candidates};
 use tem00_triangulation::TriangulationError;
 
-/// The standard deviation of the Gaussian that smooths a corner at first, in sides of a square: the
-/// next edges are more than five of them away.
+/// The standard deviation of the first Gaussian that smooths a corner, in sides of a square: the
+/// next edges are more than five standard deviations away.
 const SMOOTHING: f64 = 0.18;
 
 /// Standard deviation of the last smoothing, in squares. The error due to uneven light and curved
 /// edges grows with its square.
 const LAST_SMOOTHING: f64 = 0.06;
 
-/// The minimum standard deviation of the last one, in pixels: steps between pixels hardly show in
-/// it.
+/// The minimum standard deviation of the last smoothing, in pixels: steps between pixels hardly
+/// show in it.
 const MIN_SMOOTHING: f64 = 2.0;
 
-/// Reach of its window, in standard deviations.
+/// The reach of the smoothing window, in standard deviations.
 const WINDOW: f64 = 4.0;
 
 /// Maximum number of refinements of a position.
 const MAX_STEPS: usize = 30;
 
-/// The change of a position below which it stands, in pixels.
+/// The change of a position, in pixels, below which the refinement ends.
 const MIN_STEP: f64 = 1e-4;
 
 /// The minimum size of an image, in pixels, that is searched.
@@ -35,11 +35,11 @@ const HALVINGS: u32 = 3;
 /// left, to a small fraction of a pixel.
 ///
 /// Corners are found by the bright and dark quarters around them, in the image and in coarser ones,
-/// and put in order by their neighbours. Their positions are the saddles of the image that a
-/// Gaussian smooths, first over about a third of a square, then over a third of that: by the
-/// symmetry of a corner neither blur nor contrast moves them. Uneven light would: it is estimated
-/// from the bright squares and divided out. What is left of it moves a position, and so does a lens
-/// that bends the edges:
+/// and put in order by their neighbours. Their positions are the saddles of the image smoothed by a
+/// Gaussian, first over about a third of a square, then over a third of that width: by the symmetry
+/// of a corner neither blur nor contrast moves them. Uneven light would move them: it is estimated
+/// from the bright squares and divided out. Its remainder moves a position, and so does a lens that
+/// bends the edges:
 ///
 /// ```text
 /// σ_x = √(π/8) σ_I / ΔI      by noise: σ_I of a pixel, ΔI bright less dark
@@ -48,7 +48,7 @@ const HALVINGS: u32 = 3;
 /// ```
 ///
 /// The first, per axis, follows from the slope of the noise and the curvature ΔI / (π σ²) of a
-/// smoothed corner; it does not depend on the smoothing σ. The others do, by its square.
+/// smoothed corner; it does not depend on the smoothing σ. The others depend on its square.
 ///
 /// # Validity
 ///
@@ -148,7 +148,7 @@ fn refined(
 }
 
 /// Returns the position near `start` at which the image, smoothed by a Gaussian of the standard
-/// deviation `sigma`, has a saddle, or `None` if there is none within two of them.
+/// deviation `sigma`, has a saddle, or `None` if there is none within two standard deviations.
 ///
 /// ```text
 /// q ← q − H⁻¹ g      g, H: gradient and second derivatives of G ∗ I at q
@@ -170,10 +170,10 @@ fn saddle(image: &Grid<f32>, start: DVec2, sigma: f64) -> Option<DVec2> {
     Some(position)
 }
 
-/// Returns gradient and second derivatives of the smoothed image at a position, but for a common
+/// Returns gradient and second derivatives of the smoothed image at a position, except for a common
 /// factor.
 ///
-/// Beyond the edges of the image its mean goes on.
+/// Beyond its edges the image is continued by its mean.
 fn derivatives(image: &Grid<f32>, position: DVec2, sigma: f64) -> (DVec2, DMat2) {
     let pixels = || pixels(image, position, sigma);
     let (sum, weights) = pixels().fold((0.0, 0.0), |(sum, weights), (_, weight, value)| {
@@ -295,7 +295,7 @@ mod tests {
 
     #[test]
     fn uneven_light_moves_corners_by_little() {
-        // Too few bright squares to tell the light from.
+        // Too few bright squares to determine the light.
         let board = Checkerboard::new([3, 3], 1.0).unwrap();
         let turned = DVec2::from_angle(0.2);
         let middle = DVec2::new(52.3, 48.9);

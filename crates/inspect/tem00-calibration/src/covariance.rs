@@ -64,7 +64,7 @@ impl CalibrationCovariance {
     ///
     /// # Errors
     ///
-    /// Returns an error if a number is not finite, or if no quantities have this covariance: it is
+    /// Returns an error if a number is not finite, or if this is not a possible covariance: it is
     /// not symmetric, or has a variance that is negative beyond rounding.
     pub fn new(
         origin: DVec3,
@@ -77,7 +77,7 @@ impl CalibrationCovariance {
         if let Some(value) = numbers.into_iter().find(|value| !value.is_finite()) {
             return Err(refused(value));
         }
-        // The parameters differ in size by many orders: what counts are the correlations.
+        // The parameters differ in size by many orders: only the correlations count.
         let scales = matrix
             .diagonal()
             .map(|v| if v > 0.0 { 1.0 / v.sqrt() } else { 0.0 });
@@ -109,7 +109,7 @@ impl CalibrationCovariance {
     ///
     /// # Panics
     ///
-    /// Panics unless both are below their number.
+    /// Panics unless both positions are below the number of parameters.
     pub fn between(&self, one: usize, two: usize) -> f64 {
         self.matrix[(one, two)]
     }
@@ -118,7 +118,7 @@ impl CalibrationCovariance {
     ///
     /// # Panics
     ///
-    /// Panics unless it is below their number.
+    /// Panics unless the position is below the number of parameters.
     pub fn standard_uncertainty(&self, parameter: usize) -> f64 {
         self.matrix[(parameter, parameter)].max(0.0).sqrt()
     }
@@ -127,7 +127,8 @@ impl CalibrationCovariance {
         &self.matrix
     }
 
-    /// Returns the covariance for a set-up carried along: its parameters are in the camera's axes.
+    /// Returns the covariance after a rigid motion of the set-up: its parameters are in the
+    /// camera's axes.
     pub(super) fn moved(&self, motion: &RigidMotion) -> Self {
         Self {
             origin: motion.point(self.origin),

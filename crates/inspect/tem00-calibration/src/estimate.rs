@@ -31,9 +31,9 @@ pub struct BoardView {
 }
 
 impl BoardView {
-    /// Finds a board in its image; `line` are the points of each column of the image of the same
-    /// board under the laser, if there is one, of which the one with the highest peak is taken, if
-    /// it is valid.
+    /// Finds a board in its image. `line` holds the points of each column of the image of the same
+    /// board under the laser, if there is one: of each column the point with the highest peak is
+    /// taken, if it is valid.
     ///
     /// # Errors
     ///
@@ -59,25 +59,26 @@ impl BoardView {
 
 /// Estimates camera and laser plane from views of a checkerboard.
 ///
-/// The camera and the poses of the boards are those with the smallest sum of squared distances of
-/// the corners from where they are expected. The laser plane is the one with the smallest sum of
-/// squared distances from the points where the sights to the line meet the boards. The scatter of
-/// both tells the covariance of all parameters: of the corners through the poses into the plane,
-/// and of the line, whose neighbouring points are correlated.
+/// The camera and the poses of the boards are those that minimise the sum of squared distances of
+/// the corners from their expected positions. The laser plane minimises the sum of squared
+/// distances from the points where the lines of sight to the laser line meet the boards. The
+/// scatter of both gives the covariance of all parameters: the scatter of the corners through the
+/// poses into the plane, and the scatter of the line, whose neighbouring points are correlated.
 ///
 /// The world is the frame of the first board: heights are counted from it.
 ///
 /// # Validity
 ///
-/// The covariance is that of random errors in the images, to first order, as large as the residuals
-/// say. A board that is not flat, a wrong square or a lens with other than radial distortion is not
-/// part of it, nor is what uneven light and bent edges do to corners, see [`find_corners`]: those
-/// errors go together over a board, and the residuals hardly show them.
+/// The covariance describes random errors in the images, to first order, with the size that the
+/// residuals show. It does not include a board that is not flat, a wrong square or a lens with
+/// other than radial distortion, nor the effect of uneven light and bent edges on corners, see
+/// [`find_corners`]: these errors are common to a whole board, and the residuals hardly show them.
 ///
 /// # Errors
 ///
-/// Returns an error if the model is not possible, if there are less than three boards or one with
-/// another number of corners, or if the boards or the lines on them leave camera or plane open.
+/// Returns an error if the model is not possible, if there are fewer than three boards or a board
+/// has another number of corners, or if the boards or the lines on them do not determine camera or
+/// plane.
 ///
 /// # References
 ///
@@ -131,7 +132,7 @@ fn check_views(board: &Checkerboard, views: &[BoardView]) -> Result<(), Triangul
     }
 }
 
-/// Returns the best camera without distortion, from whichever start.
+/// Returns the best camera without distortion, from any start.
 fn best_pinhole(bundle: &Bundle<'_>) -> Result<State, TriangulationError> {
     let starts = starts(bundle.model, bundle.board, &bundle.images)?;
     let found = starts
@@ -223,7 +224,8 @@ impl Checkerboard {
     }
 }
 
-/// Returns the point where the sight of an image point meets a board, in the axes of the camera.
+/// Returns the point where the line of sight of an image point meets a board, in the axes of the
+/// camera.
 fn on_plane(camera: &Camera, pose: &Pose, position: DVec2) -> Option<DVec3> {
     let direction = camera.ray(position).direction;
     let normal = pose.rotation.z_axis;
@@ -280,8 +282,8 @@ fn to_board(pose: &Pose) -> Result<RigidMotion, TriangulationError> {
     RigidMotion::new(rotation, -(rotation * pose.translation)).map_err(|_| OUTSIDE)
 }
 
-/// Returns the covariance of the [`PARAMETERS`]: that of the fit of the corners, carried into the
-/// plane, and that of the line.
+/// Returns the covariance of the [`PARAMETERS`]: the covariance of the fit of the corners,
+/// propagated into the plane, and the covariance of the line.
 fn covariance(
     bundle: &Bundle<'_>,
     solution: &Solution<State>,

@@ -8,12 +8,12 @@ const MIN: f64 = 0.1;
 /// Minimum number of bright squares per coefficient of the illumination.
 const SQUARES_PER_COEFFICIENT: usize = 2;
 
-/// Returns the image divided by the illumination of a board in it, whose ordered corners are about
-/// known.
+/// Returns the image divided by the illumination of a board in it, whose ordered corners are
+/// approximately known.
 ///
-/// The illumination is a polynomial in the position, of the second or first degree as there are
-/// bright squares to fit it to; the mean on the board stays. Without enough of them the image stays
-/// as it is.
+/// The illumination is a polynomial in the position, of the second or first degree, depending on
+/// the number of bright squares; the mean on the board stays. With too few bright squares the image
+/// stays as it is.
 ///
 /// A slope of the illumination would move the saddles of the corners:
 ///

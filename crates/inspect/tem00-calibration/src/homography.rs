@@ -2,7 +2,7 @@ use glam::{DMat3, DVec2, DVec3};
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Returns the projective map of the plane that takes `from` to `to` best, or `None` if the points
-/// leave it open.
+/// do not determine it.
 ///
 /// The direct linear transform on points that are first moved to their mean and scaled to a mean
 /// distance of √2 from it.

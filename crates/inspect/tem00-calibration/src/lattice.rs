@@ -17,12 +17,12 @@ type Cells = HashMap<(i32, i32), usize>;
 /// Orders points that form a lattice of `columns × rows`: row by row from the upper left, so that
 /// rows run to the right as seen in the image.
 ///
-/// The lattice grows from a point and its nearest neighbours: each next point is sought where those
-/// before it lead. Points that fit into no lattice are left out.
+/// The lattice grows from a point and its nearest neighbours: each next point is sought where the
+/// points before it lead. Points that fit into no lattice are left out.
 ///
 /// # Errors
 ///
-/// Returns the number of points of the largest lattice if none has the size that is asked for.
+/// Returns the number of points of the largest lattice if none has the requested size.
 pub(super) fn ordered(points: &[DVec2], corners: [usize; 2]) -> Result<Vec<DVec2>, usize> {
     let mut largest = 0;
     let mut covered = vec![false; points.len()];
@@ -157,8 +157,8 @@ fn placed(points: &[DVec2], cells: &Cells, [columns, rows]: [usize; 2]) -> Optio
             .map(|(column, row)| of_cell(column, row))
             .collect::<Option<Vec<_>>>()
     });
-    // The rows lie below each other where the columns run to the right; of what is left the lattice
-    // that runs most to the right.
+    // The rows lie below each other where the columns run to the right; of the lattices that are
+    // left, the one that runs most to the right.
     let right = |positions: &[DVec2]| positions[columns - 1] - positions[0];
     let down = |positions: &[DVec2]| positions[(rows - 1) * columns] - positions[0];
     turns

@@ -5,7 +5,7 @@ use tem00_triangulation::TriangulationError;
 
 /// Residuals that depend on a state, which changes by small steps.
 ///
-/// The step of a state is a vector of its own, as a rotation is no vector.
+/// The step of a state is a vector, while a state may hold a rotation, which is no vector.
 pub(super) trait Residuals {
     /// The sought parameters.
     type State;
@@ -36,7 +36,7 @@ pub(super) struct Solution<S> {
 /// # Errors
 ///
 /// Returns an error if the start is not possible, if the search does not end, or if the residuals
-/// leave a direction of the state open.
+/// do not determine a direction of the state.
 pub(super) fn minimise<R: Residuals>(
     problem: &R,
     start: R::State,

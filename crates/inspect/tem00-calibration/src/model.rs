@@ -39,11 +39,11 @@ pub(super) struct State {
     pub poses: Vec<Pose>,
 }
 
-/// Corners in images and on the board, and which parameters of the camera are sought.
+/// Corners in images and on the board, and which parameters of the camera are estimated.
 #[derive(Clone, Debug)]
 pub(super) struct Bundle<'a> {
     pub model: &'a CameraModel,
-    /// The positions of the parameters of the camera that are sought.
+    /// The positions of the parameters of the camera that are estimated.
     pub free: Vec<usize>,
     /// The corners on the board, in metres.
     pub board: &'a [DVec3],

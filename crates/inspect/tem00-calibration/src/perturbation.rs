@@ -8,11 +8,11 @@ use tem00_triangulation::{TriangulationError, Triangulator};
 /// The number of parameters within the camera, which come first.
 pub(super) const INTRINSICS: usize = 8;
 
-/// The fraction of the standard uncertainty of a parameter by which it is changed to see what that
-/// does.
+/// The fraction of the standard uncertainty of a parameter by which it is changed to find its
+/// effect.
 ///
-/// The error of the central difference is in the order of its square, and rounding that of 1e−16 by
-/// it.
+/// The error of the central difference is in the order of its square, and the rounding error is of
+/// the order of 1e−16 divided by it.
 const SHARE: f64 = 1e-3;
 
 /// The cameras that differ from a calibrated one in a single parameter.

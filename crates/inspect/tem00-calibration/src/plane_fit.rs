@@ -6,8 +6,7 @@ use tem00_triangulation::TriangulationError;
 /// Largest distance of a point from the plane, in robust standard deviations.
 const OUTLIER: f64 = 4.0;
 
-/// The minimum ratio of the spread of the points across the line, and of their scatter off the
-/// plane.
+/// The minimum ratio of the spread of the points across the line to their scatter off the plane.
 const MIN_SPREAD: f64 = 10.0;
 
 /// A plane through points, by the smallest sum of squared distances.
@@ -24,7 +23,7 @@ impl FittedPlane {
     ///
     /// # Errors
     ///
-    /// Returns an error if there are less than three points, or if they lie on a line but for their
+    /// Returns an error if there are less than three points, or if they lie on a line within their
     /// scatter.
     pub(super) fn through(points: &[DVec3]) -> Result<Self, TriangulationError> {
         if points.len() < 3 {
@@ -135,10 +134,11 @@ fn robust_deviation(mut distances: Vec<f64>) -> f64 {
     *median / 0.674_489_750_196_081_7
 }
 
-/// Returns by how much the variance of a mean of neighbouring distances exceeds that of independent
-/// ones: 1 plus twice the sum of their correlations, up to the first that is not positive.
+/// Returns by how much the variance of a mean of neighbouring distances exceeds its value for
+/// independent distances: 1 plus twice the sum of their correlations, up to the first that is not
+/// positive.
 ///
-/// Each run is the points of one line in order. What a straight line explains of a run is taken out
+/// Each run is the points of one line in order. The straight line through a run is subtracted
 /// first: it belongs to the pose of its board.
 pub(super) fn correlation_factor(runs: &[Vec<f64>]) -> f64 {
     let runs: Vec<_> = runs
@@ -165,7 +165,7 @@ pub(super) fn correlation_factor(runs: &[Vec<f64>]) -> f64 {
             .sum::<f64>()
 }
 
-/// Returns the values less the straight line that fits them best.
+/// Returns the values minus the straight line that fits them best.
 fn straightened(values: &[f64]) -> Vec<f64> {
     let number = values.len() as f64;
     let position = |i: usize| i as f64 - (number - 1.0) / 2.0;

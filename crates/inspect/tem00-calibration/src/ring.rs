@@ -28,13 +28,13 @@ pub(super) const REACH: usize = 5;
 /// Maximum number of candidates kept per expected corner.
 const MAX_CANDIDATES: usize = 3;
 
-/// The minimum response of a corner, as a fraction of that of a typical one.
+/// The minimum response of a corner, as a fraction of the response of a typical corner.
 const MIN_RESPONSE: f64 = 0.2;
 
 /// Returns the positions that look like corners where four squares meet, the clearest first: local
 /// maxima of a response to rings that are bright, dark, bright and dark.
 ///
-/// `number` corners are expected; what responds much less than these do is left out.
+/// `number` corners are expected; positions that respond much less are left out.
 ///
 /// # References
 ///
@@ -53,7 +53,7 @@ pub(super) fn corner_candidates(image: &Grid<f32>, number: usize) -> Vec<DVec2> 
         .collect()
 }
 
-/// Returns the likeness of the ring about a pixel to that of a corner.
+/// Returns the likeness of the ring about a pixel to the ring of a corner.
 ///
 /// ```text
 /// Σ |I_n + I_{n+8} − I_{n+4} − I_{n+12}|       opposite alike, quarters unlike: four terms

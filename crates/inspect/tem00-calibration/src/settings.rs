@@ -17,7 +17,8 @@ const KEYS: &[&str] = &[
 pub struct CalibrationSettings {
     /// The origin of the calibration.
     pub method: CalibrationMethod,
-    /// The standard uncertainty of a height, in metres, that the calibration has from elsewhere.
+    /// The standard uncertainty of a height, in metres, that the calibration has from other
+    /// sources.
     pub uncertainty: f64,
 }
 
@@ -35,7 +36,7 @@ pub enum CalibrationMethod {
 pub struct BoardSettings {
     /// The numbers of inner corners along the rows and along the columns.
     pub corners: [usize; 2],
-    /// The side of a square, in metres; `None` for one with which the board fills the image.
+    /// The side of a square, in metres; `None` for the side with which the board fills the image.
     pub square: Option<f64>,
     /// The number of boards that are rendered.
     pub boards: usize,

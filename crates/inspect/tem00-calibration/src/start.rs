@@ -157,8 +157,8 @@ fn nearest_rotation(matrix: DMat3) -> Option<DMat3> {
     (rotation.determinant() > 0.0).then_some(rotation)
 }
 
-/// Returns a pinhole with a principal point off the middle as one whose axis meets the middle of a
-/// tilted sensor: it makes the same images.
+/// Returns a pinhole with a principal point off the middle as a pinhole whose axis meets the middle
+/// of a tilted sensor: both make the same images.
 ///
 /// ```text
 /// tan τ = |d| / c      d from the middle to the principal point, c the image distance

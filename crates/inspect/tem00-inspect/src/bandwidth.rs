@@ -7,7 +7,7 @@ use tem00_report::report::{
 };
 use tem00_triangulation::{BandwidthEffect, Setup};
 
-/// Returns what linewidth and extent do to speckle: which number counts for what.
+/// Returns the effect of linewidth and extent on speckle, and which number applies to what.
 pub(crate) fn bandwidth(setup: &Setup) -> Cell {
     let (light, effect) = (&setup.description().laser.light, setup.line().bandwidth);
     let data = json!({

@@ -1,4 +1,4 @@
-//! `tem00-inspect budget`: what height uncertainty a set-up gives, and what dominates it.
+//! `tem00-inspect budget`: the height uncertainty of a set-up, and its dominant source.
 
 mod answers;
 mod certificate;
@@ -29,8 +29,8 @@ use crate::{
 ///
 /// # Errors
 ///
-/// Returns a failure if the input is not valid, if a file cannot be written, if the user ends it,
-/// or, with all files written, if the set-up measures nothing.
+/// Returns a failure if the input is not valid, if a file cannot be written, if the user interrupts
+/// it, or, with all files written, if the set-up measures nothing.
 pub(crate) fn run(args: &BudgetArgs, out: &mut impl Write) -> Result<(), Failure> {
     let day = date::today()?;
     let (setup, (read, uncertainty, data)) = args.common.read(SETUP_HELP, |document, setup| {
@@ -73,7 +73,7 @@ fn draw(findings: &Findings<'_>, folder: &Path) -> Result<Vec<String>, Failure> 
             drawings::contributions(answer).save(folder, CONTRIBUTIONS)?,
             drawings::over_range(answer).save(folder, OVER_RANGE)?,
         ]),
-        // Those of another run would be taken for those of this one.
+        // Drawings of another run would be taken for drawings of this run.
         Err(_) => {
             output::remove(folder, &[CONTRIBUTIONS, OVER_RANGE], &["svg", "png"])?;
             Ok(Vec::new())

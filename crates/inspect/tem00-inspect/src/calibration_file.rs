@@ -43,7 +43,7 @@ struct CovarianceRecord {
     rows: Vec<Vec<f64>>,
 }
 
-/// Writes a calibration as JSON, whole or not at all.
+/// Writes a calibration as JSON, completely or not at all.
 pub(crate) fn write_calibration(path: &Path, calibration: &Calibration) -> Result<(), Failure> {
     let record = CalibrationRecord::of(calibration);
     write_atomically(path, |writer| {

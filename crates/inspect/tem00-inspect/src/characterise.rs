@@ -1,4 +1,4 @@
-//! `tem00-inspect characterise`: what a set-up makes of artefacts whose shape is known.
+//! `tem00-inspect characterise`: how a set-up measures artefacts whose shape is known.
 
 mod drawings;
 mod report;
@@ -17,8 +17,8 @@ use crate::args::{CharacteriseArgs, SETUP_HELP};
 ///
 /// # Errors
 ///
-/// Returns a failure if the input is not valid, if a file cannot be written, if the user ends it,
-/// or if the set-up measures nothing.
+/// Returns a failure if the input is not valid, if a file cannot be written, if the user interrupts
+/// it, or if the set-up measures nothing.
 pub(crate) fn run(args: &CharacteriseArgs, out: &mut impl Write) -> Result<(), Failure> {
     let (setup, text) = args
         .common
@@ -35,7 +35,7 @@ pub(crate) fn run(args: &CharacteriseArgs, out: &mut impl Write) -> Result<(), F
     report.print(args.common.json, &files, out)
 }
 
-/// Makes sure that the set-up measures heights.
+/// Checks that the set-up measures heights.
 fn check(args: &CharacteriseArgs, setup: &Setup) -> Result<(), Failure> {
     let path = args.common.setup.display();
     match Budget::new(setup) {

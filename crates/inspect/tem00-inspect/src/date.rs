@@ -16,7 +16,7 @@ const SECONDS: u64 = 86_400;
 ///
 /// # Errors
 ///
-/// Returns a failure if `SOURCE_DATE_EPOCH` is there but no number of seconds.
+/// Returns a failure if `SOURCE_DATE_EPOCH` is set but is not a number of seconds.
 pub(crate) fn today() -> Result<String, Failure> {
     let Some(stated) = env::var_os(EPOCH) else {
         let now = SystemTime::now().duration_since(UNIX_EPOCH);
@@ -44,7 +44,7 @@ pub(crate) fn month_lengths(year: u64) -> [u64; 12] {
     [31, february, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31]
 }
 
-/// Writes the day so many days after 1970-01-01.
+/// Writes the day `days` days after 1970-01-01.
 fn day(mut days: u64) -> String {
     for year in 1970.. {
         for (month, length) in (1..).zip(month_lengths(year)) {

@@ -17,13 +17,13 @@ use crate::args::DesignArgs;
 /// Relative change of each parameter of the best set-up.
 const PART: f64 = 0.1;
 
-/// Searches, prints the best and writes the files.
+/// Searches, prints the best set-up and writes the files.
 ///
 /// # Errors
 ///
-/// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or if
-/// no set-up keeps every constraint; all files but `best.toml` are written then, if any set-up is
-/// possible.
+/// Returns a failure if the input is not valid, a file cannot be written, the user interrupts it,
+/// or if no set-up keeps every constraint; all files but `best.toml` are written then, if any
+/// set-up is possible.
 pub(crate) fn run(args: &DesignArgs, out: &mut impl Write) -> Result<(), Failure> {
     let (_, (search, uncertainty, text)) = args.common.read(HELP, |document, setup| {
         let search = read_design(document, setup.description())?;
@@ -35,7 +35,7 @@ pub(crate) fn run(args: &DesignArgs, out: &mut impl Write) -> Result<(), Failure
     let mut design = pool.install(|| Design::search(args, search, text))?;
     design.is_exact = uncertainty.quantities.is_empty();
     if design.winner().is_none() {
-        // That of another search would be taken for the winner of this one.
+        // The best set-up of another search would be taken for the winner of this search.
         output::remove(&folder, &["best"], &["toml"])?;
     }
     let shown = design.shown().ok_or_else(|| words::nothing(&design))?;

@@ -1,5 +1,5 @@
-//! The program `tem00-inspect`, to be started by its own binary or from the Python package.
-//! Its commands: `docs/program.md` in the repository.
+//! The program `tem00-inspect`, which its own binary or the Python package starts.
+//! `docs/program.md` in the repository describes its commands.
 
 mod args;
 mod bandwidth;
@@ -29,12 +29,13 @@ use crate::args::{Cli, Command};
 /// Runs the program with the arguments of a process, the first of which is its own name, and
 /// returns the exit code.
 ///
-/// Takes over Ctrl-C and the termination signals of the process: a second one ends it at once.
+/// Takes over Ctrl-C and the termination signals of the process: a second signal ends the process
+/// at once.
 pub fn run(arguments: &[OsString]) -> u8 {
     program::run(arguments, execute)
 }
 
-/// Does the command and prints its results to `out`.
+/// Executes the command and prints its results to `out`.
 fn execute(cli: &Cli, out: &mut impl Write) -> Result<(), Failure> {
     if cli.quiet {
         output::set_quiet();

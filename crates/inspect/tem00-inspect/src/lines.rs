@@ -35,8 +35,8 @@ use self::{
 ///
 /// # Errors
 ///
-/// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or,
-/// with all files written, if no image has a valid point.
+/// Returns a failure if the input is not valid, a file cannot be written, the user interrupts it,
+/// or, with all files written, if no image has a valid point.
 pub(crate) fn run(args: &LinesArgs, out: &mut impl Write) -> Result<(), Failure> {
     let detector = detector(args)?;
     let calibration = args
@@ -97,8 +97,8 @@ fn detector(args: &LinesArgs) -> Result<LineDetector, Failure> {
     LineDetector::new(settings).map_err(|error| refused(error.to_string()))
 }
 
-/// Finds the lines of one image and writes its files, whose names begin with `target`; returns what
-/// was found, and what the user should know of it.
+/// Finds the lines of one image and writes its files, whose names begin with `target`; returns the
+/// results, and the notes for the user.
 fn image(
     path: &Path,
     target: &Path,

@@ -1,4 +1,4 @@
-//! `tem00-inspect list`: what set-ups can name.
+//! `tem00-inspect list`: the names that set-ups can use.
 
 use std::io::Write;
 
@@ -11,7 +11,7 @@ use tem00_triangulation::{LineMethod, SensorDescription};
 
 use crate::args::{ListArgs, Listed};
 
-/// Prints what was asked for, with its sources.
+/// Prints the requested list, with its sources.
 ///
 /// # Errors
 ///

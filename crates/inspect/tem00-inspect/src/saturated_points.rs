@@ -2,11 +2,11 @@
 
 use tem00_triangulation::Validity;
 
-/// The fraction of points on saturated pixels that is told of where it is exceeded.
+/// The fraction of points on saturated pixels above which a warning is given.
 const TOLD: f64 = 0.05;
 
-/// The fraction above which the others are no result: what is left is the dark part of what was to
-/// be measured.
+/// The fraction of points on saturated pixels above which the other points give no result: they are
+/// the dark part of what was to be measured.
 const TOO_MANY: f64 = 0.5;
 
 /// Numbers of points of lines.
@@ -14,7 +14,7 @@ const TOO_MANY: f64 = 0.5;
 pub(crate) struct PointCounts {
     /// Number of points found.
     pub(crate) points: usize,
-    /// The valid ones.
+    /// Number of valid points.
     pub(crate) valid: usize,
     /// Number of points on saturated pixels.
     pub(crate) saturated: usize,
@@ -30,7 +30,7 @@ impl PointCounts {
         })
     }
 
-    /// Returns what many saturated points leave; `because` says why and what helps.
+    /// Returns a warning if many points are saturated; `because` gives the reason and the remedy.
     pub(crate) fn warning(&self, because: &str) -> Option<String> {
         let fraction = self.fraction(self.saturated);
         (fraction > TOLD).then(|| {
@@ -42,7 +42,7 @@ impl PointCounts {
         })
     }
 
-    /// Returns whether so many points are on saturated pixels that the others are no result.
+    /// Returns whether so many points are on saturated pixels that the others give no result.
     pub(crate) fn are_too_many(&self) -> bool {
         self.fraction(self.saturated) > TOO_MANY
     }

@@ -23,16 +23,16 @@ use self::{
 };
 use crate::args::SweepArgs;
 
-/// The time after which tasks that other processes do are looked at again.
+/// The time after which the tasks of other processes are checked again.
 const PAUSE: Duration = Duration::from_millis(200);
 
-/// Lists the tasks, does some of them, or makes the table of their rows.
+/// Lists the tasks, runs some of them, or makes the table of their rows.
 ///
 /// # Errors
 ///
 /// Returns a failure if the grid is not valid, if a task fails for another reason than its values,
-/// if a file cannot be written, if the user ends it, if rows are missing for the table, or if all
-/// tasks are refused.
+/// if a file cannot be written, if the user interrupts it, if rows are missing for the table, or if
+/// all tasks are refused.
 pub(crate) fn run(args: &SweepArgs, out: &mut impl Write) -> Result<(), Failure> {
     let grid = Grid::read(&args.grid).map_err(|error| {
         wrong_or(&args.grid, Kind::Grid, || {
@@ -54,7 +54,7 @@ pub(crate) fn run(args: &SweepArgs, out: &mut impl Write) -> Result<(), Failure>
     gather(&sweep, out)
 }
 
-/// The tasks that are asked for.
+/// Returns the requested tasks.
 fn tasks(args: &SweepArgs, grid: &Grid) -> Result<RangeInclusive<usize>, Failure> {
     let last = grid.count() - 1;
     let Some(asked) = args.tasks else {
@@ -72,15 +72,15 @@ fn tasks(args: &SweepArgs, grid: &Grid) -> Result<RangeInclusive<usize>, Failure
     }
 }
 
-/// Does the tasks that have no row yet, and waits for those that another process does.
+/// Runs the tasks that have no row yet, and waits for the tasks that another process runs.
 ///
 /// # Errors
 ///
-/// Returns the first failure that is no outcome of a task. Where something was missing that a task
-/// needs, the others are done first.
+/// Returns the first failure that is not an outcome of a task. If a task lacks something that it
+/// needs, the other tasks are run first.
 fn do_tasks(sweep: &Sweep<'_>, tasks: RangeInclusive<usize>) -> Result<(), Failure> {
     let progress = Progress::of(tasks.clone().count() as u64, "tasks");
-    // What the commands say is in their files.
+    // The output of the commands is in their files.
     output::set_quiet();
     let (mut left, mut without_row): (Vec<usize>, _) = (tasks.collect(), None);
     while !left.is_empty() {

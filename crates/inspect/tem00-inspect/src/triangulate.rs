@@ -26,12 +26,12 @@ use crate::args::TriangulateArgs;
 /// The help for a file that is not a scene.
 const HELP: &str = "a scene needs a camera, a laser with [laser.line], a surface and a [sensor]";
 
-/// Measures a scene and prints what makes its heights uncertain.
+/// Measures a scene and prints the sources of uncertainty of its heights.
 ///
 /// # Errors
 ///
-/// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or,
-/// with all files written, if no point is valid.
+/// Returns a failure if the input is not valid, a file cannot be written, the user interrupts it,
+/// or, with all files written, if no point is valid.
 pub(crate) fn run(args: &TriangulateArgs, out: &mut impl Write) -> Result<(), Failure> {
     let (scene, notes) = MeasurementScene::read(&args.common.scene, args.common.files.reading())
         .map_err(|error| {

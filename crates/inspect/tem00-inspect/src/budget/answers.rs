@@ -30,7 +30,7 @@ pub(super) fn verdicts(measured: &Measured) -> Vec<String> {
     lines
 }
 
-/// Tells that formulas do not hold of so thin a line, and what to quote.
+/// Says that formulas do not hold for so thin a line, and which result to quote.
 pub(super) fn thin(speckles: f64, quote: &str) -> String {
     format!(
         "The line is {} speckles wide: formulas, which are first order, do not hold below {}; quote {quote}.",
@@ -39,7 +39,7 @@ pub(super) fn thin(speckles: f64, quote: &str) -> String {
     )
 }
 
-/// Tells where the methods differ, and so which to quote.
+/// Says where the methods differ, and therefore which of them to quote.
 fn why(measured: &Measured) -> String {
     if measured.is_thin() {
         let quote = match measured.quoted() {
@@ -71,7 +71,7 @@ fn why(measured: &Measured) -> String {
     }
 }
 
-/// Adds the answers and what contributes to them.
+/// Adds the answers and their contributions.
 pub(super) fn section(section: &mut Section, measured: &Measured) {
     let (validation, propagation) = (measured.validation(), &measured.propagation);
     section

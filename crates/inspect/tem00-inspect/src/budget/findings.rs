@@ -20,7 +20,7 @@ pub(super) struct SetupFile<'a> {
     pub(super) title: Option<String>,
 }
 
-/// A set-up that was looked at.
+/// A set-up that was evaluated.
 pub(super) struct Findings<'a> {
     pub(super) file: SetupFile<'a>,
     pub(super) setup: Setup,
@@ -34,13 +34,13 @@ pub(super) struct Answer {
     /// The result of trials, unless they were left out.
     pub(super) trials: Option<Simulation>,
     /// The heights that can be measured, and the combined standard uncertainty there, in metres;
-    /// none where no line is found.
+    /// `None` where no line is found.
     pub(super) over_range: Vec<(f64, Option<f64>)>,
     /// Results for a set-up with uncertain values.
     pub(super) measured: Option<Measured>,
 }
 
-/// The reason for which a set-up measures nothing.
+/// The reason why a set-up measures nothing.
 pub(super) struct Refusal {
     pub(super) why: String,
     pub(super) advice: &'static str,
@@ -108,8 +108,8 @@ impl Answer {
         Some(total.hypot(calibration))
     }
 
-    /// Returns the ratio of the combined standard uncertainty by trials to that by formulas, and
-    /// its standard error.
+    /// Returns the ratio of the combined standard uncertainties by trials and by formulas, and its
+    /// standard error.
     pub(super) fn ratio(&self) -> Option<[f64; 2]> {
         let error = self.trials.as_ref()?.total()?.standard_error;
         let by_trials = self.combined_by_trials()?;
@@ -138,7 +138,8 @@ impl Answer {
         by_trials().unwrap_or_else(|| [self.budget.combined(), self.budget.expanded()])
     }
 
-    /// Returns what makes most of the variance of the answer to quote, and its part.
+    /// Returns the input that contributes most to the variance of the answer to quote, and its
+    /// fraction.
     pub(super) fn dominant(&self) -> (MeasurementInput, f64) {
         let parts = match &self.measured {
             Some(measured) => measured.parts(),
@@ -149,7 +150,7 @@ impl Answer {
         parts.into_iter().fold(none, larger)
     }
 
-    /// Returns the parts of the variance of the budget that its terms make.
+    /// Returns the fractions of the variance of the budget that its terms contribute.
     fn parts(&self) -> Vec<(MeasurementInput, f64)> {
         let trials = self.quoted_trials();
         let square = |term: &BudgetTerm| {

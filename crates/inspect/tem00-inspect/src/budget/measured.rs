@@ -17,8 +17,8 @@ const SAMPLES: u32 = 1 << 15;
 /// The maximum number of trials of the propagation of distributions.
 const MAX_TRIALS: u64 = 2_000_000;
 
-/// Returns whether an uncertainty is not that of another method: whether their ratio, with its
-/// standard error, is farther from 1 than a twentieth and chance.
+/// Returns whether the uncertainties of two methods differ: whether their ratio, with its standard
+/// error, is farther from 1 than a twentieth and chance.
 pub(super) fn differs([ratio, error]: [f64; 2]) -> bool {
     (ratio - 1.0).abs() > 0.05 + 3.3 * error
 }
@@ -28,7 +28,7 @@ pub(super) struct Measured {
     pub(super) measurement: Measurement,
     pub(super) first_order: FirstOrder,
     pub(super) propagation: Propagation,
-    /// The parts of the variance; none with correlated inputs.
+    /// The decomposition of the variance; `None` with correlated inputs.
     pub(super) decomposition: Option<Decomposition>,
     /// The virtual experiment, unless trials were left out.
     pub(super) experiment: Option<VirtualExperiment>,
@@ -77,7 +77,7 @@ impl Quoted {
 }
 
 impl Measured {
-    /// Returns `None` of a set-up that is known exactly.
+    /// Returns `None` for a set-up that is known exactly.
     pub(super) fn new(
         args: &BudgetArgs,
         setup: &Setup,
@@ -123,13 +123,13 @@ impl Measured {
         })
     }
 
-    /// Returns the inputs, with what is known of them.
+    /// Returns the inputs with their estimates and uncertainties.
     pub(super) fn inputs(&self) -> impl Iterator<Item = (MeasurementInput, &Input)> {
         let sources = self.measurement.sources().iter().copied();
         sources.zip(self.measurement.inputs().as_slice())
     }
 
-    /// Returns the answer of a method; `None` of a virtual experiment that was left out, or whose
+    /// Returns the answer of a method; `None` for a virtual experiment that was left out, or whose
     /// lines cannot be trusted.
     pub(super) fn answer(&self, method: Quoted) -> Option<MethodAnswer> {
         Some(match method {
@@ -197,16 +197,17 @@ impl Measured {
         self.propagation.validate(&self.first_order)
     }
 
-    /// Returns the ratio of the uncertainty in the virtual experiment to that by distributions, and
-    /// its standard error.
+    /// Returns the ratio of the uncertainty in the virtual experiment to the uncertainty by
+    /// distributions, and its standard error.
     pub(super) fn ratio(&self) -> Option<[f64; 2]> {
         let error = self.experiment.as_ref()?.error()?;
         let by_distributions = self.propagation.uncertainty();
         Some([error.uncertainty, error.standard_error].map(|found| found / by_distributions))
     }
 
-    /// Returns the parts of the variance of the height that its inputs make: in the trials of
-    /// distributions, or by the law of propagation where that is quoted or inputs are correlated.
+    /// Returns the fractions of the variance of the height that its inputs contribute: in the
+    /// trials of distributions, or by the law of propagation where that is quoted or inputs are
+    /// correlated.
     pub(super) fn parts(&self) -> Vec<(MeasurementInput, f64)> {
         let by_trials = self
             .decomposition

@@ -62,7 +62,7 @@ pub(super) fn report(findings: &Findings<'_>, drawings: Vec<String>, day: &str) 
     report
 }
 
-/// Returns every value that the budget is of, given or by default.
+/// Returns every value that the budget depends on, given or by default.
 fn inputs(setup: &Setup) -> Table {
     let columns = [
         Column::new("key", "key"),
@@ -87,7 +87,7 @@ fn inputs(setup: &Setup) -> Table {
     table
 }
 
-/// Adds the numbers that the verdicts tell in words.
+/// Adds the numbers that the verdicts state in words.
 fn numbers(report: &mut Report, answer: Option<&Answer>) {
     type Value = fn(&Answer) -> f64;
     let values: [(&str, Value); 8] = [
@@ -128,7 +128,7 @@ fn numbers(report: &mut Report, answer: Option<&Answer>) {
     report.data("over_range", over_range.collect::<Vec<_>>());
 }
 
-/// Returns what trials found, and the combined uncertainty by them; without an uncertainty, how
+/// Returns the results of trials, and the combined uncertainty by them; without an uncertainty, how
 /// many columns have no line that can be trusted.
 fn trials(findings: &Findings<'_>) -> serde_json::Value {
     let (trials, combined) = match &findings.answer {

@@ -9,7 +9,7 @@ use super::{
     measured::differs,
 };
 
-/// Returns what the budget comes to.
+/// Returns the conclusions of the budget.
 pub(super) fn verdicts(answer: &Answer, setup: &Setup) -> Vec<String> {
     let level = setup.light_level();
     let budget = &answer.budget;
@@ -27,7 +27,7 @@ pub(super) fn verdicts(answer: &Answer, setup: &Setup) -> Vec<String> {
         .measured
         .as_ref()
         .map_or_else(Vec::new, answers::verdicts);
-    // It stands behind the answer that it is of.
+    // It follows the answer that it belongs to.
     lines.extend(match answer.measured {
         Some(_) => [dominates, result(answer)],
         None => [result(answer), dominates],
@@ -81,7 +81,7 @@ fn result(answer: &Answer) -> String {
     )
 }
 
-/// Returns what trials tell that formulas do not.
+/// Returns the results of trials that formulas do not give.
 fn of_trials(answer: &Answer) -> Vec<String> {
     let mut lines = Vec::new();
     let trials = answer.trials.as_ref();

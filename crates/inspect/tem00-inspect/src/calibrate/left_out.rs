@@ -75,7 +75,7 @@ impl Found {
         )
     }
 
-    /// Returns what to doubt: saturation, and pictures that gave nothing.
+    /// Returns the reasons for doubt: saturation, and photographs without results.
     pub(super) fn warnings(&self) -> Vec<String> {
         let mut warnings: Vec<String> = self.counts().warning(SATURATED).into_iter().collect();
         if !self.empty.is_empty() {

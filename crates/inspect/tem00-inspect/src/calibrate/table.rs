@@ -10,7 +10,7 @@ use tem00_triangulation::{DVec2, DVec3};
 
 use super::left_out::Found;
 
-/// Returns the parameters of the camera that were sought.
+/// Returns the parameters of the camera that were estimated.
 pub(super) fn parameters(calibration: &Calibration) -> Table {
     let columns = ["parameter", "value", "uncertainty", "unit"].map(Column::shown);
     let mut table = Table::new("Parameters of the camera", columns);
@@ -62,7 +62,7 @@ const fn shown_in(unit: &'static str) -> (f64, &'static str) {
     }
 }
 
-/// Returns what the table cannot tell, one sentence per line.
+/// Returns the results that the table cannot show, one sentence per line.
 pub(super) fn sentences(calibration: &Calibration, found: &Found) -> Vec<String> {
     let mut sentences = Vec::new();
     if let Some(quality) = calibration.quality() {

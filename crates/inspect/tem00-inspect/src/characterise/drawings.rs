@@ -15,12 +15,12 @@ use tem00_topography::{Characteristics, GrooveResult};
 const RESPONSE: &str = "response";
 const GROOVES: &str = "grooves";
 
-/// Draws what was measured into the folder, and returns the drawings with their captions.
+/// Draws the results into the folder, and returns the drawings with their captions.
 pub(super) fn save(
     found: &Characteristics,
     folder: &Path,
 ) -> Result<Vec<(String, &'static str)>, Failure> {
-    // Those of another run would be taken for those of this one.
+    // Drawings of another run would be taken for drawings of this run.
     output::remove(folder, &[RESPONSE, GROOVES], &["svg", "png"])?;
     let mut drawings = Vec::new();
     if let Some(drawing) = response(found) {

@@ -81,7 +81,7 @@ fn verdict(rows: &[Row]) -> String {
     noise + &widths.unwrap_or_default()
 }
 
-/// Returns what there is to say of a width along the profile that is less than two columns.
+/// Returns the remark on a width along the profile that is less than two columns.
 fn finer_than_columns(symbol: &str, width: f64, column: f64) -> Option<String> {
     let two = 2.0 * column;
     let text = |length| MICROMETRES.with_digits(3).text(length);

@@ -11,7 +11,7 @@ use tem00_triangulation::{Candidate, DesignFigure, Neighbours};
 use super::{plots, report, search::Design};
 use crate::units;
 
-/// Writes all files into the folder, and returns the report and the names of those that one opens
+/// Writes all files into the folder, and returns the report and the names of the files to open
 /// first.
 pub(super) fn write(
     design: &Design<'_>,
@@ -87,7 +87,7 @@ fn write_csv(design: &Design<'_>, out: &mut impl Write) -> io::Result<()> {
             units::si_suffix(parameter.unit())
         )?;
     }
-    // What is varied may be a figure as well, and has its column already.
+    // A varied quantity may be a figure as well, and then has its column already.
     let figures: Vec<_> = DesignFigure::ALL
         .into_iter()
         .filter(|figure| sweeps().all(|parameter| parameter.key() != figure.name()))

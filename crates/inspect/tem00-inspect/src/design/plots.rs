@@ -17,7 +17,7 @@ use super::search::Design;
 use crate::source_colours;
 use crate::units;
 
-/// The most dots in a diagram.
+/// The maximum number of dots in a diagram.
 const MAX_DOTS: usize = 4_000;
 
 /// A drawing with the name of its file and its caption.
@@ -27,7 +27,7 @@ pub(super) struct Named {
     pub(super) drawing: Drawing,
 }
 
-/// Draws all of them.
+/// Draws all diagrams.
 pub(super) fn all(design: &Design<'_>, near: &[Neighbours]) -> Vec<Named> {
     let sweeps = design.search.question().sweeps.iter();
     let curves = sweeps
@@ -124,7 +124,7 @@ fn over(design: &Design<'_>, sweep: &Sweep) -> Named {
     }
 }
 
-/// Returns the set-ups that differ from the one shown in this parameter alone, in its order; those
+/// Returns the set-ups that differ from the one shown only in this parameter, in its order; set-ups
 /// that are not possible have no figures.
 fn slice<'a>(
     design: &'a Design<'_>,
@@ -151,7 +151,7 @@ fn slice<'a>(
     slice
 }
 
-/// Returns the sources that matter: those that are somewhere a hundredth of the combined
+/// Returns the sources that matter: sources that are somewhere a hundredth of the combined
 /// uncertainty.
 fn sources(slice: &[(f64, Option<&DesignFigures>)]) -> Vec<UncertaintySource> {
     let possible = || slice.iter().filter_map(|(_, figures)| *figures);

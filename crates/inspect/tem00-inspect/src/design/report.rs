@@ -95,7 +95,7 @@ pub(super) fn report(
     Ok(report)
 }
 
-/// Adds the best set-ups, or the nearest alone.
+/// Adds the best set-ups, or only the nearest one.
 fn list(report: &mut Report, design: &Design<'_>) {
     let best = design.outcome.best(design.max);
     let (heading, key, others, listed) = if best.is_empty() {
@@ -117,8 +117,8 @@ fn list(report: &mut Report, design: &Design<'_>) {
     report.section(heading).table(table.under(key));
 }
 
-/// Returns the figures, those of a listing first. What is varied may be one as well, and has its
-/// column already.
+/// Returns the figures, those of a listing first. A varied quantity may be a figure as well, and
+/// then has its column already.
 fn figures(design: &Design<'_>) -> Vec<DesignFigure> {
     let others = DesignFigure::ALL
         .into_iter()
@@ -267,7 +267,7 @@ fn sensitivities(design: &Design<'_>, near: &[Neighbours]) -> Table {
     table
 }
 
-/// Adds what was searched, and what each constraint keeps out.
+/// Adds the searched values, and the number of set-ups that each constraint excludes.
 fn search(section: &mut Section, design: &Design<'_>) {
     let sweeps = design.search.question().sweeps.iter();
     let texts = sweeps.clone().map(|sweep| {

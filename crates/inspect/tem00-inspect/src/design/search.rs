@@ -9,7 +9,7 @@ use tem00_triangulation::{
 
 use crate::args::DesignArgs;
 
-/// A search that is done.
+/// A completed search.
 pub(super) struct Design<'a> {
     /// The file that it was read from, and its text.
     pub(super) file: &'a Path,
@@ -18,7 +18,7 @@ pub(super) struct Design<'a> {
     pub(super) outcome: DesignOutcome,
     /// No quantity of the set-up is uncertain.
     pub(super) is_exact: bool,
-    /// The most set-ups that are listed.
+    /// The maximum number of set-ups that are listed.
     pub(super) max: usize,
 }
 
@@ -57,7 +57,7 @@ impl<'a> Design<'a> {
         self.winner().or_else(|| self.outcome.nearest())
     }
 
-    /// Returns a set-up, with an exposure that the light chooses as it is then.
+    /// Returns a set-up, with the exposure that its light gives if it is chosen automatically.
     pub(super) fn setup_of(shown: &Candidate) -> Result<Setup, Failure> {
         Setup::new(shown.description.clone()).map_err(|error| Failure::running(error.to_string()))
     }

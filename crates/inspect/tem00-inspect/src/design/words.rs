@@ -6,7 +6,7 @@ use tem00_triangulation::{Budget, Exclusion};
 use super::search::Design;
 use crate::units;
 
-/// Returns what the search comes to, in a sentence.
+/// Returns the conclusion of the search, in a sentence.
 pub(super) fn verdict(design: &Design<'_>) -> String {
     let (possible, allowed) = design.outcome.counts();
     let tried = design.search.count();
@@ -29,7 +29,7 @@ pub(super) fn verdict(design: &Design<'_>) -> String {
     }
 }
 
-/// Returns what keeps set-ups out: a line for those that are not possible, and one for each
+/// Returns what excludes set-ups: a line for set-ups that are not possible, and one for each
 /// constraint that excludes any.
 pub(super) fn hindrances(design: &Design<'_>) -> Vec<String> {
     let exclusions = design.outcome.exclusions().into_iter();

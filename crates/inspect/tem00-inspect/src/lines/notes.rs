@@ -7,13 +7,13 @@ use tem00_triangulation::{LinePoint, Validity};
 
 use crate::args::LinesArgs;
 
-/// The fraction of points that may be doubtful without a word.
+/// The fraction of points that may be doubtful without a note.
 const DOUBTFUL: f64 = 0.1;
 
 /// The fraction of columns in which there should be a line.
 const LIT: f64 = 0.25;
 
-/// Returns what should be known of the lines of an image.
+/// Returns the notes on the lines of an image.
 pub(super) fn of(
     path: &Path,
     image: &RawImage,
@@ -57,7 +57,7 @@ fn doubtful(found: &[Vec<LinePoint>]) -> Option<String> {
         points.filter(|point| point.validity == validity).count()
     };
     let share = |count: usize| count as f64 / points.max(1) as f64;
-    // Of saturated ones the warning tells.
+    // The warning covers saturated points.
     let doubtful = points - of(Validity::Valid) - of(Validity::Saturated);
     if share(doubtful) <= DOUBTFUL {
         return None;
@@ -85,7 +85,7 @@ pub(crate) fn reason(validity: Validity) -> String {
 /// The reason of saturated points, and what helps.
 pub(crate) const SATURATED: &str = "pixels are saturated: expose shorter";
 
-/// The defects of doubtful points, and their remedies, but for saturation.
+/// The defects of doubtful points, and their remedies, except for saturation.
 const REASONS: [(Validity, &str, &str); 4] = [
     (
         Validity::Cut,

@@ -3,7 +3,7 @@
 use tem00_numerics::Grid;
 use tem00_triangulation::{LinePoint, Validity};
 
-/// The colours of the lines, in linear sRGB; those of further lines begin again.
+/// The colours of the lines, in linear sRGB; further lines begin again with the first.
 const COLOURS: [[f32; 3]; 4] = [
     [1.0, 0.05, 0.02],
     [0.0, 0.6, 1.0],
@@ -41,7 +41,7 @@ fn colour(point: &LinePoint) -> [f32; 3] {
     }
 }
 
-/// The pixel that contains a position; one before the image counts as beyond it.
+/// The pixel that contains a position; a position before the image counts as beyond it.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -12,7 +12,7 @@ use tem00_triangulation::{DetectorSettings, LinePoint, Validity};
 use super::notes::SATURATED;
 use crate::saturated_points::PointCounts;
 
-/// The columns to either side of one that a parabola is fitted to.
+/// The number of columns to either side of a column to which a parabola is fitted.
 const REACH: usize = 8;
 
 /// Summary of a line in an image.
@@ -64,13 +64,13 @@ impl LineSummary {
     }
 }
 
-/// Returns the standard deviation of values about a smooth curve, or `None` if there are no 17 in a
-/// row.
+/// Returns the standard deviation of values about a smooth curve, or `None` if there are not 17 in
+/// a row.
 ///
-/// The smooth curve is the least-squares parabola of the 17 values about each. Of noise of the
-/// variance σ² that is independent from value to value, the residual in the middle has the variance
-/// σ² (1 − h) with the weight h of the middle value in the parabola; noise that neighbours share is
-/// underestimated.
+/// The smooth curve is the least-squares parabola of the 17 values about each value. For noise of
+/// the variance σ² that is independent from value to value, the residual in the middle has the
+/// variance σ² (1 − h) with the weight h of the middle value in the parabola; noise that neighbours
+/// share is underestimated.
 ///
 /// ```text
 /// w_i = 3 (3m² + 3m − 1 − 5i²) / ((2m − 1) (2m + 1) (2m + 3))     h = w_0, m = 8
@@ -140,13 +140,13 @@ impl ImageSummary {
         self.counts.valid > 0 && !self.counts.are_too_many()
     }
 
-    /// Returns what saturation leaves, if it is much.
+    /// Returns a warning if many points are saturated.
     pub(super) fn warning(&self) -> Option<String> {
         let warning = self.counts.warning(SATURATED)?;
         Some(format!("{}: {warning}", self.image))
     }
 
-    /// Adds its lines to the table, or that there is none.
+    /// Adds its lines to the table, or the remark that there is none.
     fn add_to(&self, table: &mut Table) {
         let name = || Cell::new(&self.image, &self.name);
         if self.lines.is_empty() {

@@ -33,7 +33,7 @@ impl SweptCommand {
         })
     }
 
-    /// Does the command with changes of its file. What it prints is in its files as well.
+    /// Executes the command with changes of its file. Its printed output is in its files as well.
     pub(super) fn run(
         &self,
         changes: &[Change],

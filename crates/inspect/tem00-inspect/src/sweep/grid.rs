@@ -42,7 +42,7 @@ impl Swept {
         }
     }
 
-    /// The results that are kept if the grid does not say.
+    /// Returns the results that are kept if the grid does not name any.
     fn usual_results(self) -> Vec<String> {
         let results: &[&str] = match self {
             Self::Budget => &["combined", "expanded", "dominant"],

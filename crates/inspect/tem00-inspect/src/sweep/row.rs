@@ -1,4 +1,4 @@
-//! The row of a task: what it was given, and what came of it.
+//! The row of a task: its inputs and its outcome.
 
 use std::path::Path;
 
@@ -50,7 +50,7 @@ impl Row {
         (row.fingerprint == fingerprint).then_some(row)
     }
 
-    /// Writes the row, whole or not at all.
+    /// Writes the row, completely or not at all.
     pub(super) fn write(&self, path: &Path) -> Result<(), Failure> {
         write_atomically(path, |file| {
             serde_json::to_writer(file, self).map_err(std::io::Error::from)
@@ -63,7 +63,7 @@ impl Row {
 ///
 /// # Errors
 ///
-/// Returns the keys that there are where one is missing.
+/// Returns the keys that exist where one is missing.
 pub(super) fn result_at<'a>(record: &'a Value, path: &str) -> Result<&'a Value, String> {
     path.split('.').try_fold(record, |value, step| {
         let next = match value {
@@ -88,8 +88,8 @@ pub(super) fn cell(value: &Value) -> String {
     }
 }
 
-/// Returns text as a cell, in quotation marks where it needs them, that does nothing to a terminal
-/// nor, by an apostrophe in front of a formula, to a spreadsheet.
+/// Returns text as a cell, in quotation marks where it needs them, that controls neither a terminal
+/// nor, by an apostrophe in front of a formula, a spreadsheet.
 pub(super) fn quoted(text: &str) -> String {
     let shown = printable(text);
     let apostrophe = if is_formula(&shown) { "'" } else { "" };

@@ -33,7 +33,7 @@ pub(super) struct Sweep<'a> {
 pub(super) enum Worked {
     /// The task has a row.
     Done,
-    /// Another process is doing it.
+    /// Another process is running it.
     ByAnother,
 }
 
@@ -71,11 +71,12 @@ impl<'a> Sweep<'a> {
         Row::find(&self.row_path(task), &self.fingerprint(task))
     }
 
-    /// Does a task that has no row, and leaves it.
+    /// Runs a task that has no row, and writes the row.
     ///
     /// # Errors
     ///
-    /// Returns the failures of the command but those that are an outcome; none leaves a row.
+    /// Returns the failures of the command except those that are an outcome; such a failure leaves
+    /// no row.
     pub(super) fn run(&self, task: usize) -> Result<Worked, Failure> {
         if self.find(task).is_some() {
             return Ok(Worked::Done);
@@ -86,7 +87,7 @@ impl<'a> Sweep<'a> {
             Err(Refused::InUse(_)) => return Ok(Worked::ByAnother),
             Err(Refused::Io(error)) => return Err(output::not_writable(&self.rows, &error)),
         };
-        // Its row may have come while nobody had the lock.
+        // Another process may have written its row while nobody had the lock.
         if self.find(task).is_none() {
             self.work(task)?;
         }
@@ -110,7 +111,7 @@ impl<'a> Sweep<'a> {
         row.write(&self.row_path(task))
     }
 
-    /// Does the command of a task.
+    /// Executes the command of a task.
     fn execute(&self, task: usize) -> Result<(), Failure> {
         let folder = output::subfolder(&self.tasks, &format!("{task:06}"))?;
         let change = |text: &String| {

@@ -18,7 +18,7 @@ use super::{files::Files, job::measurement_failure};
 /// # Errors
 ///
 /// Returns a failure if the boards do not give a calibration, a file cannot be written or the user
-/// ends it.
+/// interrupts it.
 pub(super) fn calibrated(
     measurement: Measurement,
     settings: &CalibrationSettings,

@@ -19,7 +19,7 @@ use super::{
 };
 use crate::lines::overlay::picture;
 
-/// The diagrams of what was measured.
+/// The diagrams of a measurement.
 const DRAWINGS: [&str; 5] = [
     "profile",
     "uncertainty",
@@ -35,7 +35,7 @@ pub(super) struct Drawings<'a> {
 }
 
 impl Drawings<'_> {
-    /// Removes the diagrams of another run, which would be taken for those of this one.
+    /// Removes the diagrams of another run, which would be taken for diagrams of this run.
     pub(super) fn remove(&self) -> Result<(), Failure> {
         output::remove(&self.job.files.folder, &DRAWINGS, &["svg", "png"])
     }
@@ -161,8 +161,8 @@ impl Drawings<'_> {
         Ok(())
     }
 
-    /// Returns the valid points along the axes of the part in millimetres or, where they do not
-    /// move on, of the image: columns, profiles and millimetres.
+    /// Returns the valid points along the axes of the part in millimetres or, where the profiles do
+    /// not advance, of the image: columns, profiles and millimetres.
     fn points(&self, of_part: bool) -> Vec<[f64; 3]> {
         let axes = self.job.measurement.axes();
         let profiles = self.measured.profiles.iter().enumerate();

@@ -31,14 +31,14 @@ pub(super) struct Files {
 
 /// An image of a height map in 16 bits.
 pub(super) struct MapImage {
-    /// Its name, and that of its file without the ending.
+    /// Its name, and the name of its file without the ending.
     pub(super) name: &'static str,
     /// The unit of its values.
     pub(super) unit: &'static str,
     pub(super) values: QuantisedGrid,
 }
 
-/// Returns the images of a map; none where it has nothing but holes.
+/// Returns the images of a map; none where it has only holes.
 pub(super) fn images(map: &HeightMap) -> impl Iterator<Item = MapImage> {
     let grids = [
         ("height", "m", &map.heights),
@@ -58,7 +58,7 @@ const HEADINGS: &str = "column,line,x_pixel,y_pixel,width_pixel,intensity_dn,val
                         u_dsnu_pixel,u_calibration_height_m,u_indirect_pixel,indirect_fraction";
 
 impl Files {
-    /// Makes sure, before the work, that files can be written.
+    /// Checks, before the work starts, that files can be written.
     pub(super) fn new(folder: PathBuf, raw: RawFormat) -> Result<Self, Failure> {
         let lock = output::prepare(&folder)?;
         Ok(Self {
@@ -122,7 +122,7 @@ impl Files {
     /// Writes a map: its heights and their uncertainties in metres, all its images in 16 bits, and
     /// a file of surface metrology where its cells have a size.
     ///
-    /// One that is not there, or has nothing but holes, leaves none of an earlier run.
+    /// If there is no map, or a map with only holes, the files of an earlier run are removed.
     pub(super) fn write_height_map(&self, map: Option<&HeightMap>) -> Result<(), Failure> {
         let names = ["height", "height_uncertainty", "reflectance", "width"];
         output::remove(&self.folder, &names, &["npy", "x3p", self.extension()])?;
@@ -233,8 +233,7 @@ fn row(point: &MeasuredPoint, height: DVec3) -> String {
     )
 }
 
-/// Returns what the columns and rows of a map are, in metres where they are lengths: the ranges
-/// along both.
+/// Returns the ranges along the columns and rows of a map, in metres where they are lengths.
 pub(super) fn ranges(map: &HeightMap) -> [(f64, f64); 2] {
     let [columns, rows] = [map.heights.width(), map.heights.height()].map(|cells| cells as f64);
     match map.raster {

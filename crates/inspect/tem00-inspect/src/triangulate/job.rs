@@ -20,7 +20,7 @@ use super::{
 };
 use crate::args::TriangulateArgs;
 
-/// A measurement that is set up.
+/// A measurement that is ready to start.
 pub(super) struct Job<'a> {
     pub(super) args: &'a TriangulateArgs,
     pub(super) measurement: Measurement,
@@ -69,7 +69,7 @@ impl<'a> Job<'a> {
         })
     }
 
-    /// Warns, before the work, about lasers of which the camera will see no light.
+    /// Warns, before the work starts, about lasers whose light the camera will not see.
     pub(super) fn warn_of_darkness(&self) -> Result<(), Failure> {
         let found = Inspection::new(self.measurement.scene(), self.frames)
             .map_err(|error| tracer_failure(&self.args.common.scene, &error))?;

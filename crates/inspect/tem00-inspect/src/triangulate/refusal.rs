@@ -1,10 +1,10 @@
-//! The reason for which a measurement has no result, and the remedy.
+//! The reason why a measurement has no result, and the remedy.
 
 use tem00_triangulation::Validity;
 
 use super::frame::FrameRecord;
 
-/// The reason for which nothing was measured, and the remedy.
+/// The reason why nothing was measured, and the remedy.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Refusal {
     pub(super) why: String,

@@ -26,10 +26,11 @@ const CORRELATIONS: &str = "Speckle correlates the errors of neighbouring column
     every pixel and frame; PRNU and DSNU are new in every pixel and stay from frame to frame; the error of \
     the calibration is common to all points.";
 
-/// The ratio of the speckle noise of a camera to that of a frame from which on a reader is told.
+/// The minimum ratio of the speckle noise of a camera to the speckle noise of a frame for which the
+/// reader is warned.
 const MUCH_MORE_SPECKLE: f64 = 1.1;
 
-/// Tells how much more speckle noise a camera would see, where it is much.
+/// Notes how much more speckle noise a camera would see, if it is much more.
 fn speckle_by_waves(report: &mut Report, job: &Job<'_>, measured: &Measured) {
     let shown = measured.shown.as_ref();
     let ratio = shown.and_then(|frame| job.measurement.speckle_by_waves(frame));
@@ -219,8 +220,8 @@ fn average(job: &Job<'_>, measured: &Measured) -> Cell {
     )
 }
 
-/// The speckle size in the middle of the image, along rows and columns, and what becomes of speckle
-/// from a frame to the next.
+/// The speckle size in the middle of the image, along rows and columns, and the change of speckle
+/// from one frame to the next.
 fn speckle(job: &Job<'_>, measured: &Measured) -> Cell {
     if job.args.common.no_speckle {
         return Cell::missing("disabled");

@@ -15,11 +15,11 @@ pub(super) struct Term {
     pub(super) name: &'static str,
     /// Advice that lowers the term.
     remedy: &'static str,
-    /// The standard uncertainty of a line's position, in pixels; none of the calibration.
+    /// The standard uncertainty of a line's position, in pixels; `None` for the calibration.
     pub(super) position: Option<f64>,
     /// The standard uncertainty of a height, in metres.
     pub(super) height: f64,
-    /// The part of the variance of a height that it makes, from 0 to 1.
+    /// The fraction of the variance of a height that it contributes, from 0 to 1.
     pub(super) variance_fraction: f64,
 }
 
@@ -42,7 +42,7 @@ impl Term {
 pub(super) struct Terms {
     /// The number of valid points.
     pub(super) points: usize,
-    /// The part of them in whose light a tenth or more met a second surface.
+    /// The fraction of valid points for which a tenth or more of the light met a second surface.
     pub(super) indirect: f64,
     /// The number of valid points on lines of such light alone, which the terms leave out.
     pub(super) alone: usize,
@@ -63,7 +63,7 @@ const COVERAGE: f64 = 1.96;
 /// A term of the variance of a position, in square pixels.
 type Variance = fn(&MeasuredPoint) -> f64;
 
-/// The terms of the variance of a position; light that met a second surface is no noise.
+/// The terms of the variance of a position; light that met a second surface is not noise.
 const OF_POSITION: [(Option<UncertaintySource>, Variance); 7] = [
     (Some(UncertaintySource::Speckle), |point| {
         point.noise.speckle
@@ -78,7 +78,7 @@ const OF_POSITION: [(Option<UncertaintySource>, Variance); 7] = [
     (None, |point| point.indirect.shift.powi(2)),
 ];
 
-/// The part of indirect light in a line from which on a point is counted.
+/// The minimum fraction of indirect light in a line for which a point is counted.
 const MUCH: f64 = 0.1;
 
 impl Terms {
@@ -87,7 +87,7 @@ impl Terms {
     pub(super) fn of(profiles: &[Vec<MeasuredPoint>], height: DVec3) -> Option<Self> {
         let all = || profiles.iter().flatten().filter(|point| point.is_valid());
         let found = all().count();
-        // Their errors are as large as the part, and would be all that a mean square shows.
+        // Their errors are as large as the part, and would dominate a mean square.
         let alone = all().filter(|point| point.indirect.alone).count();
         let valid = || all().filter(|point| alone == found || !point.indirect.alone);
         let points = valid().count();
@@ -139,7 +139,7 @@ impl Terms {
         terms.max_by(|a, b| a.variance_fraction.total_cmp(&b.variance_fraction))
     }
 
-    /// Returns how well heights are known, what dominates and what lowers it.
+    /// Returns the uncertainty of heights, what dominates and what lowers it.
     pub(super) fn verdict(&self) -> String {
         let dominant = self.dominant().map_or_else(String::new, |term| {
             format!(
@@ -159,7 +159,7 @@ impl Terms {
         )
     }
 
-    /// Tells of light that met a second surface, where there is much.
+    /// Notes the light that met a second surface, where there is much of it.
     pub(super) fn notes_of_indirect_light(&self) -> Vec<String> {
         let mut lines = Vec::new();
         if self.indirect > 0.0 {
@@ -206,8 +206,8 @@ impl Terms {
     }
 }
 
-/// Returns the least value that so large a part of some does not exceed. They ascend, and there is
-/// one at least.
+/// Returns the smallest of the `ascending` values that the fraction `part` of them does not exceed.
+/// There is at least one value.
 fn quantile(ascending: &[f64], part: f64) -> f64 {
     let rank = to_usize((part * ascending.len() as f64).ceil());
     ascending[rank.clamp(1, ascending.len()) - 1]

@@ -49,13 +49,13 @@ pub(super) struct Texts(Vec<(&'static str, String)>);
 enum Kind {
     Words,
     Country,
-    /// A day, not before another of the same section.
+    /// A day that is not before another day of the same section.
     Date,
     OneOf([&'static str; 5]),
 }
 use Kind::{Country, Date, OneOf, Words};
 
-/// A key with an example where it must be there; an empty one where it may be left out.
+/// A key with an example if it is required, and with an empty example if it may be left out.
 type Key = (&'static str, Kind, &'static str);
 
 impl CertificateData {
@@ -63,8 +63,8 @@ impl CertificateData {
     ///
     /// # Errors
     ///
-    /// Returns a problem, placed in the file, if a key is missing or unknown, a value cannot be, or
-    /// the set-up has no measured height that a certificate could state.
+    /// Returns a problem, placed in the file, if a key is missing or unknown, a value is not
+    /// possible, or the set-up has no measured height that a certificate could state.
     pub(in crate::budget) fn read(
         document: &Document<'_>,
         measures_height: bool,

@@ -6,7 +6,7 @@ use tem00_numerics::{cast::to_usize, jinc};
 /// Values per unit of the distance.
 const STEPS: usize = 128;
 
-/// The distance from which on values are not from the table.
+/// The distance from which on values do not come from the table.
 const END: usize = 16;
 
 /// Returns Airy's pattern of the amplitude, squared, at a distance in speckle sizes, within 1e−7.

@@ -10,7 +10,7 @@ use crate::{
     measurement::Measurement,
 };
 
-/// Puts measured frames together to profiles, and these to the map of a part.
+/// Combines measured frames into profiles, and profiles into the map of a part.
 #[derive(Clone, Debug)]
 pub struct Scan<'a> {
     measurement: &'a Measurement,
@@ -48,7 +48,7 @@ impl<'a> Scan<'a> {
         }
     }
 
-    /// Returns the profiles; the last one of fewer frames if there are too few left.
+    /// Returns the profiles; the last profile has fewer frames if too few are left.
     pub fn finish(mut self) -> ScannedPart<'a> {
         if !self.pending.is_empty() {
             self.complete();
@@ -97,8 +97,8 @@ impl ScannedPart<'_> {
     }
 
     /// Returns how many profiles of independent speckle the first profile with valid points is
-    /// worth: 1 without averaging over frames, and as many as frames if each has speckle of its
-    /// own; `None` if no profile has any.
+    /// worth: 1 without averaging over frames, and the number of frames if each frame has its own
+    /// speckle; `None` if no profile has valid points.
     pub fn effective_frames(&self) -> Option<f64> {
         let frames = self.measurement.settings().average.frames;
         if frames > 1 {
@@ -109,7 +109,7 @@ impl ScannedPart<'_> {
         points.any(MeasuredPoint::is_valid).then_some(1.0)
     }
 
-    /// Returns what becomes of the speckle of the line from one frame to the next: of the first
+    /// Returns the change of the speckle of the line from one frame to the next: for the first
     /// frame for which the law has a value, or `None` without speckle and without such a frame.
     pub const fn speckle_change(&self) -> Option<&SpeckleChange> {
         self.speckle_change.as_ref()

@@ -16,8 +16,8 @@ pub trait SpeckleCorrelation {
 
 /// Averages the profiles of consecutive frames, and neighbouring columns of them, into one.
 ///
-/// Each mean takes the valid points of its columns and frames, of several in a column the
-/// brightest, and carries the uncertainty of a mean of correlated numbers:
+/// Each mean takes the valid points of its columns and frames, the brightest of several in a
+/// column, and carries the uncertainty of a mean of correlated numbers:
 ///
 /// ```text
 /// speckle          Σ u_a u_b ρ_ab / n²      ρ the correlation of the speckle between columns and frames,
@@ -27,8 +27,9 @@ pub trait SpeckleCorrelation {
 /// ```
 ///
 /// A pattern that has moved across the line by about its width moves it the other way: the law has
-/// ρ < 0 for such frames, and a mean over them is better than one over as many independent
-/// patterns. Nothing is counted on that, for it needs a motion known to a part of the line's width.
+/// ρ < 0 for such frames, and a mean over them is better than a mean over as many independent
+/// patterns. The uncertainty does not rely on this, since the motion would have to be known to a
+/// fraction of the line's width.
 ///
 /// With one frame and one column all points are returned as they are.
 pub fn averaged_profile(
@@ -54,7 +55,7 @@ pub fn averaged_profile(
 /// A point and the frame it was seen in.
 type Member<'a> = (u32, &'a MeasuredPoint);
 
-/// Returns the valid points of a frame, of several in a column the brightest.
+/// Returns the valid points of a frame, the brightest of several in a column.
 pub fn brightest_points(frame: &MeasuredFrame) -> impl Iterator<Item = &MeasuredPoint> {
     let columns = frame.points.chunk_by(|a, b| a.seen.column == b.seen.column);
     columns.filter_map(|points| {
@@ -65,8 +66,8 @@ pub fn brightest_points(frame: &MeasuredFrame) -> impl Iterator<Item = &Measured
 
 /// Returns the mean of points, each with the frame it was seen in, or `None` without any.
 ///
-/// It carries the uncertainty of a mean of correlated numbers, as [`averaged_profile`] says; what
-/// else it has is the mean, too, or that of the middle one of the points.
+/// It carries the uncertainty of a mean of correlated numbers, as [`averaged_profile`] says; its
+/// other values are means, too, or the values of the middle point.
 pub fn mean_point(
     members: &[(u32, &MeasuredPoint)],
     speckle: &impl SpeckleCorrelation,

@@ -58,7 +58,7 @@ impl BoardPlan {
     /// # Errors
     ///
     /// Returns an error if the scene has no laser, if its plane is not seen in the middle of the
-    /// image, or if a board with the squares asked for is not whole in the image.
+    /// image, or if a board with the requested squares does not lie completely in the image.
     pub fn new(scene: &Scene, settings: &BoardSettings) -> Result<Self, ScanError> {
         let laser = scene.lasers.first().ok_or(TriangulationError::TooFew {
             what: "lasers",
@@ -89,13 +89,13 @@ impl BoardPlan {
         &self.board
     }
 
-    /// Returns where the boards stand: the motions from the frame of the board to the scene.
+    /// Returns the poses of the boards: the motions from the frame of the board to the scene.
     pub fn poses(&self) -> &[RigidMotion] {
         &self.poses
     }
 
-    /// Returns the scene of a board under a point light at the camera, and that of the board under
-    /// the laser.
+    /// Returns the scene of a board under a point light at the camera, and the scene of the board
+    /// under the laser.
     ///
     /// # Errors
     ///
@@ -194,7 +194,8 @@ impl Stage {
         })
     }
 
-    /// Returns the poses of a board, or `None` if it is not whole in the image in one of them.
+    /// Returns the poses of a board, or `None` if it does not lie completely in the image in one of
+    /// them.
     fn poses(
         &self,
         board: &Checkerboard,
@@ -243,7 +244,8 @@ impl Stage {
         })
     }
 
-    /// Returns the board with the largest squares, in steps of 3 %, that is whole in all poses.
+    /// Returns the board with the largest squares, in steps of 3 %, that lies completely in the
+    /// image in all poses.
     fn largest(
         &self,
         settings: &BoardSettings,

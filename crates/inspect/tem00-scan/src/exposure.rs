@@ -28,7 +28,7 @@ impl Exposure {
     /// μ_e      = Σ over the sources of η E A t λ / (h c)
     /// ```
     ///
-    /// The light of each laser counts at its own wavelength, and that of the other lights at 550
+    /// The light of each laser counts at its own wavelength, and the light of other lights at 550
     /// nm, all with the quantum efficiency of the sensor. The frame must have been rendered with
     /// the box filter of the sensitive part of the pixel; its layers are radiances averaged over
     /// it.

@@ -30,20 +30,20 @@ pub struct MeasuredFrame {
     /// The correlation, by speckle, of the line's positions in columns 0, 1, 2 … apart; 1 alone
     /// without speckle.
     pub correlation: Vec<f64>,
-    /// The point in the middle of the profile, whose speckle stands for that of all; `None` without
-    /// speckle or without points.
+    /// The point in the middle of the profile, whose speckle represents the speckle of all points;
+    /// `None` without speckle or without points.
     pub reference_point: Option<ReferencePoint>,
 }
 
 /// A measured point of a part and how well it is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeasuredPoint {
-    /// The point as the profile has it, before the part is brought back to where it stands in its
+    /// The point as the profile has it, before the part is moved back to its place in the
     /// description.
     pub seen: ProfilePoint,
     /// The point on the part as the scene describes it, in metres.
     pub position: DVec3,
-    /// The displacement of that per pixel by which the line moves down, in metres.
+    /// The displacement of this position per pixel by which the line moves down, in metres.
     pub per_pixel: DVec3,
     /// The contributions to the variance of the line's position, in square pixels.
     pub noise: PositionNoise,
@@ -53,10 +53,10 @@ pub struct MeasuredPoint {
     pub calibration: DMat3,
 }
 
-/// Light of a line that met several rough surfaces: a render knows it apart, a camera does not.
+/// Light of a line that met several rough surfaces: a render separates it, a camera cannot.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct IndirectLight {
-    /// Its part of the light in the window about the line, from 0 to 1.
+    /// Its fraction of the light in the window about the line, from 0 to 1.
     pub fraction: f64,
     /// Displacement of the line by this light, in pixels down: an error that repetition does not
     /// reveal, whose size counts as a standard uncertainty. For a line that consists of such light
@@ -73,8 +73,8 @@ impl MeasuredPoint {
         DVec3::from_array(DVec3::AXES.map(|axis| self.uncertainty_along(axis)))
     }
 
-    /// Returns the standard uncertainty along a direction of length 1, in metres: that of the
-    /// position of the line and that of the calibration together.
+    /// Returns the standard uncertainty along a direction of length 1, in metres: from the position
+    /// of the line and the calibration together.
     pub fn uncertainty_along(&self, direction: DVec3) -> f64 {
         self.line_uncertainty_along(direction)
             .hypot(self.calibration_uncertainty_along(direction))
@@ -111,8 +111,8 @@ pub(super) struct FrameContext<'a> {
     pub(super) sensor: &'a Sensor,
     pub(super) detector: &'a LineDetector,
     pub(super) calibration: &'a Calibration,
-    /// The covariance that is added to that of the calibration, in m², in the coordinates of the
-    /// part.
+    /// The covariance that is added to the covariance of the calibration, in m², in the coordinates
+    /// of the part.
     pub(super) further: DMat3,
     /// `None` without speckle.
     pub(super) speckle: Option<&'a ImageSpeckle>,
@@ -120,7 +120,7 @@ pub(super) struct FrameContext<'a> {
 }
 
 impl FrameContext<'_> {
-    /// Exposes the sensor and measures what it shows.
+    /// Exposes the sensor and measures the frame.
     pub(super) fn measure(
         &self,
         exposure: Exposure,
@@ -179,8 +179,8 @@ impl FrameContext<'_> {
     /// Returns how speckle correlates the position of the line in neighbouring columns, as the
     /// pattern has changed: for columns from −n to n apart.
     ///
-    /// The middle one of the valid points stands for all. A slope of the line makes the correlation
-    /// shorter than this; it is left out.
+    /// The middle one of the valid points represents all of them. A slope of the line makes the
+    /// correlation shorter than this; it is left out.
     pub(super) fn correlation(
         &self,
         exposure: &Exposure,
@@ -240,7 +240,7 @@ struct NoiseFreeFrame {
     multiple: Grid<f32>,
     grey_values: Grid<f32>,
     lines: Vec<Vec<LinePoint>>,
-    /// The lines in light that met one rough surface alone; `None` where there is no other.
+    /// The lines in light that met only one rough surface; `None` where there is no other light.
     direct: Option<Vec<Vec<LinePoint>>>,
     /// The median of the widths of the lines, in pixels; 0 without any.
     usual_width: f64,
@@ -317,7 +317,7 @@ impl NoiseFreeFrame {
         PositionNoise::of_column(sensor, &speckle.as_deref(), &column.light())
     }
 
-    /// The line that there would be without noise at the position of a point, if any.
+    /// Returns the line that there would be without noise at the position of a point, if any.
     fn nearest(&self, seen: &ProfilePoint, reach: f64) -> Option<&LinePoint> {
         let distance = |line: &LinePoint| (line.position - seen.pixel.y).abs();
         self.lines[seen.column]
@@ -326,11 +326,11 @@ impl NoiseFreeFrame {
             .min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 
-    /// Tells whether an edge of the part cuts the line at a point, or there would be none without
-    /// noise.
+    /// Tells whether an edge of the part cuts the line at a point, or there would be no line
+    /// without noise.
     ///
-    /// First order would say that such a position is known very well, as little light moves little;
-    /// it is the position of the edge, and not of the line.
+    /// First order would give such a position a very small uncertainty, because little light moves
+    /// it little; but it is the position of the edge, and not of the line.
     fn is_sliver(&self, seen: &ProfilePoint, reach: f64) -> bool {
         let (pixels, usual) = SLIVER;
         let narrow = pixels.min(usual * self.usual_width);

@@ -21,15 +21,15 @@ impl FrameCorrelation {
         Self { tables }
     }
 
-    /// Returns the number of profiles of independent speckle that a mean over so many frames is
+    /// Returns the number of profiles of independent speckle that a mean over `frames` frames is
     /// worth: from 1 to their number.
     ///
     /// ```text
     /// N_eff = N² / Σ max(0, ρ(|a − b|))
     /// ```
     ///
-    /// As in a [mean](crate::averaged_profile), nothing is counted on frames that err the opposite
-    /// way.
+    /// As in a [mean](crate::averaged_profile), no gain is counted from frames that err the
+    /// opposite way.
     pub fn effective_frames(&self, frames: u32) -> f64 {
         let pairs = (1..frames).map(|later| {
             let pairs = f64::from(frames - later);

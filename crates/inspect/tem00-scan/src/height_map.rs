@@ -28,7 +28,7 @@ pub struct HeightMap {
 /// Meaning of the columns and rows of a height map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Raster {
-    /// Columns of the image, so many to a column of the map, and profiles.
+    /// Columns of the image, `columns` of them to a column of the map, and profiles.
     Image {
         /// The number of columns of the image that a column of the map is the mean of.
         columns: usize,
@@ -46,7 +46,8 @@ pub enum Raster {
 const MAX_CELLS: f64 = 16_777_216.0;
 
 impl HeightMap {
-    /// Arranges profiles, one above the other, in the columns of an image of so many.
+    /// Arranges profiles, one above the other, in the columns of an image that has `columns` of
+    /// them.
     ///
     /// `height` is the direction of heights, of length 1.
     ///
@@ -85,11 +86,11 @@ impl HeightMap {
     /// Sorts points into square cells of a side of `pitch` metres along the first two axes; heights
     /// are along the third. All are of length 1 and square to each other.
     ///
-    /// The points with the smallest lengths lie in the middle of the first cells, so that of
-    /// profiles that are one pitch apart each lies in the middle of a row of its own.
+    /// The points with the smallest lengths lie in the middle of the first cells, so that profiles
+    /// that are one pitch apart each lie in the middle of their own row.
     ///
     /// A cell holds the means of its points, and the root mean square of their uncertainties:
-    /// points of one cell share their speckle, so that their mean is hardly better than one.
+    /// points of one cell share their speckle, so that their mean is hardly better than one point.
     ///
     /// # Errors
     ///
@@ -145,7 +146,7 @@ impl HeightMap {
         range(&self.heights)
     }
 
-    /// Returns the part of the cells that are holes, from 0 to 1.
+    /// Returns the fraction of the cells that are holes, from 0 to 1.
     pub fn holes(&self) -> f64 {
         let values = self.heights.values();
         let holes = values.iter().filter(|height| height.is_nan()).count();
@@ -153,7 +154,7 @@ impl HeightMap {
     }
 }
 
-/// Makes sure that cells have a size.
+/// Checks that cells have a size.
 pub(super) fn check_pitch(pitch: f64) -> Result<(), TriangulationError> {
     Ok(check::positive("pitch", pitch, "m").map(drop)?)
 }

@@ -24,8 +24,8 @@ pub(super) struct ImageSpeckle {
 const CELLS: usize = 4;
 
 impl ImageSpeckle {
-    /// Takes the light of a wavelength, in metres, to have a variance of the speckle factor, in
-    /// pixels with a sensitive part.
+    /// Creates the speckle of light of a wavelength, in metres, with a variance of the speckle
+    /// factor, in pixels with a sensitive part.
     ///
     /// # Errors
     ///

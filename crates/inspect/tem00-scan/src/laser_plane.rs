@@ -3,7 +3,7 @@ use tem00_triangulation::{LaserPlane, TriangulationError};
 
 /// Returns the plane in which the line of a laser opens.
 ///
-/// A spot has a plane, too, that of its first axis; only a point of it is lit.
+/// A spot has a plane, too, the plane of its first axis; only a point of it is lit.
 ///
 /// # Errors
 ///

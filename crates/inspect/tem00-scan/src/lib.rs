@@ -9,7 +9,7 @@
 //!
 //! # Conventions
 //!
-//! Those of [`tem00_triangulation`]: metres, pixels with y down, standard uncertainties.
+//! The conventions of [`tem00_triangulation`]: metres, pixels with y down, standard uncertainties.
 
 mod airy_pattern;
 mod assembly;

@@ -88,7 +88,7 @@ impl Measurement {
 
     /// Returns the same measurement with camera and laser plane as a calibration found them.
     ///
-    /// They stand before anything moves, in the coordinates of the scene.
+    /// They are given before anything moves, in the coordinates of the scene.
     #[must_use]
     pub fn with_calibration(self, calibration: Calibration) -> Self {
         Self {
@@ -118,7 +118,7 @@ impl Measurement {
         &self.calibration
     }
 
-    /// Returns what moves.
+    /// Returns the motion of the scan.
     pub const fn motion(&self) -> &ScanMotion {
         &self.motion
     }
@@ -149,7 +149,7 @@ impl Measurement {
     /// Renders a frame, exposes the sensor, finds the line and places its points.
     ///
     /// Without a `speckle` model the light carries no speckle. The noise of the sensor is drawn
-    /// from the seed of the scene and the number of the frame. `progress` and `cancel` are those of
+    /// from the seed of the scene and the number of the frame. `progress` and `cancel` work as in
     /// [`render_frame`]; the result has the same bits for any number of threads.
     ///
     /// # Errors
@@ -186,9 +186,9 @@ impl Measurement {
         context.measure(exposure, frame, seed)
     }
 
-    /// Measures what a frame showed once more, where nothing has moved since: the light is the
-    /// same, the noise of the sensor is drawn anew, from the seed of the scene and the `number` of
-    /// the repetition.
+    /// Measures a frame once more, where nothing has moved since: the light is the same, and the
+    /// noise of the sensor is drawn anew, from the seed of the scene and the `number` of the
+    /// repetition.
     ///
     /// # Errors
     ///
@@ -205,7 +205,7 @@ impl Measurement {
         Ok(repeated)
     }
 
-    /// Returns how speckle correlates the positions of the line between a frame and those that
+    /// Returns how speckle correlates the positions of the line between a frame and the frames that
     /// follow, up to `frames` of them together, by the law of its motion and decorrelation.
     pub fn frame_correlation(&self, first: &MeasuredFrame, frames: u32) -> FrameCorrelation {
         let context = self.context(first.frame, first.reference_point.is_some());
@@ -217,11 +217,11 @@ impl Measurement {
         FrameCorrelation::new((0..frames).map(table).collect())
     }
 
-    /// Returns what has become of the speckle of the line a number of frames later, by the law that
-    /// frames are rendered with; `None` without speckle and where that law has no value, so that
-    /// each frame has speckle of its own.
+    /// Returns the change of the speckle of the line a number of frames later, by the law with
+    /// which frames are rendered; `None` without speckle and where that law has no value, so that
+    /// each frame has its own speckle.
     ///
-    /// The point in the middle of the profile stands for all.
+    /// The point in the middle of the profile represents all points.
     pub fn speckle_change(&self, first: &MeasuredFrame, later: u32) -> Option<SpeckleChange> {
         /// The laser of the line.
         const LASER: usize = 0;
@@ -278,7 +278,7 @@ fn line_laser(scene: &Scene) -> Result<&Laser, ScanError> {
         })
 }
 
-/// Makes sure that the line crosses columns.
+/// Checks that the line crosses columns.
 fn check_direction(camera: &Camera, laser: &Laser) -> Result<(), ScanError> {
     /// A step along the line, in metres, small against anything that is triangulated.
     const STEP: f64 = 1e-5;
@@ -301,7 +301,7 @@ fn check_direction(camera: &Camera, laser: &Laser) -> Result<(), ScanError> {
     ))
 }
 
-/// Makes sure that the image is what the pixels of a sensor see.
+/// Checks that the image is what the pixels of a sensor see.
 fn check_render(scene: &Scene) -> Result<(), ScanError> {
     let render = &scene.render;
     let wrong = if render.filter != Filter::default() {
@@ -316,7 +316,8 @@ fn check_render(scene: &Scene) -> Result<(), ScanError> {
     Err(ScanError::Scene(wrong.to_owned()))
 }
 
-/// The speckle on the sensor; of several surfaces of the part, that of the greatest contrast.
+/// The speckle on the sensor; for several surfaces of the part, the speckle of the greatest
+/// contrast.
 fn speckle(
     scene: &Scene,
     laser: &Laser,
@@ -341,6 +342,6 @@ fn saturation(sensor: &SensorDescription) -> f64 {
     let noise = 4.0 * sensor.dark_noise.hypot(sensor.dsnu);
     let full = sensor.black_level + sensor.gain * (sensor.full_well - noise);
     let largest = f64::from((1_u32 << sensor.bit_depth) - 1);
-    // A well that holds no more than its noise is never told from a full one.
+    // A well that holds no more than its noise cannot be told from a full one.
     largest.min(full.max(1.0))
 }

@@ -4,8 +4,8 @@ use crate::ScanError;
 
 /// The moving object in a scan: the part under the line, or the sensor head over the part.
 ///
-/// The head is the camera with its laser. Points that it measures are brought to where the part
-/// stands in its description, so that the profiles of all frames fit together.
+/// The head is the camera with its laser. Points that it measures are moved to the place of the
+/// part in its description, so that the profiles of all frames fit together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScanMotion {
     part: Trajectory,
@@ -15,7 +15,7 @@ pub struct ScanMotion {
 }
 
 impl ScanMotion {
-    /// Finds out what moves in a scene: the surface of a name, or all surfaces that move.
+    /// Finds the moving part of a scene: the surface with a name, or all surfaces that move.
     ///
     /// # Errors
     ///
@@ -37,14 +37,14 @@ impl ScanMotion {
         })
     }
 
-    /// Returns the indices of the surfaces that belong to the part; all of a scene where none
-    /// moves.
+    /// Returns the indices of the surfaces that belong to the part; all surfaces of a scene where
+    /// none moves.
     pub fn surfaces(&self) -> &[usize] {
         &self.surfaces
     }
 
-    /// Returns the motion that takes what the head sees in a frame, in the coordinates of the head
-    /// as the scene describes it, to the part as the scene describes it.
+    /// Returns the motion that takes points that the head sees in a frame, in the coordinates of
+    /// the head as the scene describes it, to the part as the scene describes it.
     pub fn to_part(&self, frame: u32) -> RigidMotion {
         let world = self.head.pose_at(frame);
         world.then(&self.part.pose_at(frame).inverse())

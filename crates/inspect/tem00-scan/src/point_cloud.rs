@@ -40,8 +40,8 @@ pub fn write_ply(profiles: &[Vec<MeasuredPoint>], out: &mut impl Write) -> io::R
 
 /// Writes the valid points of profiles as a binary PCD file, version 0.7.
 ///
-/// The fields are those of [`write_ply`], but coordinates are single: they are rounded by up to
-/// 6e-8 of their value. The Point Cloud Library reads no others.
+/// The fields are the same as in [`write_ply`], but coordinates are in single precision: they are
+/// rounded by up to 6e-8 of their value. The Point Cloud Library reads no others.
 ///
 /// # Errors
 ///

@@ -8,7 +8,7 @@ const AVERAGE_KEYS: &[&str] = &["frames", "columns"];
 
 const RAW_FORMATS: &[(&str, RawFormat)] = &[("png", RawFormat::Png), ("tiff", RawFormat::Tiff)];
 
-/// More columns than these have no image.
+/// The maximum number of columns: no image has more.
 const MAX_COLUMNS: u64 = 1 << 16;
 
 /// Reads the section `[scan]` of a scene file.

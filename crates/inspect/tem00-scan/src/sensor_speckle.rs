@@ -5,8 +5,8 @@ use crate::airy_pattern::airy_pattern;
 
 /// Speckle as the pixels of a sensor see it, at a position of the image.
 ///
-/// The autocovariance of fully developed speckle behind a circular pupil is that of Airy's pattern,
-/// in directions that the pupil tells apart:
+/// The autocovariance of fully developed speckle behind a circular pupil is Airy's pattern, in
+/// directions that the pupil resolves:
 ///
 /// ```text
 /// c(Δ) = C² |2 J₁(π|M Δ|) / π|M Δ||²      M = (D/λ) ∂t/∂x
@@ -25,8 +25,8 @@ use crate::airy_pattern::airy_pattern;
 /// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007: the autocovariance of speckle in an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorSpeckle {
-    /// M, how many speckles a pixel to the right (first column) and a pixel down (second) are,
-    /// along the axes of the camera.
+    /// The matrix M: how many speckles a pixel to the right (first column) and a pixel down (second
+    /// column) span, along the axes of the camera.
     pub speckles_per_pixel: DMat2,
     /// The side of the sensitive part of a pixel, in pixels.
     pub sensitive_side: f64,

@@ -7,7 +7,8 @@ use crate::height_map::check_pitch;
 /// Settings by which the frames of a scene become the map of a part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScanSettings {
-    /// The name of the surface whose motion the points are freed from; `None` for those that move.
+    /// The name of the surface whose motion is removed from the points; `None` for the surfaces
+    /// that move.
     pub surface: Option<String>,
     /// The direction in which heights are counted, of length 1: in the world, as the part stands in
     /// its description.
@@ -26,7 +27,7 @@ pub struct ScanSettings {
 pub struct Averaging {
     /// The number of frames, one after the other, at least 1.
     pub frames: u32,
-    /// The number of columns, one beside the other, at least 1.
+    /// The number of columns, side by side, at least 1.
     pub columns: usize,
 }
 
@@ -50,7 +51,7 @@ impl Default for Averaging {
 }
 
 impl ScanSettings {
-    /// Checks what does not depend on a scene.
+    /// Checks the settings that do not depend on a scene.
     pub(super) fn check(&self) -> Result<(), TriangulationError> {
         for (parameter, count) in [
             ("frames", self.average.frames as usize),

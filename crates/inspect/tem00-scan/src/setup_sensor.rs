@@ -22,26 +22,26 @@ use crate::{
     setup_scene,
 };
 
-/// The depth of grooves, as a part of the height that moves the line by its own thickness.
+/// The depth of grooves, as a fraction of the height that moves the line by its own thickness.
 const GROOVE_DEPTH: f64 = 0.5;
-/// The pixels that are rendered beside an artefact.
+/// The number of pixels that are rendered next to an artefact.
 const BESIDE: f64 = 8.0;
 /// The frames of one scene: few, so that they need few rows of the image.
 const FRAMES: usize = 8;
 
-/// The least number of rows of a set-up.
+/// The minimum number of rows of a set-up.
 const MIN_ROWS: usize = 16;
 
 /// A set-up in front of which artefacts are rendered.
 ///
 /// The artefacts are of the set-up's surface, under its line; camera and laser plane are known
 /// exactly. A profile is one frame, its columns averaged as the set-up says. The tracer renders the
-/// light on an artefact as a lens without blur sees it, in parts of pixels; a [`LineImage`] makes
-/// of it what the lens does, with diffraction, defocus and speckle as waves have them.
+/// light on an artefact as a lens without blur sees it, in parts of pixels; a [`LineImage`] then
+/// adds the effect of the lens, with diffraction, defocus and speckle as waves have them.
 ///
 /// # Validity
 ///
-/// All of a profile counts as equally far out of focus, as the middle of its heights is.
+/// A whole profile counts as equally far out of focus as the middle of its heights.
 #[derive(Clone)]
 pub struct SetupSensor<'a> {
     setup: &'a Setup,
@@ -62,8 +62,8 @@ impl fmt::Debug for SetupSensor<'_> {
 }
 
 impl<'a> SetupSensor<'a> {
-    /// Creates a sensor that renders so many samples per pixel. `progress` is told the name of the
-    /// artefact after each profile.
+    /// Creates a sensor that renders a number of samples per pixel. `progress` receives the name of
+    /// the artefact after each profile.
     pub const fn new(
         setup: &'a Setup,
         samples_per_pixel: u32,
@@ -182,7 +182,7 @@ impl<'a> SetupSensor<'a> {
         })?)
     }
 
-    /// Returns the first row in which the line on an artefact may be, and that after the last.
+    /// Returns the first row in which the line on an artefact may be, and the row after the last.
     fn rows(&self, artefact: &Artefact, places: &[DVec3]) -> [usize; 2] {
         let [_, height] = self.setup.description().camera.resolution;
         let window = self.setup.detector().settings().window as f64;
@@ -284,7 +284,7 @@ impl ProfileSensor for SetupSensor<'_> {
     }
 }
 
-/// Speckle whose correlation nobody asks for: positions do not depend on it.
+/// Speckle whose correlation is not used: positions do not depend on it.
 struct Uncorrelated;
 
 impl SpeckleCorrelation for Uncorrelated {

@@ -2,18 +2,18 @@ use tem00_statistics::laws::{SpeckledLine, defocused_line_centroid_deviation};
 
 use crate::{MeasuredFrame, Measurement};
 
-/// The least width of a line that a blur leaves, in speckle sizes: a finer one has the noise of the
+/// The minimum width of a line after blur, in speckle sizes: a finer line has the noise of the
 /// blur's rim.
 const FINEST: f64 = 0.25;
 
 impl Measurement {
-    /// Returns how many times the speckle noise of a frame a camera's would be; `None` without
-    /// speckle or without points.
+    /// Returns the ratio of the speckle noise of a camera to the speckle noise of a frame; `None`
+    /// without speckle or without points.
     ///
-    /// A frame is a speckle pattern times the light of the line, which no diffraction blurs. What a
-    /// camera sees interferes: lines below two speckles in full width have more noise, and so have
-    /// those that are narrower than their blur out of focus. The uncertainty that is stated for a
-    /// point is that of the frame.
+    /// A frame is a speckle pattern times the light of the line, which no diffraction blurs. In a
+    /// camera the light interferes: lines below two speckles in full width have more noise, and so
+    /// have lines that are narrower than their blur out of focus. The uncertainty that is stated
+    /// for a point is the uncertainty in the frame.
     ///
     /// Both are laws of the centre of gravity of all light, at the middle point of the profile, for
     /// a single column.

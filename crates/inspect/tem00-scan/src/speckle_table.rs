@@ -28,8 +28,8 @@ pub(super) struct SpeckleTable {
     reach: [usize; 2],
 }
 
-/// Distance up to which covariances are kept, in speckle sizes: beyond, those of a row add up to
-/// less than 10⁻⁴ of the first.
+/// Distance up to which covariances are kept, in speckle sizes: beyond it, the covariances of a row
+/// add up to less than 10⁻⁴ of the first.
 const REACH: f64 = 12.0;
 
 /// The maximum number of pixels to either side that are kept.
@@ -42,7 +42,7 @@ impl SpeckleTable {
         Self::within(speckle, offset, speckle.size().map(pixels_within_reach))
     }
 
-    /// Integrates the covariances of the pixels of one column, up to so many rows apart.
+    /// Integrates the covariances of the pixels of one column, up to `rows` rows apart.
     pub(super) fn of_column(speckle: &SensorSpeckle, rows: usize) -> Self {
         Self::within(speckle, [0.0; 2], [0, rows])
     }

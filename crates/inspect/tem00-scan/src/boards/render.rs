@@ -13,16 +13,16 @@ use super::BoardPlan;
 use crate::Exposure;
 use crate::ScanError;
 
-/// The fraction of the pixels that may be brighter than the brightest grey value aimed at.
+/// The fraction of the pixels that may be brighter than the target grey value.
 const BRIGHTER: f64 = 1e-3;
 
-/// The part of the full scale at which the exposure aims.
+/// The fraction of the full scale at which the exposure aims.
 const AIM: f64 = 0.7;
 
 impl BoardPlan {
-    /// Renders the images of a board, as a camera gives them: under a white light, and in that of
-    /// the laser, with its speckle. Each is exposed so that a thousandth of its pixels exceeds 70 %
-    /// of the full scale.
+    /// Renders the images of a board, as a camera gives them: under a white light, and in the light
+    /// of the laser, with its speckle. Each is exposed so that a thousandth of its pixels exceeds
+    /// 70 % of the full scale.
     ///
     /// # Errors
     ///
@@ -82,9 +82,9 @@ impl BoardPlan {
 
     /// Calibrates with the images of all boards, in the order of the poses, as with photographs:
     /// corners and lines are found in the raw frames. Camera and laser plane are those of the
-    /// scene, to the errors of that.
+    /// scene, within the errors of the calibration.
     ///
-    /// The tilt of the sensor is sought where the camera of the scene has one, and as many
+    /// The tilt of the sensor is estimated where the camera of the scene has one, and as many
     /// coefficients of distortion as it has.
     ///
     /// # Errors

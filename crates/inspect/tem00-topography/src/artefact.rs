@@ -87,8 +87,8 @@ impl Artefact {
         }
     }
 
-    /// Returns places along x and heights there, the highest and the lowest of a section along x
-    /// among them.
+    /// Returns places along x and the heights there, including the highest and the lowest of a
+    /// section along x.
     pub fn heights_along(&self, y: f64) -> impl Iterator<Item = (f64, f64)> {
         const PLACES: u32 = 33;
         let deepest = match self.shape {

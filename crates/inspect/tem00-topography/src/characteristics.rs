@@ -3,7 +3,7 @@ use crate::{
     response, sphere,
 };
 
-/// The least number of repetitions, from which a spread can be told.
+/// The minimum number of repetitions from which a spread can be estimated.
 const MIN_REPETITIONS: usize = 4;
 
 /// Effort of a characterisation.

@@ -20,7 +20,7 @@ pub struct Extreme {
     pub by_chance: f64,
 }
 
-/// The groups that repetitions are put into.
+/// The maximum number of groups of repetitions.
 const MAX_GROUPS: usize = 16;
 
 /// Returns the statistic of all repetitions, and its standard uncertainty by leaving out one group
@@ -45,12 +45,12 @@ pub(crate) fn jackknife(
     })
 }
 
-/// Returns the mean; NaN of nothing.
+/// Returns the mean; NaN without values.
 pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Returns the length of the shortest interval that holds a part of the values, from 0 to 1.
+/// Returns the length of the shortest interval that holds a fraction of the values, from 0 to 1.
 pub(crate) fn shortest_interval(mut values: Vec<f64>, part: f64) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let held = to_usize((part * values.len() as f64).ceil());
@@ -60,7 +60,7 @@ pub(crate) fn shortest_interval(mut values: Vec<f64>, part: f64) -> Option<f64> 
         .min_by(f64::total_cmp)
 }
 
-/// Beyond so many standard deviations no normal number is met.
+/// The number of standard deviations beyond which no normal number is met.
 const FAR: f64 = 9.0;
 
 /// The distribution function of the standard normal law.
@@ -68,8 +68,8 @@ fn normal(t: f64) -> f64 {
     0.5 * libm::erfc(-t * core::f64::consts::FRAC_1_SQRT_2)
 }
 
-/// Returns the expected maximum of the amounts of independent standard normal numbers, E = ∫ 1 −
-/// (2Φ(t) − 1)ⁿ dt.
+/// Returns the expected maximum of the absolute values of independent standard normal numbers, E =
+/// ∫ 1 − (2Φ(t) − 1)ⁿ dt.
 pub(crate) fn expected_maximum(count: usize) -> f64 {
     let n = count as f64;
     let above = |t: f64| 1.0 - libm::pow(2.0 * normal(t) - 1.0, n);

@@ -10,27 +10,27 @@ use crate::{
 
 /// The profiles of each repetition: the level flat twice, and two that are tilted.
 pub(crate) const PROFILES: usize = 4;
-/// The places along a profile at which flatness is asked for.
+/// The number of places along a profile at which flatness is evaluated.
 const PLACES: usize = 64;
-/// The part of the profile, and of the range of heights, that a flat covers.
+/// The fraction of the profile, and of the range of heights, that a flat covers.
 const PART: f64 = 0.9;
-/// The steepest tilt, as a slope: that of 20°.
+/// The steepest tilt, as a slope: the slope of 20°.
 const STEEPEST: f64 = 0.364;
 
 /// Results of a flat: level, and tilted along and across the profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlatResult {
     /// The flatness deviation, in metres: the range of the mean heights at 64 places along the
-    /// profile, less the line of least squares through them.
+    /// profile, minus the least-squares line through them.
     pub flatness: Extreme,
     /// The measurement noise, in metres: the standard deviation of a height, each repetition on
     /// another piece of the flat. Speckle belongs to it.
     pub measurement_noise: Estimate,
     /// The instrument noise, in metres: the standard deviation of a height where nothing moves,
-    /// from the differences of pairs by √2. Speckle stays the same and does not show.
+    /// from the differences of pairs divided by √2. Speckle stays the same and does not show.
     pub instrument_noise: Estimate,
     /// The flat form, in metres, level and tilted along x and y: the distance of the planes,
-    /// parallel to that of least squares, that enclose 95 % of the points.
+    /// parallel to the least-squares plane, that enclose 95 % of the points.
     pub form: [Estimate; 3],
     /// The slopes of the tilted flats, along x and y.
     pub slopes: [f64; 2],
@@ -80,7 +80,7 @@ impl FlatResult {
     }
 }
 
-/// The tilts along x and y: as steep as allowed, or as the heights of the range have room for.
+/// The tilts along x and y: as steep as allowed, or as steep as the range of heights has room for.
 fn slopes(field: &Field, flat: &Artefact) -> [f64; 2] {
     let room = PART * (field.heights[1] - field.heights[0]);
     flat.size.map(|side| STEEPEST.min(room / side))

@@ -13,12 +13,12 @@ const WIDTHS: i32 = 12;
 const COLUMNS: [f64; 2] = [16.0, 16.0];
 /// Widest groove and land between grooves across the scan, in line thicknesses.
 const THICKNESSES: [f64; 2] = [4.0, 8.0];
-/// The part of the field that a comb may cover.
+/// The fraction of the field that a comb may cover.
 const PART: f64 = 0.9;
-/// The most copies of a comb side by side.
+/// The maximum number of copies of a comb side by side.
 const MAX_COPIES: usize = 8;
-/// The columns that grooves across the scan are averaged over, as a part of the profile, and the
-/// groups they form.
+/// The columns that grooves across the scan are averaged over, as a fraction of the profile, and
+/// the groups they form.
 const LENGTH: f64 = 0.25;
 const GROUPS: usize = 16;
 /// The response at the resolution.
@@ -35,7 +35,7 @@ pub(crate) const PROFILES: usize = (2 * WIDTHS) as usize + STEPS as usize;
 pub struct GrooveResponse {
     /// The width, in metres.
     pub width: f64,
-    /// The measured depth in the middle of the groove by the true depth.
+    /// The measured depth in the middle of the groove divided by the true depth.
     pub response: Estimate,
 }
 
@@ -227,8 +227,8 @@ impl Comb {
         (!heights.is_empty()).then(|| mean(&heights))
     }
 
-    /// Puts the responses, as a function of the width's number and of the repetitions that count,
-    /// together.
+    /// Assembles the results from the responses, a function of the width's number and of the
+    /// repetitions that count.
     fn result(
         &self,
         field: &Field,
@@ -307,7 +307,8 @@ fn floor(profile: &[(f64, f64)], groove: &Groove) -> Option<f64> {
     Some(nearest.1)
 }
 
-/// The place of a groove, half-way between where the profile is half as deep, less where it is.
+/// The place of a groove, half-way between the points where the profile is half as deep, minus its
+/// true place.
 fn place_error(profile: &[(f64, f64)], groove: &Groove, depth: f64) -> Option<f64> {
     let below = |z: f64| z < -HALF * depth;
     let crossed = |a: (f64, f64), b: (f64, f64)| {

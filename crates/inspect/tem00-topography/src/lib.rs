@@ -4,7 +4,7 @@
 //!
 //! - Lengths in metres. x runs along the profile, y along the scan, z upwards. Points are in the
 //!   coordinates of the artefact.
-//! - Uncertainties are standard uncertainties of what was measured, from the spread between
+//! - Uncertainties are standard uncertainties of the measured quantities, from the spread between
 //!   repetitions (delete-a-group jackknife; J. W. Tukey, Ann. Math. Stat. 29, 614, 1958); the
 //!   artefacts are known exactly.
 //!
@@ -12,14 +12,14 @@
 //!
 //! - [`characterise`] lets a [`ProfileSensor`] measure each [`Artefact`] and returns
 //!   [`Characteristics`].
-//! - [`Response`], [`FlatResult`], [`SphereResult`] and [`GrooveResult`] are what each artefact
-//!   says, with the definitions.
+//! - [`Response`], [`FlatResult`], [`SphereResult`] and [`GrooveResult`] are the results of each
+//!   artefact, with the definitions.
 //!
 //! # Scope and non-goals
 //!
-//! Sensors of profiles that are moved along y with an exact stage: its errors are not the sensor's.
-//! Where the text of a standard leaves a choice, the definition of this crate is stated at the
-//! result.
+//! Profile sensors that are moved along y with an exact stage: the errors of a stage do not belong
+//! to the sensor. Where the text of a standard leaves a choice, the definition of this crate is
+//! stated at the result.
 
 mod artefact;
 mod characteristics;

@@ -8,9 +8,9 @@ use crate::{
 
 /// The number of heights over the range.
 pub(crate) const HEIGHTS: u32 = 9;
-/// The part of the range that is left out, half of it at either end.
+/// The fraction of the range that is left out, half of it at either end.
 const MARGIN: f64 = 0.1;
-/// The part of the profile that the flat covers.
+/// The fraction of the profile that the flat covers.
 const PART: f64 = 0.125;
 
 /// Response of a sensor to a level flat that is lifted through its range.
@@ -18,7 +18,7 @@ const PART: f64 = 0.125;
 pub struct Response {
     /// The heights of the flat, in metres.
     pub heights: Vec<f64>,
-    /// The mean measured heights less these, in metres.
+    /// The mean measured heights minus the heights of the flat, in metres.
     pub deviations: Vec<f64>,
     /// The amplification coefficient: the slope of the line of least squares of measured over true
     /// heights.
@@ -125,14 +125,14 @@ pub(crate) fn level_flat(field: &Field, width: f64, repetitions: usize) -> Artef
     }
 }
 
-/// The places of repetitions, each of which the line finds with speckle of its own.
+/// The places of repetitions, each of which the line finds with new speckle.
 pub(crate) fn aside(field: &Field, repetitions: usize) -> impl Iterator<Item = DVec3> {
     let step = step_aside(field);
     let middle = 0.5 * (repetitions as f64 - 1.0);
     (0..repetitions).map(move |index| DVec3::new(0.0, (index as f64 - middle) * step, 0.0))
 }
 
-/// Beyond so many thicknesses none of the light falls on what was lit before.
+/// Returns the step beyond which none of the light falls on the area that was lit before.
 fn step_aside(field: &Field) -> f64 {
     2.0 * field.thickness
 }

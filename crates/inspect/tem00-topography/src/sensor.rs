@@ -22,23 +22,23 @@ pub struct Field {
     pub column: f64,
     /// The thickness of the line across the profile.
     pub thickness: f64,
-    /// The depth of grooves, small against that at which the sensor tells two lines apart.
+    /// The depth of grooves, small compared with the depth at which the sensor separates two lines.
     pub groove_depth: f64,
 }
 
-/// Sensor that measures profiles of what is put under it.
+/// Sensor that measures profiles of the object under it.
 pub trait ProfileSensor {
     /// The reason why nothing could be measured.
     type Error;
 
-    /// Returns what the sensor reaches.
+    /// Returns the field of the sensor.
     fn field(&self) -> Field;
 
     /// Measures the section y = 0 through an artefact at each of its places: where the origin of
     /// the artefact stands, in metres.
     ///
-    /// Where a place is the same as that before, nothing moves: a repetition has the same speckle
-    /// and new noise. Points that the sensor does not trust are left out.
+    /// Where a place is the same as the place before, nothing moves: a repetition has the same
+    /// speckle and new noise. Points that the sensor does not trust are left out.
     ///
     /// # Errors
     ///

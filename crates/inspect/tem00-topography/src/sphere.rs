@@ -10,10 +10,10 @@ use crate::{
 pub(crate) const PROFILES: u32 = 64;
 /// The half-angle of the cap that is measured, in radians: 45°.
 const CAP: f64 = core::f64::consts::FRAC_PI_4;
-/// The rings of places that stand for the cap: their angle, as a part of the cap's, and the number
-/// of places.
+/// The rings of places that stand for the cap: their angle, as a fraction of the cap's, and the
+/// number of places.
 const RINGS: [(f64, u32); 3] = [(0.0, 1), (0.5, 8), (0.85, 16)];
-/// The half-angle of the region of one place, as a part of the cap's.
+/// The half-angle of the region of one place, as a fraction of the cap's.
 const REGION: f64 = 0.1;
 
 /// Results of a sphere, from the points of its upper cap of 45° half-angle.
@@ -22,10 +22,10 @@ pub struct SphereResult {
     /// The diameter of the sphere, in metres.
     pub diameter: f64,
     /// The probing size error, in metres: the diameter of the sphere of least squares through all
-    /// points, less the true one.
+    /// points, minus the true diameter.
     pub size: Estimate,
     /// The probing form error of 95 % of the points, in metres: the least distance of two spheres
-    /// about that centre that enclose them.
+    /// about the centre of that sphere that enclose them.
     pub form: Estimate,
     /// The probing form error of 25 places, in metres: the range of the distances from the sphere
     /// of least squares through them, each the mean of the points of a region.
@@ -103,7 +103,7 @@ fn top(field: &Field, radius: f64) -> f64 {
     0.5 * (low + high) + 0.5 * radius * (1.0 - libm::cos(CAP))
 }
 
-/// The means of the points about each place on the cap; `None` if one has none.
+/// The means of the points about each place on the cap; `None` if a place has none.
 fn at_places(points: &[DVec3], sphere: &FittedSphere) -> Option<Vec<DVec3>> {
     let mean_about = |direction: DVec3| {
         let min = libm::cos(REGION * CAP);

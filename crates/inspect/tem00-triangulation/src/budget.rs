@@ -17,29 +17,30 @@ pub use self::{
 /// The uncertainty budget of a height, after the GUM.
 ///
 /// To first order the position of a line moves with the grey values of its column, δy = Σ gᵢ δIᵢ,
-/// whatever the detector; the sensitivities gᵢ are those of the noise-free column. Each source adds
-/// a variance ([`PositionNoise`](crate::PositionNoise)), which the geometry turns into one of
-/// height. They are means over the position of the line within a pixel.
+/// for any detector; the sensitivities gᵢ are those of the noise-free column. Each source adds a
+/// variance ([`PositionNoise`](crate::PositionNoise)), which the geometry converts to a variance of
+/// the height. The variances are means over the position of the line within a pixel.
 ///
 /// # Averages
 ///
 /// Over N columns and M frames shot noise and dark noise fall with √(N M), and so does quantisation
 /// as long as the noise exceeds 0.3 grey values, below which all frames round alike (and pixels
-/// that are equally dark, too: then rounding moves a line by less than said). PRNU and DSNU fall
-/// with √N: pixels stay what they are from frame to frame. Speckle of neighbouring columns goes
-/// together as far as a speckle reaches; over frames it falls with √M only if each has speckle of
-/// its own. Detector bias and calibration do not average out.
+/// that are equally dark, too: then rounding moves a line by less than stated). PRNU and DSNU fall
+/// with √N: pixels stay what they are from frame to frame. Speckle noise of neighbouring columns is
+/// correlated over the length of a speckle; over frames it falls with √M only if each frame has its
+/// own speckle. Detector bias and calibration do not average out.
 ///
 /// # Validity
 ///
-/// First order in the fluctuations. Against images that were summed wave by wave the speckle of a
-/// centre of gravity is within 5 % for lines of at least [`LEAST_SPECKLES`](Self::LEAST_SPECKLES)
-/// in full width, in and out of focus, in single columns and means of a few; of sixteen it is 3 to
-/// 6 % too large. It is too small for thinner lines, by 14 % at 1.2 speckles and a fifth at 0.8;
-/// about a third too large for detectors that look at three pixels, and half for Steger's, which
-/// also looks at neighbouring columns. [`simulate`], whose light interferes as waves do, tells how
-/// far, and whether all columns have a line that can be trusted. Pixels count as linear, also where
-/// bright grains of speckle exceed the sensor's range; see [`Setup::light_level`].
+/// First order in the fluctuations. Compared with images that were summed wave by wave, the speckle
+/// noise of a centre of gravity is within 5 % for lines of at least
+/// [`LEAST_SPECKLES`](Self::LEAST_SPECKLES) in full width, in and out of focus, in single columns
+/// and means of a few; for means of sixteen it is 3 to 6 % too large. It is too small for thinner
+/// lines, by 14 % at 1.2 speckles and a fifth at 0.8; about a third too large for detectors that
+/// use three pixels, and half for Steger's, which also uses neighbouring columns. [`simulate`],
+/// whose light interferes as waves do, shows by how much, and whether all columns have a line that
+/// can be trusted. Pixels count as linear, also where bright grains of speckle exceed the sensor's
+/// range; see [`Setup::light_level`].
 ///
 /// The [front page](crate) has an example.
 ///
@@ -66,7 +67,7 @@ impl Budget {
     /// # Errors
     ///
     /// Returns [`TriangulationError::NothingMeasured`] if the line
-    /// [saturates](LightLevel::Saturated) the sensor, or if the detector finds none even without
+    /// [saturates](LightLevel::Saturated) the sensor, or if the detector finds no line even without
     /// noise.
     pub fn new(setup: &Setup) -> Result<Self, TriangulationError> {
         Self::at_height(setup, 0.0)
@@ -191,7 +192,7 @@ impl Budget {
     }
 
     /// Returns the standard uncertainty by speckle of a spot instead of a line after Dorsch,
-    /// Häusler and Herrmann, in metres: the classical reference. It knows no averages.
+    /// Häusler and Herrmann, in metres: the classical reference. It does not include averages.
     pub const fn dorsch(&self) -> f64 {
         self.dorsch
     }

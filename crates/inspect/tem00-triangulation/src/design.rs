@@ -35,7 +35,7 @@ pub enum Objective {
 }
 
 impl Objective {
-    /// Returns the figure that is made small.
+    /// Returns the figure that is minimised.
     pub const fn figure(self) -> DesignFigure {
         match self {
             Self::Uncertainty => DesignFigure::Uncertainty,
@@ -47,13 +47,13 @@ impl Objective {
 /// Task of a search: a set-up, what is varied, the constraints and the objective.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignQuestion {
-    /// The set-up to begin with: what is not varied stays as it is here.
+    /// The set-up to begin with: quantities that are not varied keep their values.
     pub base: SetupDescription,
     /// The varied parameters. The last one varies fastest.
     pub sweeps: Vec<Sweep>,
     /// The constraints that a set-up must keep.
     pub constraints: Vec<Constraint>,
-    /// The figure that is made small.
+    /// The figure that is minimised.
     pub objective: Objective,
     /// The maximum number of set-ups that may be tried.
     pub max_setups: usize,
@@ -64,7 +64,7 @@ pub struct DesignQuestion {
 /// # What pulls which way
 ///
 /// The pupil decides between depth of field and noise. With the f-number F the speckle size
-/// `h = λ F (1 + m)` grows, and the noise of a line that is much wider than a speckle with it:
+/// `h = λ F (1 + m)` grows, and with it the noise of a line that is much wider than a speckle:
 ///
 /// ```text
 /// speckle   σ = √(w ℓ / (8√π)) / (m sin θ)   ∝ √F for rows finer than a speckle (ℓ = 32 h / 3π²),
@@ -77,8 +77,8 @@ pub struct DesignQuestion {
 ///
 /// # Validity
 ///
-/// Uncertainties are those of the first-order budget on the reference plane; within the depth of
-/// field they grow by the widening of line and image there, √2 at most each.
+/// Uncertainties come from the first-order budget on the reference plane; within the depth of field
+/// they grow by the widening of line and image there, √2 at most each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignSearch {
     question: DesignQuestion,
@@ -127,8 +127,8 @@ impl DesignSearch {
         self.count
     }
 
-    /// Returns the set-up of a combination, whether or not it is possible; they are counted from 0,
-    /// the last parameter fastest.
+    /// Returns the set-up of a combination, whether or not it is possible; combinations are counted
+    /// from 0, the last parameter fastest.
     ///
     /// # Panics
     ///
@@ -148,7 +148,7 @@ impl DesignSearch {
 
     /// Tries all combinations, on all threads of the current pool.
     ///
-    /// `progress` is told, from any thread, the number of set-ups done since its last call. The
+    /// `progress` receives, from any thread, the number of set-ups done since its last call. The
     /// outcome is the same, bit by bit, for any number of threads.
     ///
     /// # Errors

@@ -55,11 +55,11 @@ impl LineDetector {
     ///
     /// A line is where the column, smoothed over about a quarter of the window, has a maximum that
     /// stands out of the noise by six of its standard deviations. Of maxima closer than half a
-    /// window the greater one counts, and of all the [`max_lines`](DetectorSettings::max_lines)
-    /// greatest. The background is the median of the pixels outside of the windows; where they are
-    /// fewer than eight, the lowest decile of the column. Lines less than
-    /// [`min_peak`](DetectorSettings::min_peak) above it are left out. Windows end where the next
-    /// line begins, at the least value between both.
+    /// window the greater one counts, and of all maxima the
+    /// [`max_lines`](DetectorSettings::max_lines) greatest. The background is the median of the
+    /// pixels outside of the windows; where they are fewer than eight, the lowest decile of the
+    /// column. Lines less than [`min_peak`](DetectorSettings::min_peak) above it are left out.
+    /// Windows end where the next line begins, at the smallest value between the two.
     pub fn detect_column(&self, column: &[f32]) -> Vec<LinePoint> {
         self.in_column(column, &[])
     }
@@ -67,20 +67,21 @@ impl LineDetector {
     /// Finds the lines of an image: for each column the points on them, from the top.
     ///
     /// Points of neighbouring columns that continue each other belong to the same
-    /// [line](LinePoint::line). The straight line through the last 16 points of a line tells where
-    /// it goes on; a point belongs to the nearest one within a quarter of a window of that, and 2
-    /// pixels at least, of the lines that were seen in the column before; else to one that was seen
-    /// earlier. A line may miss points for two windows; behind a longer gap, or a step higher than
-    /// a quarter of a window, it is another one. Lines that cross keep their numbers: where they
-    /// come close they go on as they came. Near the crossing both are seen as one, and a point
-    /// belongs to the one that it is nearer to. Lines are numbered from the top, by their mean
-    /// positions; those of less than a tenth of the points of the longest come after all others.
+    /// [line](LinePoint::line). The straight line through the last 16 points of a line predicts
+    /// where it continues; a point belongs to the nearest prediction within a quarter of a window,
+    /// and 2 pixels at least, of the lines that were seen in the column before; else to a line that
+    /// was seen earlier. A line may miss points for two windows; after a longer gap, or a step
+    /// higher than a quarter of a window, it counts as another line. Lines that cross keep their
+    /// numbers: where they come close, they continue in their directions. Near the crossing both
+    /// are seen as one, and a point belongs to the line that is nearer. Lines are numbered from the
+    /// top, by their mean positions; lines with less than a tenth of the points of the longest line
+    /// come after all others.
     pub fn detect(&self, image: &Grid<f32>) -> Vec<Vec<LinePoint>> {
         self.find(&turned(image), None)
     }
 
     /// Finds the lines of an image as [`detect`](Self::detect) does, where it is known which pixels
-    /// are saturated: by their colours, for instance, of which the image is the mean.
+    /// are saturated: for instance, from the colours of which the image is the mean.
     ///
     /// A pixel is saturated if it is marked or reaches
     /// [`saturation`](DetectorSettings::saturation).

@@ -4,7 +4,7 @@ use tem00_numerics::{Refusal, check};
 
 use crate::TriangulationError;
 
-/// A triangulation sensor as the classical limit of its uncertainty sees it.
+/// A triangulation sensor, by the parameters of the classical limit of its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dorsch {
     /// The vacuum wavelength of the laser, in metres.
@@ -25,9 +25,9 @@ impl Dorsch {
     /// δz = C λ / (2π sin u sin θ)
     /// ```
     ///
-    /// However bright the spot and however good the sensor, speckle leaves this. A *line* that is
-    /// read in single rows is another matter: its noise grows with the root of its width, is the
-    /// same as that of a spot at a half-width of some 1.3 speckles and larger beyond.
+    /// Speckle leaves this deviation, however bright the spot and however good the sensor. A *line*
+    /// that is read in single rows behaves differently: its noise grows with the root of its width,
+    /// equals the noise of a spot at a half-width of some 1.3 speckles and is larger beyond.
     ///
     /// # Validity
     ///

@@ -8,14 +8,14 @@ use tem00_uncertainty::{Distribution, UncertaintyError};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum TriangulationError {
-    /// A vector that must point somewhere is zero, not finite or parallel to its partner.
+    /// A vector that needs a direction is zero, not finite or parallel to its partner.
     Direction {
         /// The name of the parameter.
         parameter: &'static str,
         /// The allowed values.
         allowed: &'static str,
     },
-    /// There is not enough of something that was counted.
+    /// A counted quantity is too small.
     TooFew {
         /// The counted things, in the plural.
         what: &'static str,
@@ -24,7 +24,7 @@ pub enum TriangulationError {
         /// The minimum number.
         needed: usize,
     },
-    /// An image does not show the checkerboard that was asked for.
+    /// An image does not show the requested checkerboard.
     NoBoard {
         /// The numbers of inner corners along its rows and its columns.
         corners: [usize; 2],

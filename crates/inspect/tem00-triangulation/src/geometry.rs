@@ -6,7 +6,7 @@ use tem00_camera::Camera;
 
 pub use self::{plane::LaserPlane, profile::ProfilePoint};
 
-/// A camera and a laser plane: what turns a position in the image into a point in space.
+/// A camera and a laser plane, which turn a position in the image into a point in space.
 ///
 /// ```text
 /// P = O + s d        s = n·(Q − O) / (n·d)
@@ -18,9 +18,9 @@ pub use self::{plane::LaserPlane, profile::ProfilePoint};
 ///
 /// # Validity
 ///
-/// The plane is thin and flat, and the image point of the line is that of its chief ray. What moves
-/// the centre of a line of finite width, be it speckle or a change of reflectance, is not part of
-/// the geometry.
+/// The plane is thin and flat, and the image point of the line is the image point of its chief ray.
+/// Effects that move the centre of a line of finite width, such as speckle or a change of
+/// reflectance, are not part of the geometry.
 ///
 /// # Examples
 ///
@@ -70,7 +70,7 @@ pub struct UncertainPoint {
     pub uncertainty: DVec3,
     /// The standard uncertainty along that trace, in metres: the root of the sum of their squares.
     pub along: f64,
-    /// The unit direction of that trace in space, towards what is higher in the image.
+    /// The unit direction of that trace in space, towards higher points in the image.
     pub direction: DVec3,
 }
 
@@ -118,8 +118,8 @@ impl Triangulator {
     /// Returns the point that is seen at an image point whose position along the column has the
     /// standard uncertainty `along_column`, in pixels, or `None` where there is no point.
     ///
-    /// To first order. Of all that makes a point uncertain only the position of the line is looked
-    /// at; for camera and plane see the calibration.
+    /// To first order. Only the uncertainty of the line's position counts; for camera and plane see
+    /// the calibration.
     pub fn point_with_uncertainty(
         &self,
         pixel: DVec2,

@@ -5,7 +5,7 @@
 //! - Lengths are in metres, angles in radians, times in seconds, `f64`; images are `f32` or `u16`.
 //! - Positions in an image are in pixels, x to the right and y *down*; the centre of the first
 //!   pixel is at 0.5, its edges at 0 and 1.
-//! - A line runs from left to right in the image; each *column* tells its position, along y.
+//! - A line runs from left to right in the image; each *column* gives its position, along y.
 //! - Widths of lines are full widths between the points of 1/e², four standard deviations of a
 //!   Gaussian.
 //! - Uncertainties are standard uncertainties unless called expanded.

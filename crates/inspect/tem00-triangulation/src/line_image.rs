@@ -18,9 +18,9 @@ use crate::{
 
 /// Minimum number of samples of a speckle along each axis.
 ///
-/// A pixel is a sum over its samples. To second order that lets frequencies f pass by the factor
-/// `1 + (π f s)²/6` too well, with the spacing s: at 6 samples, 2 % of amplitude for the average
-/// frequency of speckle in pixels smaller than it, and less in larger ones.
+/// A pixel is a sum over its samples. To second order the sum passes frequencies f by the factor `1
+/// + (π f s)²/6` too well, with the spacing s: at 6 samples, 2 % of amplitude for the average
+/// frequency of speckle in pixels smaller than a speckle, and less in larger pixels.
 const SAMPLES_PER_SPECKLE: f64 = 6.0;
 
 /// The maximum number of samples of a pattern.
@@ -67,11 +67,11 @@ pub struct LineImageData {
 ///
 /// # Validity
 ///
-/// Fully developed speckle of a surface all of which is as far out of focus. Each pixel is a sum
-/// over whole samples, of which a speckle has six at least. Speckle that the tilt of the sensor
-/// stretches along the columns is matched by unequal numbers of samples along and across, which
-/// leaves at most 2 % of its size. The position of the line changes little over a speckle along the
-/// rows.
+/// Fully developed speckle of a surface that is equally far out of focus everywhere. Each pixel is
+/// a sum over whole samples, of which a speckle has six at least. Speckle that the tilt of the
+/// sensor stretches along the columns is matched by unequal numbers of samples along and across,
+/// which leaves at most 2 % of its size. The position of the line changes little over a speckle
+/// along the rows.
 #[derive(Clone, Debug)]
 pub struct LineImage {
     data: LineImageData,
@@ -213,8 +213,8 @@ impl LineImage {
     /// Returns the mean numbers of electrons that a surface of any shape frees behind the lens,
     /// with the speckle of a seed.
     ///
-    /// `light` has the electrons of the image that a lens without blur would make, in some parts of
-    /// each pixel along both axes, of which a speckle needs [two](Self::parts_of_pixel). All of the
+    /// `light` has the electrons of the image that a lens without blur would make, in several parts
+    /// of each pixel along both axes; a speckle needs [two](Self::parts_of_pixel). All of the
     /// surface counts as equally far out of focus.
     ///
     /// # Errors
@@ -291,8 +291,8 @@ impl LineImage {
         Ok(image)
     }
 
-    /// Adds the mean of a pattern, of so many samples in a pixel, over the sensitive part of each
-    /// pixel, times `scale`.
+    /// Adds the mean of a pattern, of `nx` × `ny` samples in a pixel, over the sensitive part of
+    /// each pixel, times `scale`.
     fn add_pixels(
         &self,
         image: &mut Grid<f32>,
@@ -319,7 +319,7 @@ fn fractions(data: &LineImageData, modes: &[f64]) -> Result<Vec<f64>, SpeckleErr
     incoherent_fractions(data.patterns as usize, data.polarisation, modes)
 }
 
-/// Returns the part of each sample of a pixel that lies within its sensitive part.
+/// Returns the fraction of each sample of a pixel that lies within its sensitive part.
 fn cells(samples: usize, side: f64) -> Vec<f64> {
     let [low, high] = [0.5 - 0.5 * side, 0.5 + 0.5 * side];
     let edge = |index: usize| (index as f64 / samples as f64).clamp(low, high);

@@ -31,7 +31,8 @@ pub struct SetupUncertainty {
 }
 
 impl SetupUncertainty {
-    /// Returns whether a height is stated, or its uncertainty follows from that of a quantity.
+    /// Returns whether a height is stated, or its uncertainty follows from the uncertainty of a
+    /// quantity.
     pub const fn states_height(&self) -> bool {
         self.height.is_some() || !self.quantities.is_empty()
     }
@@ -87,16 +88,16 @@ impl MeasurementInput {
 /// ```
 ///
 /// `v` is the row at which the set-up as it is described sees the height, known exactly; the `eₖ`
-/// are the errors of that position by the terms of the [`Budget`], of no mean; `e_c` is that of the
-/// calibration. `g` meets the line of sight with the laser plane. Distance, angle, focal length,
-/// pixel pitch and principal row, and the offset and tilt of the laser plane, change the scale of
-/// heights, or shift all of them; so does a change of temperature where it expands base or mount.
-/// Heights count from the point of the laser plane that the optical axis is to meet: where distance
-/// and angle change, the camera still looks at it.
+/// are the errors of that position by the terms of the [`Budget`], of mean zero; `e_c` is the error
+/// of the calibration. `g` meets the line of sight with the laser plane. Distance, angle, focal
+/// length, pixel pitch and principal row, and the offset and tilt of the laser plane, change the
+/// scale of heights, or shift all of them; so does a change of temperature where it expands base or
+/// mount. Heights count from the point of the laser plane that the optical axis is to meet: where
+/// distance and angle change, the camera still looks at it.
 ///
-/// What a quantity does to the noise alone, such as the wavelength, it does to the standard
-/// uncertainties of the terms: they change in proportion to it, as their differences over ± one
-/// standard uncertainty say. To first order that changes no height.
+/// A quantity that affects only the noise, such as the wavelength, changes the standard
+/// uncertainties of the terms: they change in proportion to the quantity, by their differences over
+/// ± one standard uncertainty. To first order this changes no height.
 ///
 /// # Examples
 ///
@@ -200,14 +201,14 @@ impl Measurement {
         self.speckles
     }
 
-    /// Returns what the inputs are, in their order: first the quantities of the set-up, then the
-    /// terms of the budget that are not zero.
+    /// Returns the sources of the inputs, in their order: first the quantities of the set-up, then
+    /// the terms of the budget that are not zero.
     pub fn sources(&self) -> &[MeasurementInput] {
         &self.sources
     }
 
     /// Returns the inputs: quantities in SI units; errors of the position of the line in pixels,
-    /// that of the calibration in metres.
+    /// the error of the calibration in metres.
     pub const fn inputs(&self) -> &Inputs {
         &self.inputs
     }
@@ -250,7 +251,7 @@ impl Measurement {
         found.map_err(|error| self.named(error))
     }
 
-    /// Returns the parts of the variance that the inputs make.
+    /// Returns the fractions of the variance that the inputs contribute.
     ///
     /// # Errors
     ///
@@ -313,8 +314,8 @@ fn height_at(description: &SetupDescription, row: f64) -> Option<f64> {
     Some(point.z)
 }
 
-/// Returns the error by a term: that of a detector is even over a period, all others are sums of
-/// many.
+/// Returns the error by a term: the error of a detector is even over a period, all others are sums
+/// of many errors.
 fn error_of(term: &BudgetTerm) -> Result<Input, TriangulationError> {
     let distribution = match term.distribution {
         ErrorDistribution::Periodic => Distribution::Arcsine,

@@ -80,8 +80,8 @@ impl<C: PixelCovariance> PixelCovariance for Option<C> {
 pub struct ColumnSpeckle<'a> {
     /// Its covariance for one polarised pattern.
     pub autocovariance: &'a PixelAutocovariance,
-    /// The variance of the speckle factor in a point: (1 + P²)/2 by the number of patterns, for
-    /// light of the degree of polarisation P.
+    /// The variance of the speckle factor in a point: (1 + P²)/2 divided by the number of patterns,
+    /// for light of the degree of polarisation P.
     pub variance: f64,
 }
 
@@ -146,7 +146,7 @@ impl PositionNoise {
         self.with(self, |term, _| factor * term)
     }
 
-    /// Returns what becomes of two noises, term by term.
+    /// Combines two noises, term by term.
     pub(crate) fn with(self, other: Self, of: impl Fn(f64, f64) -> f64) -> Self {
         Self {
             speckle: of(self.speckle, other.speckle),
@@ -163,8 +163,8 @@ impl PositionNoise {
 /// pixels.
 ///
 /// `displacement` leads from the pattern in the first column to that in the second, in pixels to
-/// the right and down: for two columns of one image, their distance; for two frames, what the
-/// pattern has moved in between.
+/// the right and down: for two columns of one image, their distance; for two frames, the motion of
+/// the pattern in between.
 ///
 /// # Panics
 ///

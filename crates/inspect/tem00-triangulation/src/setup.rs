@@ -48,9 +48,9 @@ pub(crate) const SPECKLE_SIZES: (f64, f64) = (1.0 / 16.0, 64.0);
 /// ```
 ///
 /// x is to the right in the image. A height z moves the line *up* in the image, to first order by
-/// `m z sin θ`; all of the geometry is taken from the camera's projection, not from that. The plane
-/// of the laser may stand beside y = 0, or lean; see [`LaserLineData`]. With the tilt τ it is at
-/// the angle θ + τ to the optical axis.
+/// `m z sin θ`; all of the geometry is taken from the camera's projection, not from this first
+/// order. The plane of the laser may stand beside y = 0, or lean; see [`LaserLineData`]. With the
+/// tilt τ it is at the angle θ + τ to the optical axis.
 ///
 /// # Validity
 ///
@@ -116,7 +116,7 @@ impl Setup {
         &self.description
     }
 
-    /// Returns the description with the exposure time that it has: other values do not change that.
+    /// Returns the description with the exposure time that it has: other values do not change it.
     pub(crate) fn exposed_description(&self) -> SetupDescription {
         SetupDescription {
             auto_exposure: false,
@@ -124,8 +124,8 @@ impl Setup {
         }
     }
 
-    /// Returns what a resolution cell of the camera holds of the reference plane, or `None` if its
-    /// paths have no law.
+    /// Returns the resolution cell of the camera on the reference plane, or `None` if its paths
+    /// have no law.
     pub(crate) fn resolution_cell(&self) -> Option<ResolutionCell> {
         let (camera, wavelength) = (self.camera(), self.description.laser.light.wavelength);
         let geometry = camera.imaging_geometry_at(
@@ -146,7 +146,7 @@ impl Setup {
     }
 
     /// Returns the detector. It takes a pixel for saturated at the sensor's largest grey value, or
-    /// that of its full well if it is less.
+    /// at the grey value of its full well if that is less.
     pub const fn detector(&self) -> &LineDetector {
         &self.detector
     }
@@ -234,7 +234,7 @@ fn saturation(sensor: &Sensor) -> f64 {
 ///
 /// The plane in focus of a sensor tilted by τ is turned by τ′ the other way,
 /// `tan τ′ = (L/d) tan τ`; the laser plane, which leans by ε, is a right angle less θ + ε away from
-/// the plane across the axis, and what is higher in the image is nearer:
+/// the plane across the axis, and higher points in the image are nearer:
 ///
 /// ```text
 /// tan τ = −m / tan(θ + ε)

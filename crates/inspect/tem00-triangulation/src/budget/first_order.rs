@@ -13,7 +13,7 @@ const PHASES: u32 = 8;
 const BIAS_PHASES: u32 = 32;
 /// The largest distance of two pixels whose covariance counts, in speckle sizes.
 const LONGEST: f64 = 4000.0;
-/// The noise, in grey values, from which on rounding is as random as it.
+/// The noise, in grey values, from which on rounding is as random as the noise.
 const DITHER: f64 = 0.3;
 
 /// A column of the image around the line, without noise.
@@ -67,7 +67,7 @@ impl NoiseFreeColumn {
     }
 }
 
-/// The image of a line in columns of so many rows.
+/// The image of a line in columns of `rows` rows.
 #[derive(Clone, Debug)]
 pub(super) struct ColumnProfile {
     rows: usize,
@@ -145,8 +145,8 @@ pub(super) fn terms(setup: &Setup, line: &ImagedLine, law: f64) -> Option<Vec<Bu
 
 /// Returns the variances of the position of the line after all averages, in square pixels.
 ///
-/// A speckle pattern times the image of the line tells how detector and window weigh the light; how
-/// much speckle moves all of it is the law of a line that a lens images.
+/// A speckle pattern times the image of the line shows how detector and window weigh the light; the
+/// law of a line that a lens images gives how much speckle moves all of the light.
 fn position_noise(
     setup: &Setup,
     line: &ImagedLine,
@@ -180,8 +180,8 @@ fn position_noise(
     Some(averaged(d, mean))
 }
 
-/// Divides by the numbers of columns and frames that each source is independent in; of the columns,
-/// those of speckle are counted already.
+/// Divides by the numbers of columns and frames that each source is independent in; the columns of
+/// speckle are counted already.
 fn averaged(d: &SetupDescription, noise: PositionNoise) -> PositionNoise {
     let columns = f64::from(d.average.columns);
     let frames = f64::from(d.average.frames);
@@ -218,7 +218,7 @@ fn autocovariance(d: &SetupDescription, line: &ImagedLine) -> Option<PixelAutoco
     .ok()
 }
 
-/// Returns the root mean square of what the detector errs by on noise-free lines, in pixels.
+/// Returns the root mean square error of the detector on noise-free lines, in pixels.
 fn detector_bias(setup: &Setup, profile: &ColumnProfile) -> Option<f64> {
     let mut squares = 0.0;
     for phase in 0..BIAS_PHASES {

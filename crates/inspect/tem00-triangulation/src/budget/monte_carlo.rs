@@ -28,7 +28,7 @@ pub struct SimulationOptions {
     /// The number of trials, at least 10: each has a position of the line within a pixel, speckle
     /// and a camera of its own, and as many frames as are averaged.
     pub trials: u32,
-    /// The seed of everything random.
+    /// The seed of all random numbers.
     pub seed: u64,
 }
 
@@ -78,15 +78,15 @@ impl Simulation {
         found.and_then(|(_, estimate)| *estimate)
     }
 
-    /// Returns the standard uncertainty by everything at once but the calibration, or `None` where
-    /// fewer than half of the columns have a line that can be trusted.
+    /// Returns the standard uncertainty by all sources at once except the calibration, or `None`
+    /// where fewer than half of the columns have a line that can be trusted.
     pub const fn total(&self) -> Option<MonteCarloEstimate> {
         self.total
     }
 
-    /// Returns the expanded uncertainty of the height for a coverage of 95 %, in metres, by
-    /// everything at once with a normal calibration: that many of the errors are no larger. `None`
-    /// as for the total.
+    /// Returns the expanded uncertainty of the height for a coverage of 95 %, in metres, by all
+    /// sources at once with a normal calibration: 95 % of the errors are no larger. `None` as for
+    /// the total.
     ///
     /// Errors of lines of few speckles are not normal: 1.96 standard uncertainties hold 94 to 97 %
     /// of them.
@@ -103,9 +103,9 @@ impl Simulation {
 
 /// Results of a trial.
 struct Trial {
-    /// Source by source; the last is everything at once.
+    /// Source by source; the last is all sources at once.
     outcomes: [Outcome; SIMULATED + 1],
-    /// The errors of heights by everything at once and the calibration, without their signs, in
+    /// The errors of heights by all sources at once and the calibration, without their signs, in
     /// metres.
     errors: Vec<f64>,
 }
@@ -116,7 +116,7 @@ pub(crate) struct Outcome {
     /// The mean square deviation, in square pixels, or square metres of heights; `None` without a
     /// line that can be trusted.
     pub(crate) square: Option<f64>,
-    /// The fraction of the columns without one.
+    /// The fraction of the columns without a trusted line.
     pub(crate) invalid: f64,
 }
 
@@ -124,12 +124,12 @@ pub(crate) struct Outcome {
 const SIMULATED: usize = UncertaintySource::ALL.len() - 1;
 
 /// Finds the uncertainty of a height at the reference plane by trials: frames with speckle, exposed
-/// by the sensor, in which the detector finds the line; and frames with one source of noise alone.
+/// by the sensor, in which the detector finds the line; and frames with a single source of noise.
 ///
-/// Errors of a single source are counted from the position without noise, those of all at once from
-/// the true position. Columns without a trusted line are left out and
-/// [counted](Simulation::invalid); where that are more than half, there is no estimate. `progress`
-/// is told the number of trials that are done; setting `cancel` ends the work.
+/// Errors of a single source are counted from the position without noise, errors of all sources at
+/// once from the true position. Columns without a trusted line are left out and
+/// [counted](Simulation::invalid); where these are more than half, there is no estimate. `progress`
+/// receives the number of trials that are done; setting `cancel` ends the work.
 ///
 /// The same seed gives the same bits for any number of threads.
 ///
@@ -152,7 +152,7 @@ pub fn simulate(
 
 /// Returns the results of the trials, which are done on all threads of the current pool.
 ///
-/// `progress` is told, from any thread, the number of trials done.
+/// `progress` receives, from any thread, the number of trials done.
 pub(crate) fn in_parallel<T: Send>(
     options: SimulationOptions,
     trial: impl Fn(u32) -> Result<T, TriangulationError> + Sync,
@@ -265,7 +265,8 @@ impl<'a> Simulator<'a> {
         Frames::new(self.setup, &self.image, column, seed)
     }
 
-    /// Returns the deviations of groups of columns over all frames; not of groups without a line.
+    /// Returns the deviations of groups of columns over all frames; groups without a line are left
+    /// out.
     fn group_deviations(&self, positions: &Positions, reference: &Positions) -> Vec<f64> {
         let columns = positions.0.first().map_or(0, Vec::len);
         let of_group = |first: usize| {
@@ -317,7 +318,7 @@ fn phase(random: &mut ChaCha8Rng) -> f64 {
     f64::from(random.next_u32() >> 12) / f64::from(1_u32 << 20)
 }
 
-/// Positions of a line, by frame and column; a single one stands for all.
+/// Positions of a line, by frame and column; a single position stands for all.
 struct Positions(Vec<Vec<Option<f64>>>);
 
 impl Positions {
@@ -371,7 +372,7 @@ pub(crate) fn estimate(
 ) -> Option<MonteCarloEstimate> {
     let squares = outcomes.clone().filter_map(|outcome| outcome.square);
     let count = squares.clone().count() as f64;
-    // A scatter takes two.
+    // A scatter needs two values.
     if count < 2.0 || invalid(outcomes) > Simulation::MAX_INVALID {
         return None;
     }

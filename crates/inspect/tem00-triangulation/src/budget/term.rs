@@ -87,7 +87,7 @@ pub struct BudgetTerm {
 }
 
 impl BudgetTerm {
-    /// Returns the standard uncertainty of the height by this alone, in metres.
+    /// Returns the standard uncertainty of the height by this term alone, in metres.
     pub fn contribution(&self) -> f64 {
         self.uncertainty * self.sensitivity.abs()
     }

@@ -62,11 +62,11 @@ figures! {
     Power = power, is_gain: false, MILLIWATTS;
     /// The exposure time, in seconds.
     Exposure = exposure, is_gain: false, MILLISECONDS;
-    /// The mean of the brightest pixel as a part of what the sensor can hold.
+    /// The mean of the brightest pixel as a fraction of what the sensor can hold.
     Saturation = saturation, is_gain: false, PERCENT;
-    /// The bright grains of speckle as a part of what the sensor can hold.
+    /// The bright grains of speckle as a fraction of what the sensor can hold.
     GrainSaturation = grain_saturation, is_gain: false, PERCENT;
-    /// The mean of the brightest pixel by its noise in the dark.
+    /// The mean of the brightest pixel divided by its noise in the dark.
     Signal = signal, is_gain: true, PLAIN;
 }
 
@@ -80,13 +80,14 @@ pub struct Constraint {
     pub bound: f64,
 }
 
-/// The part of what the sensor can hold that the mean of the brightest pixel may fill: it leaves
-/// room for noise where there is hardly any speckle.
+/// The fraction of what the sensor can hold that the mean of the brightest pixel may fill: it
+/// leaves room for noise where there is hardly any speckle.
 const MAX_SATURATION: f64 = 0.9;
 
 impl Constraint {
     /// The constraints of a search that names none: set-ups that keep them get the light that they
-    /// need, by [`Setup::light_level`](crate::Setup::light_level), whose bounds two of them are.
+    /// need, by [`Setup::light_level`](crate::Setup::light_level), which uses two of them as its
+    /// bounds.
     pub const LIGHT: [Self; 3] = [
         Self {
             figure: DesignFigure::Saturation,
@@ -112,7 +113,7 @@ impl Constraint {
         }
     }
 
-    /// Returns by which part of the bound it is missed; 0 if it is kept.
+    /// Returns the fraction of the bound by which it is missed; 0 if it is kept.
     pub fn excess(&self, figures: &DesignFigures) -> f64 {
         if self.is_kept(figures) {
             return 0.0;

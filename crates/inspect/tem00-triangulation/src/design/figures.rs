@@ -24,12 +24,12 @@ pub struct DesignFigures {
     pub power: f64,
     /// The exposure time, in seconds.
     pub exposure: f64,
-    /// The mean of the brightest pixel as a part of what the sensor can hold.
+    /// The mean of the brightest pixel as a fraction of what the sensor can hold.
     pub saturation: f64,
-    /// The bright grains of speckle as a part of what the sensor can hold; see
+    /// The bright grains of speckle as a fraction of what the sensor can hold; see
     /// [`Setup::grain_saturation`].
     pub grain_saturation: f64,
-    /// The mean of the brightest pixel by its noise in the dark; see [`Setup::signal`].
+    /// The mean of the brightest pixel divided by its noise in the dark; see [`Setup::signal`].
     pub signal: f64,
     /// The full width of the line in the image between the points of 1/e², in pixels.
     pub imaged_width: f64,

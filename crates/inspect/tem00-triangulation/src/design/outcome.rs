@@ -38,7 +38,7 @@ pub struct Exclusion {
     pub constraint: Constraint,
     /// The number of possible set-ups that break it.
     pub excluded: usize,
-    /// The number of these that break no other one: without it they would be allowed.
+    /// The number of these that break no other constraint: without it they would be allowed.
     pub alone: usize,
 }
 
@@ -68,7 +68,8 @@ impl DesignOutcome {
         &self.candidates
     }
 
-    /// Returns the number of set-ups that are possible, and of those that keep every constraint.
+    /// Returns the number of set-ups that are possible, and the number of set-ups that keep every
+    /// constraint.
     pub fn counts(&self) -> (usize, usize) {
         let possible = self.candidates.iter().filter_map(Candidate::possible);
         let allowed = self.candidates.iter().filter_map(Candidate::allowed);
@@ -96,9 +97,9 @@ impl DesignOutcome {
             .collect()
     }
 
-    /// Returns the set-ups that no other betters in both the objective and a figure: to have more
-    /// of one costs some of the other. They are taken from those that keep every constraint, or, if
-    /// there is none, from all that are possible, and come in the order of the objective.
+    /// Returns the set-ups that no other set-up improves in both the objective and a figure: a gain
+    /// in one costs some of the other. They are taken from the set-ups that keep every constraint,
+    /// or, if there are none, from all that are possible, and come in the order of the objective.
     pub fn front(&self, against: DesignFigure) -> Vec<&Candidate> {
         let (_, allowed) = self.counts();
         let entered = |candidate: &&Candidate| match allowed {
@@ -143,8 +144,9 @@ impl DesignOutcome {
         exclusions
     }
 
-    /// Returns the possible set-up that misses the constraints by least, as the sum of the parts of
-    /// each bound by which it is missed; of equals the better, then the one that was tried first.
+    /// Returns the possible set-up that misses the constraints by least, by the sum of the
+    /// fractions of each bound by which it is missed; of equal set-ups the better one, then the one
+    /// that was tried first.
     pub fn nearest(&self) -> Option<&Candidate> {
         let missed = |figures: &DesignFigures| -> f64 {
             let excess = |constraint: &Constraint| constraint.excess(figures);

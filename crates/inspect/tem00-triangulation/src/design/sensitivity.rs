@@ -13,7 +13,8 @@ pub struct Neighbours {
 }
 
 /// Returns the figures of a set-up when each of its parameters, one at a time, is smaller and
-/// greater by a part of itself: 0.1 for ±10 %. Those that are 0 are left out: a linewidth.
+/// greater by the fraction `part` of itself: 0.1 for ±10 %. Parameters that are 0, such as a
+/// linewidth, are left out.
 pub fn neighbours(description: &SetupDescription, part: f64) -> Vec<Neighbours> {
     let changed = |parameter: SetupQuantity, factor: f64| {
         let mut changed = description.clone();

@@ -39,8 +39,7 @@ impl Sweep {
         Ok(Self { parameter, values })
     }
 
-    /// Creates a sweep over `steps` values from one end to the other, both of them among the
-    /// values.
+    /// Creates a sweep over `steps` values from one end to the other, both included.
     ///
     /// ```text
     /// linear        x_i = a + (b − a) i / (n − 1)

@@ -21,8 +21,8 @@ pub(super) fn zero(profile: &Profile<'_>, order: FilterOrder) -> Option<f64> {
     })
 }
 
-/// Returns the sum of the pixels above less that of the pixels below one pixel, at a distance from
-/// the greatest one.
+/// Returns the sum of the pixels above minus the sum of the pixels below one pixel, at a distance
+/// from the greatest one.
 fn filter(profile: &Profile<'_>, at: isize, order: FilterOrder) -> f64 {
     let half = (order.taps() / 2).cast_signed();
     (1..=half)

@@ -52,12 +52,12 @@ impl Sighting {
 }
 
 impl Column {
-    /// The fewest pixels whose median is a background.
+    /// The minimum number of pixels whose median is a background.
     const FEWEST_BACKGROUND: usize = 8;
 
     /// Finds the lines of a column.
     ///
-    /// The background is the median of what lies outside of all windows. If that is fewer than
+    /// The background is the median of the pixels outside of all windows. If these are fewer than
     /// [`FEWEST_BACKGROUND`](Self::FEWEST_BACKGROUND) pixels, it is the lowest decile of the
     /// column.
     pub(super) fn of(column: &[f32], settings: &DetectorSettings) -> Self {
@@ -100,7 +100,7 @@ impl Column {
     }
 }
 
-/// Returns the values, with the smallest of them in the place of those that are not finite.
+/// Returns the values, with the smallest value in place of values that are not finite.
 fn finite(column: &[f32]) -> Vec<f64> {
     let finite = || column.iter().copied().filter(|value| value.is_finite());
     let min = finite().reduce(f32::min).unwrap_or(0.0);
@@ -113,7 +113,7 @@ fn uncut(centre: usize, half: usize, length: usize) -> Range<usize> {
     centre.saturating_sub(half)..(centre + half + 1).min(length)
 }
 
-/// The greatest pixel of a window; of equal ones that next to its middle.
+/// The greatest pixel of a window; of equal pixels, the one nearest to its middle.
 fn greatest(above: &[f64], window: Range<usize>, centre: usize) -> usize {
     window
         .max_by(|&a, &b| {
@@ -150,7 +150,7 @@ fn background(
 }
 
 /// The pixels that belong to each line: up to the least smoothed value between it and its
-/// neighbours, of equal ones that next to the middle. That one belongs to neither.
+/// neighbours, of equal values, the one nearest to the middle. That pixel belongs to neither.
 fn zones(smoothed: &[f64], centres: &[usize]) -> Vec<Range<usize>> {
     let valley = |pair: &[usize]| {
         let (from, to) = (pair[0], pair[1]);
@@ -204,9 +204,9 @@ impl Smoothed {
         }
     }
 
-    /// Returns by how much the maximum at `centre` moves per grey value of each pixel that it is
-    /// made of: the vertex of the parabola through it and its neighbours, which it follows in the
-    /// mean. Nothing at the ends of a column.
+    /// Returns by how much the maximum at `centre` moves per grey value of each pixel that
+    /// contributes to it: the vertex of the parabola through it and its neighbours, which it
+    /// follows in the mean. Nothing at the ends of a column.
     pub(super) fn motion(&self, centre: usize) -> Vec<(usize, f64)> {
         let neighbours = centre.checked_sub(1).zip(self.values.get(centre + 1));
         let Some((before, &s_after)) = neighbours else {
@@ -248,7 +248,7 @@ impl Smoothed {
     }
 }
 
-/// The mean over an odd number of pixels about each, of those that there are.
+/// The mean over an odd number of pixels about each value, as far as there are values.
 fn box_mean(values: &[f64], width: usize) -> Vec<f64> {
     let mean = |i| {
         let about = &values[uncut(i, width / 2, values.len())];
@@ -270,7 +270,7 @@ fn box_mean(values: &[f64], width: usize) -> Vec<f64> {
     edges.chain(last.map(mean)).collect()
 }
 
-/// The lower quartile, 0 of nothing.
+/// The lower quartile, 0 without values.
 fn quartile(values: &mut [f64]) -> f64 {
     if values.is_empty() {
         return 0.0;

@@ -11,16 +11,16 @@ pub(super) struct Extent {
     pub(super) width: f64,
 }
 
-/// The part of a normal distribution below one standard deviation under its mean.
+/// The fraction of a normal distribution below one standard deviation under its mean.
 const ONE_DEVIATION_BELOW: f64 = 0.158_655_253_931_457_05;
 
 impl Extent {
     /// Measures where 16, 50 and 84 % of the light lie before; `None` without light.
     ///
-    /// Of a Gaussian the outer two are two standard deviations apart, half of the width between the
-    /// points of 1/e². The sum up to the edge of a pixel is exact; between edges it is interpolated
-    /// linearly, which makes a line with the standard deviation σ, in pixels, up to a part of
-    /// 1/(8 σ²) too wide. Noise in the flanks counts much less than in a second moment.
+    /// For a Gaussian, the outer two points are two standard deviations apart, half of the width
+    /// between the points of 1/e². The sum up to the edge of a pixel is exact; between edges it is
+    /// interpolated linearly, which makes a line with the standard deviation σ, in pixels, up to a
+    /// fraction of 1/(8 σ²) too wide. Noise in the flanks counts much less than in a second moment.
     pub(super) fn of(profile: &Profile<'_>) -> Option<Self> {
         let integral: f64 = profile.pixels().map(|(_, value)| value).sum();
         if integral <= 0.0 {

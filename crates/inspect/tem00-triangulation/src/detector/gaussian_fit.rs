@@ -21,7 +21,7 @@ struct Gaussian {
     background: f64,
 }
 
-/// Fits by least squares, from the position and the width of the light on.
+/// Fits by least squares, starting from the position and the width of the light.
 pub(super) fn fit(profile: &Profile<'_>) -> Option<Estimate> {
     let extent = Extent::of(profile)?;
     let start = Gaussian {
@@ -60,8 +60,8 @@ impl Gaussian {
         Some(equations)
     }
 
-    /// The estimate, if the pixels hold a line: they tell nothing of one beside them, much thinner
-    /// than one of them or wider than the window, and the fit ran away.
+    /// The estimate, if the pixels hold a line: for a line beside them, much thinner than a pixel
+    /// or wider than the window they give no information, and the fit diverges.
     fn estimate(&self, profile: &Profile<'_>) -> Option<Estimate> {
         let window = profile.line.window.len() as f64;
         let is_wide = self.radius > 0.2 && self.radius < window;

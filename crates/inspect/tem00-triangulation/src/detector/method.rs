@@ -4,8 +4,8 @@ use tem00_numerics::{Refusal, cast::to_usize, check};
 
 /// Estimator of the position of a line in a column.
 ///
-/// Values are above the background b of the column. What an estimate looks at is the window and
-/// nothing else. "Exact" is said of a Gaussian line without noise.
+/// Values are above the background b of the column. An estimate uses only the pixels of the window.
+/// "Exact" refers to a Gaussian line without noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LineMethod {
@@ -15,8 +15,8 @@ pub enum LineMethod {
     /// ŷ = Σ (I_i − b) y_i / Σ (I_i − b)
     /// ```
     ///
-    /// Exact but for the light outside of the window. Negative values count as such: cut off, they
-    /// would draw the estimate towards the middle of the window.
+    /// Exact except for the light outside of the window. Negative values count as such: cut off,
+    /// they would draw the estimate towards the middle of the window.
     CentreOfGravity,
     /// The centre of gravity of what lies above a fraction of the peak, over the window.
     ///
@@ -68,7 +68,8 @@ pub enum LineMethod {
     /// The Gaussian on a constant background that fits best, by least squares.
     ///
     /// The fitted Gaussian is integrated over the pixels, as a sensor without gaps does it: the
-    /// estimate is exact, and so is the [width](crate::LinePoint::width), which is that of the fit.
+    /// estimate is exact, and so is the [width](crate::LinePoint::width), which is the width of the
+    /// fit.
     GaussianFit,
     /// The ridge by Steger (*An unbiased detector of curvilinear structures*, IEEE PAMI 20, 113,
     /// 1998), with derivatives of a Gaussian.
@@ -152,7 +153,7 @@ impl LineMethod {
         Self::ALL.into_iter().find(|method| method.name() == name)
     }
 
-    /// Returns the fewest pixels of a window that the method can work with.
+    /// Returns the minimum number of pixels in a window of the method.
     pub fn min_window(&self) -> usize {
         match self {
             Self::BlaisRioux { order } => order.taps() + 3,
@@ -162,7 +163,7 @@ impl LineMethod {
         }
     }
 
-    /// Complains about a parameter that is outside its range.
+    /// Checks that each parameter is in its range.
     pub(super) fn validate(&self) -> Result<(), Refusal> {
         match *self {
             Self::ThresholdedCentreOfGravity { threshold } => {

@@ -8,7 +8,7 @@ pub struct LinePoint {
     /// The full width between the points of 1/e², in pixels.
     ///
     /// It is twice the width between the points before which 16 and 84 % of the light of the window
-    /// lie, or that of the [fit](crate::LineMethod::GaussianFit).
+    /// lie, or the width of the [fit](crate::LineMethod::GaussianFit).
     pub width: f64,
     /// The greatest grey value above the background.
     pub peak: f64,
@@ -40,9 +40,9 @@ named! {
         /// The estimate did not converge or lies outside of the window; the position is that of the
         /// peak.
         Failed = "failed",
-        /// An edge of the part cuts the line, of which but a sliver is seen: its position is that
-        /// of the edge. Or there is no line but by noise. Only who knows the line without noise can
-        /// tell; a detector does not.
+        /// An edge of the part cuts the line so that only a sliver is seen, whose position is the
+        /// position of the edge; or there is no line except by noise. This requires knowledge of
+        /// the line without noise, which a detector does not have.
         Sliver = "sliver",
     }
 }

@@ -36,8 +36,8 @@ impl Profile<'_> {
         window.map(move |i| (i as f64 - greatest, self.above[i]))
     }
 
-    /// Counts from the edge of the column, and lets nothing through that lies outside of the pixels
-    /// that it was made of.
+    /// Counts an estimate from the edge of the column; `None` if it lies outside of the pixels that
+    /// it was made from.
     pub(super) fn placed(&self, relative: Estimate) -> Option<Estimate> {
         let position = self.line.greatest as f64 + 0.5 + relative.position;
         let zone = &self.line.zone;

@@ -18,14 +18,14 @@ impl LineDetector {
     ///
     /// The window follows the maximum of the smoothed column: as it moves, light at one of its ends
     /// comes in and at the other goes out, which counts where a line has wings or is cut. The pixel
-    /// that a three-point method looks at and the part of the column that is background stay what
-    /// they are. Pixels of the background count equally, as in a mean: they share the negative sum
-    /// over the window. (Their median scatters 1.25 times as much as a mean.) Methods that look at
-    /// the neighbours of a column take it for one of many that are equal.
+    /// that a three-point method looks at and the part of the column that is background do not
+    /// change. Pixels of the background count equally, as in a mean: they share the negative sum
+    /// over the window. (Their median scatters 1.25 times as much as a mean.) Methods that use
+    /// neighbouring columns treat the column as one of many equal columns.
     ///
-    /// `point` is one that [`detect_column`](Self::detect_column) finds in `column`; the line that
-    /// is nearest to it is looked at. A column without lines has no sensitivities: all are zero. So
-    /// are those of a position that could not be estimated.
+    /// `point` is one that [`detect_column`](Self::detect_column) finds in `column`; the
+    /// sensitivities are those of the nearest line. A column without lines has no sensitivities:
+    /// all are zero. The same holds for a position that could not be estimated.
     pub fn sensitivities(&self, column: &[f32], point: &LinePoint) -> Vec<f64> {
         let mut sensitivities = vec![0.0; column.len()];
         let mut found = Column::of(column, &self.settings);

@@ -8,7 +8,7 @@ use crate::TriangulationError;
 pub struct DetectorSettings {
     /// The estimator of the position.
     pub method: LineMethod,
-    /// The number of pixels of a column that an estimate looks at, odd, about the peak.
+    /// The number of pixels of a column that an estimate uses, odd, about the peak.
     ///
     /// Two to three times the full width of the line between the points of 1/e². Outside of twice
     /// that width lie 6e−5 of the light of a Gaussian, which move the centre of gravity by 5e−4

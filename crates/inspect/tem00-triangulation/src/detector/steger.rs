@@ -6,7 +6,7 @@ use super::{method::kernel_radius, profile::Profile};
 
 /// A Gaussian and its first two derivatives, each integrated over the pixels about its middle.
 ///
-/// The first and the last pixel hold all that lies beyond, so that the sums are those of the
+/// The first and the last pixel hold everything beyond, so that the sums equal the integrals of the
 /// functions: 1, 0 and 0.
 pub(super) struct Kernels {
     radius: isize,
@@ -97,7 +97,8 @@ pub(super) fn in_image(
 }
 
 /// The position of the strongest ridge of the window, along the column, as a distance from the
-/// greatest pixel; `pixels` holds for each its smoothed value and the derivatives of that along x.
+/// greatest pixel; `pixels` holds for each pixel its smoothed value and the derivatives of this
+/// value along x.
 fn ridge(profile: &Profile<'_>, pixels: &[[f64; 3]], kernels: &Kernels) -> Option<f64> {
     let rows = (0_isize..).take(pixels.len());
     let derivatives = |row: isize| {

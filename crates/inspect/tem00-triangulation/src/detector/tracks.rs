@@ -8,7 +8,7 @@ struct Track {
     last: usize,
     /// The last column up to which it was seen, or hidden by another line.
     followed_to: usize,
-    /// The last points that tell where the line goes on: column and position.
+    /// The last points, which show where the line continues: column and position.
     recent: VecDeque<(f64, f64)>,
     points: usize,
     sum: f64,
@@ -104,7 +104,7 @@ fn near<'a>(expected: &'a [Expected], points: &[LinePoint], gate: f64) -> Vec<Pa
 }
 
 /// The tracks without a point that may be hidden: lines closer than half a window are seen as one,
-/// which goes on as another of them. A line that begins hides none.
+/// which continues as another of them. A line that begins hides no other line.
 fn hidden(
     expected: &[Expected],
     points: &[LinePoint],
@@ -131,8 +131,9 @@ fn hidden(
         .collect()
 }
 
-/// Returns true if a point is of one line alone. Where two lines come close it may be of both, and
-/// does not tell where one goes; lines that have ended do not count beside one that has not.
+/// Returns true if a point belongs to a single line. Where two lines come close, a point may belong
+/// to both, and does not show where one of them goes; lines that have ended do not count next to a
+/// line that has not.
 fn is_clear(near: &[Pair<'_>], point: usize) -> bool {
     let of_point = || near.iter().filter(|pair| pair.point == point);
     let followed = of_point().filter(|pair| pair.expected.is_followed).count();
@@ -173,9 +174,9 @@ fn numbers(tracks: &[Track]) -> Vec<usize> {
 }
 
 impl Track {
-    /// The points that tell where a line goes on.
+    /// The number of points that predict where a line continues.
     const RECENT: usize = 16;
-    /// The fewest points that tell a slope.
+    /// The minimum number of points that determine a slope.
     const FEWEST: usize = 4;
 
     const fn new() -> Self {

@@ -17,7 +17,7 @@ static VARY: LazyLock<Vec<&str>> = LazyLock::new(|| {
 const RANGE: &[&str] = &["from", "to", "steps", "scale"];
 const REQUIRE: &[&str] = &DesignFigure::NAMES;
 
-/// The maximum number of set-ups that are tried if the file does not say.
+/// The maximum number of set-ups that are tried if the file gives no number.
 const MAX_SETUPS: u64 = 20_000;
 
 /// Reads the section `[design]` of a set-up file: a search that begins with the set-up.
@@ -39,8 +39,8 @@ const MAX_SETUPS: u64 = 20_000;
 ///
 /// # Errors
 ///
-/// Returns a problem, placed in the file, if the section is missing, has a key that it may not
-/// have, or a value that cannot be; or if there are more combinations than allowed.
+/// Returns a problem, placed in the file, if the section is missing, has a key that is not allowed,
+/// or a value that is not possible; or if there are more combinations than allowed.
 pub fn read_design(
     document: &Document<'_>,
     base: &SetupDescription,

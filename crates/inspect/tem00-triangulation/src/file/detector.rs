@@ -14,9 +14,9 @@ const KEYS: &[&str] = &[
 
 /// Reads the section `[detector]`: how lines are found.
 ///
-/// What it leaves out, or all of it, is as in [`DetectorSettings::default`]; a window that it
-/// leaves out is as wide as the method needs. The saturation is infinite: the bits of the sensor
-/// know it.
+/// Missing keys, or a missing section, have the values of [`DetectorSettings::default`]; a missing
+/// window is as wide as the method needs. The saturation is infinite: it follows from the bits of
+/// the sensor.
 ///
 /// ```toml
 /// [detector]

@@ -7,8 +7,8 @@ use crate::{Sensor, SensorDescription, SetupDescription, SetupQuantity};
 
 /// Reads the section `[sensor]` of a file; the pixel pitch, in metres, stands in `[camera]`.
 ///
-/// `quantum_efficiency` and `exposure` must be there. What else is missing is as in
-/// [`SensorDescription::typical`]; a gain that is missing makes a full well the largest grey value.
+/// `quantum_efficiency` and `exposure` are required. Other missing values are those of
+/// [`SensorDescription::typical`]; a missing gain makes a full well the largest grey value.
 ///
 /// # Errors
 ///

@@ -10,8 +10,8 @@ use crate::{Averages, Setup, SetupDescription, SetupQuantity, TriangulationError
 
 /// Set-up files.
 ///
-/// The section `[design]` is for searches among set-ups, `[certificate]` for who signs a budget,
-/// `title` for who reads it: they are not read with the set-up.
+/// The section `[design]` is for searches among set-ups, `[certificate]` for those who sign a
+/// budget, and `title` for its readers: they are not read with the set-up.
 const SETUP: Format = Format {
     noun: "set-up",
     keys: &[
@@ -48,12 +48,12 @@ pub fn read_setup(path: &Path) -> Result<Setup, ConfigError> {
     read_setup_with(path, FileAccess::WithinFolder, |_, _| Ok(())).map(|(setup, ())| setup)
 }
 
-/// Reads a set-up file, and with `further` what else it has to say: `[design]`. The path `-` is
-/// standard input.
+/// Reads a set-up file, and with `further` its other section, `[design]`. The path `-` is standard
+/// input.
 ///
 /// # Errors
 ///
-/// Returns the errors of [`read_setup`], and those of `further`, placed in the file.
+/// Returns the errors of [`read_setup`], and the errors of `further`, placed in the file.
 pub fn read_setup_with<'a, T>(
     path: &Path,
     reading: impl Into<Reading<'a>>,
@@ -168,7 +168,7 @@ fn setup(document: &Document<'_>) -> Result<Setup, Problem> {
     let optional = [calibration.as_ref(), environment.as_ref(), average.as_ref()];
     let needed = [&laser, &camera, &surface].into_iter();
     let all: Vec<_> = needed.chain(optional.into_iter().flatten()).collect();
-    // Whoever mends the first wants to know of the others.
+    // A user who corrects the first error wants to know of the others.
     let mut wrong = description.violations().into_iter();
     if let Some(first) = wrong.next() {
         let others: Vec<String> = wrong
@@ -219,7 +219,7 @@ fn count(value: &Value<'_>, max: u32) -> Result<u32, Problem> {
     u32::try_from(number).map_err(|_| value.must_be("a number that can be counted"))
 }
 
-/// Positions the error of a set-up that is not possible at the key that it is about.
+/// Positions the error of a set-up that is not possible at the key that it concerns.
 fn rejected(error: &TriangulationError, sections: &[&Section<'_>]) -> Problem {
     let key = error.parameter().unwrap_or_default();
     let section = sections.iter().find(|section| section.has(key));

@@ -10,11 +10,10 @@ use crate::{
 
 impl SetupDescription {
     /// Returns the text of a set-up file with this description, as a person would write it: with
-    /// units, and without what is as it is by default. Every number in it reads back as the same
-    /// bits.
+    /// units, and without values that equal their defaults. Every number in it reads back as the
+    /// same bits.
     ///
-    /// What is left out as well is the saturation of the detector: a set-up takes it from its
-    /// sensor.
+    /// The saturation of the detector is left out as well: a set-up takes it from its sensor.
     pub fn to_toml(&self) -> String {
         let mut text = Sections(String::new());
         for section in ["laser", "camera", "sensor", "surface"] {

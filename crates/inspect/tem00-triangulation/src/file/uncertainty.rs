@@ -7,7 +7,7 @@ use crate::{HeightRange, Setup, SetupQuantity, SetupUncertainty, TriangulationEr
 const BUDGET: &[&str] = &["height"];
 const CORRELATION: &[&str] = &["between", "coefficient"];
 
-/// Reads what a set-up file says of uncertain quantities of its set-up.
+/// Reads the uncertain quantities of a set-up from its file.
 ///
 /// ```toml
 /// [camera]
@@ -27,8 +27,8 @@ const CORRELATION: &[&str] = &["between", "coefficient"];
 ///
 /// # Errors
 ///
-/// Returns a problem, placed in the file, if a table has a key that it may not have, or a value
-/// that cannot be.
+/// Returns a problem, placed in the file, if a table has a key that is not allowed, or a value that
+/// is not possible.
 pub fn read_uncertainty(
     document: &Document<'_>,
     setup: &Setup,
@@ -143,7 +143,7 @@ fn read_correlations(
     Ok(correlations)
 }
 
-/// Returns where a name stands among the uncertain quantities.
+/// Returns the position of a name among the uncertain quantities.
 fn position(name: &Value<'_>, quantities: &[(SetupQuantity, Input)]) -> Result<usize, Problem> {
     let text = name.string()?;
     let names: Vec<String> = quantities

@@ -12,7 +12,7 @@ pub struct ProfilePoint {
     pub line: usize,
     /// The image point, in pixels.
     pub pixel: DVec2,
-    /// The point in space and what the position of the line leaves uncertain about it.
+    /// The point in space, with the uncertainty from the position of the line.
     pub point: UncertainPoint,
     /// The full width of the line between the points of 1/e² in the image, in pixels.
     pub width: f64,
@@ -27,7 +27,7 @@ impl Triangulator {
     /// Returns the profile that the lines found in an image draw, by column and from the top: the
     /// points of the laser plane at `(column + 0.5, position)`.
     ///
-    /// `uncertainty` tells the standard uncertainty of the position of a point along its column, in
+    /// `uncertainty` gives the standard uncertainty of the position of a point along its column, in
     /// pixels. Points at which the camera does not see the laser plane, above its horizon, are left
     /// out.
     pub fn profile(

@@ -45,7 +45,7 @@ const MAX_TILT: f64 = 6.0;
 pub(super) type Pupil = (Grid<Complex<f32>>, f64);
 
 impl PolychromaticLight {
-    /// Returns nothing for light of one wavelength from a point.
+    /// Returns `None` for light of one wavelength from a point.
     pub(super) fn of_setup(setup: &Setup) -> Option<Self> {
         let line = setup.description().laser.light.line();
         let (Ok(line), Some(cell)) = (line, setup.resolution_cell()) else {
@@ -87,10 +87,10 @@ impl PolychromaticLight {
     }
 }
 
-/// Returns modes that have a variance, and the fraction of even light beside them.
+/// Returns modes that have a variance, and the fraction of even light that is added to them.
 ///
-/// Of a variance v below that of n equal patterns, these are in a part √(v n) of the light, and the
-/// rest is even: more patterns would have the same covariance.
+/// If the variance v is below the variance of n equal patterns, these patterns have the fraction
+/// √(v n) of the light, and the rest is even: more patterns would have the same covariance.
 fn enough(modes: Vec<f64>, variance: f64, patterns: f64) -> (Vec<f64>, f64) {
     let count = (PATTERNS / patterns).max(1.0).floor();
     if variance * count >= 1.0 {

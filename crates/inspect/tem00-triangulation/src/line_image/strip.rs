@@ -40,7 +40,8 @@ impl Strip {
     /// Returns the positions of the line where scatterers lie along it: no farther apart than a
     /// speckle.
     ///
-    /// Beside the image the line goes on as it ends, to the half of what is there from either side.
+    /// Next to the image the line continues as it ends, from either side up to the middle of the
+    /// gap.
     pub(super) fn positions(&self, centre: impl Fn(f64) -> f64) -> Vec<f64> {
         let count = self.lattice(0);
         let step = self.period[0] / count as f64;
@@ -186,7 +187,7 @@ impl Strip {
         };
         let all = (wide * high) as f64;
         let sharp = light.map(|&electrons| Complex::new(electrons, 0.0));
-        // The transform of the conjugate is that back.
+        // The transform of the conjugate is the inverse transform.
         let blurred = forward.on_one_thread().forward(&sharp, |kx, ky, value| {
             value.conj() * to_f32(lens(kx, ky) / all)
         });

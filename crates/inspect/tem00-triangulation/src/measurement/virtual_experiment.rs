@@ -57,18 +57,18 @@ struct Heights {
 }
 
 impl Measurement {
-    /// Measures the height many times with set-ups that differ from their description as it is
-    /// uncertain.
+    /// Measures the height many times with set-ups that differ from their description within its
+    /// uncertainty.
     ///
     /// Each trial draws a true set-up, exposes simulated frames of the line at the height with all
     /// noise, has the detector find it, and evaluates the height with the set-up as it is
-    /// described. `progress` is told the number of trials that are done; setting `cancel` ends the
+    /// described. `progress` receives the number of trials that are done; setting `cancel` ends the
     /// work. The same seed gives the same bits for any number of threads.
     ///
     /// # Errors
     ///
-    /// Returns the errors of [`simulate`](crate::simulate), and one if a set-up that is drawn is
-    /// not possible.
+    /// Returns the errors of [`simulate`](crate::simulate), and an error if a drawn set-up is not
+    /// possible.
     pub fn virtual_experiment(
         &self,
         options: SimulationOptions,

@@ -4,7 +4,7 @@ use crate::{SetupDescription, SetupQuantity, TriangulationError, setup::within};
 
 /// Data sheet of a sensor after EMVA 1288 (linear model), and the settings that it is used with.
 ///
-/// [`typical`](Self::typical) fills in what a data sheet leaves open.
+/// [`typical`](Self::typical) fills in values that a data sheet leaves open.
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,9 +33,9 @@ pub struct SensorDescription {
     pub black_level: f64,
     /// The distance of the pixels' centres, in metres.
     pub pixel_pitch: f64,
-    /// The part of a pixel that is sensitive, above 0 and at most 1: a square about its centre. It
-    /// tells over which part of the image a pixel integrates, not how much light it takes; behind
-    /// microlenses it is 1.
+    /// The fraction of a pixel that is sensitive, above 0 and at most 1: a square about its centre.
+    /// It determines over which part of the image a pixel integrates, not how much light it takes;
+    /// behind microlenses it is 1.
     pub fill_factor: f64,
     /// The exposure time, in seconds.
     pub exposure_time: f64,

@@ -51,10 +51,10 @@ impl Sensor {
     ///
     /// In a pixel of the response `1 + PRNU · g` and the offset `DSNU · d`, both normally
     /// distributed and the same in all frames of one camera, light and dark current free a Poisson
-    /// distributed number of electrons. What exceeds the full well is lost, and the pixel is marked
-    /// as saturated. The offset and the dark noise are added, the sum is amplified, and the grey
-    /// value is rounded and clipped to its bits; a pixel at the largest grey value is marked as
-    /// saturated, too.
+    /// distributed number of electrons. Electrons beyond the full well are lost, and the pixel is
+    /// marked as saturated. The offset and the dark noise are added, the sum is amplified, and the
+    /// grey value is rounded and clipped to its bits; a pixel at the largest grey value is marked
+    /// as saturated, too.
     ///
     /// `seed` draws the noise of this frame, the serial number the differences between the pixels.
     /// The same seeds give the same bits for any number of threads.

@@ -27,7 +27,7 @@ impl Sensor {
     }
 }
 
-/// A point of the photon transfer curve: what two frames under the same light tell of a sensor.
+/// A point of the photon transfer curve: what two frames under the same light show about a sensor.
 ///
 /// The variance over the mean grey value above that of the dark frames is the gain K.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,7 +39,7 @@ pub struct PhotonTransferPoint {
 }
 
 impl PhotonTransferPoint {
-    /// Measures two frames A and B. What differs between the pixels in both cancels.
+    /// Measures two frames A and B. Differences between the pixels that both frames share cancel.
     ///
     /// ```text
     /// μ_y  = (⟨A⟩ + ⟨B⟩) / 2

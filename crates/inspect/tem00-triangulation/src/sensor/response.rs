@@ -39,7 +39,7 @@ impl Sensor {
     }
 
     /// Returns the mean number of electrons that light frees when a pixel is saturated: when its
-    /// well is full or its grey value the largest, whatever comes first. It is 0 if darkness
+    /// well is full or its grey value the largest, whichever comes first. It is 0 if darkness
     /// saturates it.
     pub fn saturation_electrons(&self) -> f64 {
         let d = self.description();
@@ -79,11 +79,12 @@ impl Sensor {
         PLANCK_TIMES_LIGHT / (wavelength * self.description().quantum_efficiency)
     }
 
-    /// Returns the grey value from which on a pixel may be saturated, in DN: that of a full well
-    /// less three standard deviations of dark noise and DSNU, or the largest one if that is less.
+    /// Returns the grey value from which on a pixel may be saturated, in DN: the grey value of a
+    /// full well minus three standard deviations of dark noise and DSNU, or the largest grey value
+    /// if that is less.
     ///
-    /// For those who see grey values only. [`RawFrame::saturated`](crate::RawFrame::saturated)
-    /// knows.
+    /// The level is for code that has only grey values;
+    /// [`RawFrame::saturated`](crate::RawFrame::saturated) marks the saturated pixels.
     pub fn saturation_level(&self) -> f64 {
         let d = self.description();
         let spread = 3.0 * d.dark_noise.hypot(d.dsnu);

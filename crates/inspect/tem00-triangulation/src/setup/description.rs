@@ -13,12 +13,12 @@ use crate::{DetectorSettings, LaserPlane, SensorDescription, SetupQuantity, Tria
 pub struct SetupDescription {
     /// The laser and its line.
     pub laser: LaserLineData,
-    /// The camera's lens and where it stands; the pixel pitch is that of the sensor.
+    /// The camera's lens and where it stands; the pixel pitch is part of the sensor.
     pub camera: SetupCamera,
     /// The camera's sensor.
     pub sensor: SensorDescription,
     /// True if the exposure time is chosen such that the light fits the sensor, as
-    /// [`Setup::new`](crate::Setup::new) says, and that of the sensor is not read.
+    /// [`Setup::new`](crate::Setup::new) says, and the exposure time of the sensor is not read.
     pub auto_exposure: bool,
     /// The surface that the line falls on.
     pub surface: SetupSurface,
@@ -92,11 +92,11 @@ pub struct LaserLineData {
 /// Effect of a temperature change since the calibration on the geometry, to first order.
 ///
 /// The *base* holds camera and laser: as it expands, the laser plane moves away from the camera by
-/// the part `α ΔT` of their distance L sin θ, and the directions of both stay. The *mount* holds
-/// lens and sensor: as it expands, the image distance grows by that part.
+/// the fraction `α ΔT` of their distance L sin θ, and the directions of both stay. The *mount*
+/// holds lens and sensor: as it expands, the image distance grows by that fraction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SetupEnvironment {
-    /// The temperature less that at which the values of the set-up hold, in kelvins.
+    /// The temperature minus the temperature at which the values of the set-up hold, in kelvins.
     pub temperature_change: f64,
     /// The linear expansion of the base, per kelvin.
     pub base_expansion: f64,
@@ -196,7 +196,8 @@ pub struct SetupSurface {
     pub patterns: u32,
     /// The degree of polarisation of the scattered light, from 0 to 1.
     pub polarisation: f64,
-    /// The relief that is finer than what the camera resolves; of no height where it is not known.
+    /// The relief that is finer than the resolution of the camera; of height zero where it is not
+    /// known.
     pub relief: Relief,
 }
 
@@ -207,7 +208,7 @@ pub struct Averages {
     pub columns: u32,
     /// The number of frames.
     pub frames: u32,
-    /// True if each frame has speckle of its own, because the part moves on between them. On a part
+    /// True if each frame has its own speckle, because the part moves on between them. On a part
     /// that rests, speckle rests too, and does not average out.
     pub independent_speckle: bool,
 }
@@ -245,8 +246,8 @@ impl SetupSurface {
 }
 
 impl SetupDescription {
-    /// Returns everything that is wrong number by number, in the order of the sections, or else
-    /// what is wrong with the light.
+    /// Returns the errors of all single numbers, in the order of the sections, or else the error of
+    /// the light.
     pub(crate) fn violations(&self) -> Vec<TriangulationError> {
         let quantities = SetupQuantity::ALL.iter();
         let checks = quantities.map(|quantity| quantity.check(self));

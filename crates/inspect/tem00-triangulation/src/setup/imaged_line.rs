@@ -12,14 +12,15 @@ use super::{
 };
 use crate::Sensor;
 
-/// The step in height, as a part of the distance, of central differences: they err by its square.
+/// The step in height, as a fraction of the distance, of central differences: they err by its
+/// square.
 const STEP: f64 = 1e-5;
 
 /// The image of the line on a flat surface.
 ///
 /// Its profile along a column is the Gaussian of the line, blurred by the image that the lens makes
 /// of a point, in or out of focus, whose wings fall as 1/y²: outside of ±Y lie 4h/(π³Y) of the
-/// light. For its width the squares of what makes it wide add:
+/// light. The squares of the contributions to its width add:
 ///
 /// ```text
 /// W² = W_line² + W_lens² + b²
@@ -29,20 +30,20 @@ const STEP: f64 = 1e-5;
 /// ```
 ///
 /// The line has its waist on the reference plane, with the Rayleigh range `z_R = π w₀²/λ`, w₀ being
-/// half its thickness. Z is the depth of the surface before the lens, `Z_focus` that in focus at
-/// this image point, s the depth of the sensor behind the lens, D the diameter of the pupil and h =
-/// λ s / D the speckle size. Across the disc of defocus 4σ = b.
+/// half its thickness. Z is the depth of the surface before the lens, `Z_focus` the depth in focus
+/// at this image point, s the depth of the sensor behind the lens, D the diameter of the pupil and
+/// h = λ s / D the speckle size. Across the disc of defocus 4σ = b.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImagedLine {
     /// The position along the middle column, in pixels, y down.
     pub position: f64,
     /// The full width between the points of 1/e², in pixels, as of a Gaussian.
     pub width: f64,
-    /// The part of the width by the thickness of the line itself, in pixels.
+    /// The contribution of the thickness of the line itself to the width, in pixels.
     pub projected_thickness: f64,
-    /// The part of the width by diffraction at the pupil, in pixels.
+    /// The contribution of diffraction at the pupil to the width, in pixels.
     pub diffraction_width: f64,
-    /// The part of the width by defocus, in pixels.
+    /// The contribution of defocus to the width, in pixels.
     pub blur: f64,
     /// The speckle size along the rows and along the columns, in pixels: a sensor that is tilted
     /// stretches the speckle along its columns.
@@ -64,8 +65,8 @@ pub struct ImagedLine {
 ///
 /// # Validity
 ///
-/// That of [`PolychromaticSpeckle`], with the surface square to the light, as everywhere in a
-/// set-up.
+/// The effect is the one of [`PolychromaticSpeckle`], with the surface square to the light, as
+/// everywhere in a set-up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandwidthEffect {
     /// The ratio of the contrast in a point. Pixels larger than a speckle lose less than this.
@@ -124,7 +125,7 @@ impl ImagedLine {
         let defocus = geometry.defocus_at(depth).abs();
         let disc = geometry.pupil_diameter() * geometry.principal_distance() * defocus;
         let blur = disc * stretch / pitch;
-        // Less is rounding of what is in focus.
+        // A smaller blur is rounding of a line in focus.
         let blur = if blur < 1e-9 { 0.0 } else { blur };
         let width = projected_thickness.hypot(diffraction_width).hypot(blur);
         let on_part = laser.power / laser.line_length * (8.0 / PI).sqrt() / thickness;
@@ -175,10 +176,10 @@ impl ImagedLine {
     }
 
     /// Returns the standard deviation, in pixels, that fully developed speckle gives the mean
-    /// position over so many neighbouring columns, each the centre of gravity of all light in it.
+    /// position over `columns` neighbouring columns, each the centre of gravity of all light in it.
     ///
-    /// To first order in the fluctuations but for defocus, which moves a line by the mean place of
-    /// its light in the pupil: a column's power divides that.
+    /// To first order in the fluctuations except for defocus, which moves a line by the mean place
+    /// of its light in the pupil: a column's power divides that.
     pub(crate) fn centroid_deviation(&self, columns: u32) -> f64 {
         let [along, across] = self.speckle_size;
         let column = self.sensitive_height / along;
@@ -217,7 +218,7 @@ fn depth(description: &SetupDescription, height: f64) -> f64 {
     description.camera.distance + description.laser_point_at(height).y * sin - height * cos
 }
 
-/// Returns what a resolution cell of the camera holds of the surface at a height.
+/// Returns the resolution cell of the camera on the surface at a height.
 pub(super) fn resolution_cell(
     description: &SetupDescription,
     camera: &Camera,
@@ -236,7 +237,8 @@ pub(super) fn resolution_cell(
         sin_aperture: 0.5 * geometry.pupil_diameter() / distance,
         wavelength: description.laser.light.wavelength,
     });
-    // The plane in focus is that of this image point; less than a nanometre beside it is rounding.
+    // The plane in focus is the one at this image point; a distance of less than a nanometre from
+    // it is rounding.
     let defocus = in_focus - depth;
     let defocus = if defocus.abs() < 1e-9 { 0.0 } else { defocus };
     let relief = description.surface.relief;

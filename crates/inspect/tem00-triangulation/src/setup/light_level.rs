@@ -9,7 +9,7 @@ named! {
     /// Verdict on the amount of light that the sensor gets.
     #[non_exhaustive]
     LightLevel {
-        /// The line hardly stands out of the dark noise, or is below the least peak of the
+        /// The line hardly stands out of the dark noise, or is below the minimum peak of the
         /// detector.
         Dark = "too dark",
         /// Neither too dark nor saturated.
@@ -42,22 +42,22 @@ impl LightLevel {
     }
 }
 
-/// The least signal of a line over its noise in the dark.
+/// The minimum signal of a line over its noise in the dark.
 pub(crate) const MIN_SIGNAL: f64 = 10.0;
-/// The part of what the sensor can hold that bright grains may fill.
+/// The fraction of what the sensor can hold that bright grains may fill.
 pub(crate) const MAX_GRAIN_SATURATION: f64 = 1.0;
 /// Height of bright grains above the mean, in standard deviations of speckle: of fully developed
 /// speckle in small pixels 2 % are brighter.
 const BRIGHT_GRAINS: f64 = 3.0;
-/// The part of what the sensor can hold that bright grains fill with an exposure that is chosen: it
-/// leaves room for shot noise and for the different response of the pixels.
+/// The fraction of what the sensor can hold that bright grains fill with an exposure that is chosen
+/// automatically: it leaves room for shot noise and for the different response of the pixels.
 const CHOSEN_GRAIN_SATURATION: f64 = 0.9;
 
 impl Setup {
     /// Returns the verdict on the light that the sensor gets.
     ///
     /// A line is too dark if its [signal](Self::signal) is below 10, or its peak below the
-    /// detector's least. Bright grains saturate if they fill [more](Self::grain_saturation) than
+    /// detector's minimum. Bright grains saturate if they fill [more](Self::grain_saturation) than
     /// the sensor can hold.
     pub fn light_level(&self) -> LightLevel {
         self.light_level_of(self.line())
@@ -82,7 +82,7 @@ impl Setup {
 
     /// Returns the contrast of the speckle in the pixels, which average over it.
     ///
-    /// With a linewidth it is exact for pixels small against a speckle; larger ones have somewhat
+    /// With a linewidth it is exact for pixels small against a speckle; larger pixels have somewhat
     /// more.
     pub fn contrast(&self) -> f64 {
         self.contrast_of(self.line())
@@ -100,16 +100,16 @@ impl Setup {
         self.line().peak_electrons() + self.sensor().dark_electrons()
     }
 
-    /// Returns the mean of the brightest pixel as a part of what the sensor can hold or tell,
+    /// Returns the mean of the brightest pixel as a fraction of what the sensor can hold or tell,
     /// whichever is less: the full well, or the range of its grey values.
     ///
     /// Speckle makes single pixels brighter than the mean: several times, where pixels are small
-    /// against it. See [`grain_saturation`](Self::grain_saturation).
+    /// compared with a speckle. See [`grain_saturation`](Self::grain_saturation).
     pub fn saturation(&self) -> f64 {
         self.saturation_of(self.peak_electrons())
     }
 
-    /// Returns the bright grains of speckle as a part of what the sensor can hold or tell: the
+    /// Returns the bright grains of speckle as a fraction of what the sensor can hold or tell: the
     /// brightest pixel at three standard deviations of speckle above its mean.
     pub fn grain_saturation(&self) -> f64 {
         self.grain_saturation_of(self.line())
@@ -158,7 +158,7 @@ impl Setup {
         line.peak_electrons() / noise
     }
 
-    /// Returns a number of electrons as a part of what the sensor can hold or tell.
+    /// Returns a number of electrons as a fraction of what the sensor can hold or tell.
     fn saturation_of(&self, electrons: f64) -> f64 {
         let sensor = &self.description().sensor;
         let grey = (sensor.black_level + sensor.gain * electrons) / sensor.largest_value();

@@ -2,7 +2,8 @@ use core::f64::consts::PI;
 
 use tem00_numerics::{cast::to_usize, disc_overlap, quadrature::integrate, sinc};
 
-/// The period of the sum, in units of what is looked at: copies of the line stay that far away.
+/// The period of the sum, in units of the range that is evaluated: copies of the line stay that far
+/// away.
 const PERIOD: f64 = 4.0;
 
 /// The profile of the image of a laser line along a column of pixels: a Gaussian that a round pupil
@@ -17,10 +18,10 @@ const PERIOD: f64 = 4.0;
 /// W is the full width of the Gaussian between the points of 1/e², h the speckle size along the
 /// column, b the diameter of the disc of defocus and a the height of the sensitive part of a pixel;
 /// the integral of m is 1. T is the transfer function of the lens (Hopkins 1955), chat(h f) in
-/// focus. The wings are those of the lens: they hold 4h/(π³ Y) of the light outside of ±Y.
+/// focus. The wings come from the lens: they hold 4h/(π³ Y) of the light outside of ±Y.
 ///
 /// The integral is a sum over equal steps of the frequency. Its copies of the line, a period apart,
-/// are so far away that they are but wings, whose sum is known and taken off.
+/// are so far away that only their wings remain, whose sum is known and subtracted.
 #[derive(Clone, Debug)]
 pub(crate) struct LineProfile {
     period: f64,
@@ -116,7 +117,7 @@ mod tests {
 
     /// The Airy pattern summed along the line, at a distance in speckle sizes.
     fn airy_line(x: f64) -> f64 {
-        // Beyond 200 h the mean of the pattern, 4/(π⁴ r³) in units of h, goes on.
+        // Beyond 200 h the mean of the pattern, 4/(π⁴ r³) in units of h, continues.
         const ALONG: f64 = 200.0;
         let airy = |step: u32| {
             let y = f64::from(step) / 8.0;

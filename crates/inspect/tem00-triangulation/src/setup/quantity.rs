@@ -125,7 +125,7 @@ quantities! {
         /// angle θ from 1° to 89°, from the upright; to the plane of the laser if that has no
         /// `tilt`
         Angle: angle = Row::new(field!(camera.angle), &DEGREES)
-            // A hair more than that, for what rounding does to the ends.
+            // Slightly more than that, to allow for rounding at the ends.
             .within(
                 |_| (0.999_999_f64.to_radians(), 89.000_001_f64.to_radians()),
                 "from 1° to 89° (in radians)",
@@ -173,7 +173,7 @@ quantities! {
                 let typical = SensorDescription::typical(d.sensor.bit_depth).black_level;
                 d.sensor.black_level.to_bits() != typical.to_bits()
             });
-        // After the two that a gain follows from if it is not told.
+        // After the two quantities from which a gain follows if it is not given.
         /// grey values per electron
         Gain: gain = Row::new(field!(sensor.gain), &GREY_PER_ELECTRON)
             .within(|_| (f64::MIN_POSITIVE, 1e6), "above 0 and at most 1e6, in DN per electron")
@@ -320,8 +320,8 @@ impl SetupQuantity {
         )
     }
 
-    /// Reads the quantities of a section into a set-up, but for those that are read with other
-    /// keys.
+    /// Reads the quantities of a section into a set-up, except for quantities that are read with
+    /// other keys.
     pub(crate) fn read_all(
         section: (&str, &Section<'_>),
         description: &mut SetupDescription,

@@ -56,9 +56,9 @@ impl Setup {
     /// on the reference plane: a fine one spreads within its Rayleigh range, which ends the depth
     /// of field where the lens does not.
     ///
-    /// A set-up after Scheimpflug has the whole plane of the laser in focus where that goes through
-    /// the point that the optical axis meets. With an offset y₀ beside it, and the angle φ of the
-    /// sensor, it is fine where
+    /// A set-up after Scheimpflug has the whole plane of the laser in focus if that plane goes
+    /// through the point that the optical axis meets. With an offset y₀ beside it, and the angle φ
+    /// of the sensor, it is fine where
     ///
     /// ```text
     /// Z ≥ f (1 + y₀/H + D |y₀| / (W₀ |H| cos φ))      H = L sin(θ + τ) / cos τ
@@ -81,7 +81,7 @@ impl Setup {
         let description = self.description();
         let (sin, cos) = description.camera.angle.sin_cos();
         let beside = description.camera.distance + description.laser_offset() * sin;
-        // The depth falls with the height, but for a plane that leans out of sight.
+        // The depth falls with the height, except for a plane that leans out of sight.
         let fall = cos - libm::tan(description.laser.tilt) * sin;
         let [near, far] = self.depths_in_focus().map(|depth| (beside - depth) / fall);
         HeightRange {
@@ -90,7 +90,8 @@ impl Setup {
         }
     }
 
-    /// The least and the greatest depth before the lens that is in focus on the plane of the laser.
+    /// Returns the smallest and the greatest depth before the lens that is in focus on the plane of
+    /// the laser.
     fn depths_in_focus(&self) -> [f64; 2] {
         let (description, camera) = (self.description(), self.camera());
         let SetupCamera {
@@ -119,7 +120,7 @@ impl Setup {
         [1.0 / (1.0 / distance + vergence), far]
     }
 
-    /// Returns the heights that can be measured, in metres: those that are both
+    /// Returns the heights that can be measured, in metres: the heights that are both
     /// [seen](Self::seen_range) and within the [depth of field](Self::depth_of_field).
     pub fn measuring_range(&self) -> HeightRange {
         self.seen_range().and(&self.depth_of_field())

@@ -17,7 +17,7 @@ pub(super) struct Row {
     pub(super) allowed: &'static str,
     /// The value without the key, as the page has it.
     pub(super) default: &'static str,
-    /// A value as one would write it, of a key that must be there.
+    /// An example of the value of a required key.
     pub(super) example: Option<&'static str>,
     /// True if the key is read together with keys of no quantity.
     pub(super) is_read_with_others: bool,

@@ -49,8 +49,8 @@ impl<'a> Frames<'a> {
         self.column.centre
     }
 
-    /// Returns the frames that are averaged, with the noise of one source: one where all would be
-    /// equal.
+    /// Returns the frames that are averaged, with the noise of one source: a single frame where all
+    /// would be equal.
     pub(super) fn of(
         &self,
         source: UncertaintySource,
@@ -69,7 +69,7 @@ impl<'a> Frames<'a> {
         })
     }
 
-    /// Returns the frames with shot noise and dark noise whose rounding is looked at.
+    /// Returns the frames with shot noise and dark noise whose rounding is simulated.
     pub(super) fn unrounded(&self) -> Vec<Grid<f32>> {
         let count = self.setup.description().average.frames;
         let dark = self.setup.sensor().dark_electrons();
@@ -148,7 +148,7 @@ impl<'a> Frames<'a> {
         })
     }
 
-    /// Returns a frame whose pixels hold what `electrons` makes of the mean electrons.
+    /// Returns a frame whose pixels hold the result of `electrons` for the mean electrons.
     fn frame(&self, mut electrons: impl FnMut(f64) -> f64) -> Grid<f32> {
         let [columns, rows] = self.image.data().size;
         let mut frame = Grid::filled(columns, rows, 0.0_f32);

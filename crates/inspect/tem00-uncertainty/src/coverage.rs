@@ -38,21 +38,21 @@ impl CoverageProbability {
 }
 
 /// Returns the effective degrees of freedom of a combined standard uncertainty, after Welch and
-/// Satterthwaite; infinite if all of the contributions' are.
+/// Satterthwaite; infinite if the degrees of freedom of all contributions are.
 ///
 /// ```text
 /// ν_eff = u⁴ / Σ (uᵢ⁴ / νᵢ)
 /// ```
 ///
 /// Each contribution is its standard uncertainty, in the unit of the `combined` one, and its
-/// degrees of freedom, greater than 0 and possibly infinite. Those with finite ones are
-/// independent.
+/// degrees of freedom, greater than 0 and possibly infinite. Contributions with finite degrees of
+/// freedom are independent.
 ///
 /// # References
 ///
 /// - JCGM 100:2008, *Guide to the expression of uncertainty in measurement*, eq. (G.2b).
 pub fn effective_degrees_of_freedom(combined: f64, contributions: &[(f64, f64)]) -> f64 {
-    // In parts of the combined one, so that no power leaves the range of numbers.
+    // As fractions of the combined uncertainty, so that no power leaves the range of numbers.
     let terms = contributions
         .iter()
         .map(|(u, freedom)| (u / combined).powi(4) / freedom);

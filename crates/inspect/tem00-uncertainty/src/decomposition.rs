@@ -7,7 +7,7 @@ use crate::{Inputs, UncertaintyError, trials};
 pub struct DecompositionOptions {
     /// The number of samples N, at least 1000; the model is evaluated N (n + 2) times for n inputs.
     pub samples: u32,
-    /// The seed of everything random.
+    /// The seed of all random numbers.
     pub seed: u64,
 }
 
@@ -30,14 +30,14 @@ pub struct SobolIndex {
     pub standard_error: f64,
 }
 
-/// Parts that one input has in the variance of a result.
+/// Fractions of the variance of a result that belong to one input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VarianceParts {
     /// The first-order index S: the fraction by which the variance would fall on average if the
     /// input were known exactly.
     pub first_order: SobolIndex,
     /// The total index `S_T`: the fraction that would be left on average if all other inputs were
-    /// known exactly. What it exceeds S by is made together with other inputs.
+    /// known exactly. Its excess over S comes from the input together with other inputs.
     pub total: SobolIndex,
 }
 
@@ -54,7 +54,7 @@ pub struct VarianceParts {
 ///
 /// # Examples
 ///
-/// A product of two quantities around 0 has no first order at all; its variance is made by both
+/// A product of two quantities around 0 has no first order at all; its variance comes from both
 /// together:
 ///
 /// ```
@@ -73,7 +73,7 @@ pub struct VarianceParts {
 /// # References
 ///
 /// - A. Saltelli et al., *Variance based sensitivity analysis of model output*, Computer Physics
-///   Communications 181, 2010, table 2 (b) and (f); the latter is of M. J. W. Jansen, 1999.
+///   Communications 181, 2010, table 2 (b) and (f); the latter is by M. J. W. Jansen, 1999.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decomposition {
     inputs: Vec<VarianceParts>,
@@ -151,7 +151,7 @@ impl Sums {
         let [part, variance, part_squared, variance_squared, product] = self.0;
         let value = part / variance;
         let square = part_squared + value * (value * variance_squared - 2.0 * product);
-        // Rounding may leave less than nothing of it.
+        // Rounding may make it negative.
         let standard_error = square
             .is_finite()
             .then(|| square.max(0.0).sqrt() / variance)?;
@@ -166,8 +166,8 @@ fn total(sums: impl Iterator<Item = Sums>) -> Sums {
     sums.fold(Sums::default(), Sums::and)
 }
 
-/// Returns the sums of one block of samples: for each input, those of first order and those of the
-/// total.
+/// Returns the sums of one block of samples: for each input, the sums of first order and the sums
+/// of the total.
 fn sums(
     inputs: &Inputs,
     model: &impl Fn(&[f64]) -> f64,

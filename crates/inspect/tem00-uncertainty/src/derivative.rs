@@ -1,6 +1,6 @@
 use crate::{UncertaintyError, trials::value};
 
-/// A derivative and what is left open of it.
+/// A derivative and its numerical uncertainty.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Derivative {
     pub(crate) value: f64,
@@ -14,8 +14,8 @@ const RATIO: f64 = 1.4;
 
 /// Returns the derivative of a model by one input, at its estimates.
 ///
-/// Central differences over steps that shrink from `first_step` on are extrapolated to no step; of
-/// the tableau the element is taken that differs least from its neighbours.
+/// Central differences over steps that shrink from `first_step` on are extrapolated to a step of
+/// zero; the result is the element of the tableau that differs least from its neighbours.
 ///
 /// # References
 ///

@@ -1,6 +1,6 @@
 use core::fmt;
 
-/// Shape of the distribution that describes what is known of a quantity.
+/// Shape of the distribution that describes the knowledge of a quantity.
 ///
 /// # References
 ///
@@ -43,8 +43,8 @@ impl Distribution {
         }
     }
 
-    /// Returns the half-width in standard uncertainties: √3 of a rectangular, √6 of a triangular,
-    /// √2 of an arcsine distribution; `None` of one without limits.
+    /// Returns the half-width in standard uncertainties: √3 for a rectangular, √6 for a triangular,
+    /// √2 for an arcsine distribution; `None` for a distribution without limits.
     pub fn half_width(self) -> Option<f64> {
         let square: Option<f64> = match self {
             Self::Normal | Self::StudentT => None,

@@ -4,7 +4,7 @@ use tem00_numerics::{Refusal, Shown};
 
 use crate::Distribution;
 
-/// Reasons for which an uncertainty is refused.
+/// Reasons why an uncertainty is refused.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum UncertaintyError {

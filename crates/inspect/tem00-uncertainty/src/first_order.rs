@@ -5,7 +5,7 @@ use crate::{
     trials::value,
 };
 
-/// Part that one input has in a combined standard uncertainty.
+/// Contribution of one input to a combined standard uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contribution {
     /// The sensitivity coefficient c = ∂f/∂x.
@@ -13,7 +13,7 @@ pub struct Contribution {
     /// The standard uncertainty of the result by this input alone, |c| u(x).
     pub uncertainty: f64,
     /// The fraction of the variance of the result: c u(x) Σ r c u over all inputs, divided by the
-    /// variance. The fractions of all inputs add up to 1; that of a correlated input may be
+    /// variance. The fractions of all inputs add up to 1; the fraction of a correlated input may be
     /// negative. Without a variance they are 0.
     pub variance_fraction: f64,
 }
@@ -24,13 +24,13 @@ pub struct Contribution {
 /// u_c² = Σᵢ Σⱼ cᵢ cⱼ u(xᵢ) u(xⱼ) r(xᵢ, xⱼ)      cᵢ = ∂f/∂xᵢ
 /// ```
 ///
-/// The derivatives are central differences over at most one standard uncertainty, extrapolated to
-/// no step. Of a t distribution u is the scale, as JCGM 100 has it.
+/// The derivatives are central differences over at most one standard uncertainty, extrapolated to a
+/// step of zero. For a t distribution u is the scale, as JCGM 100 has it.
 ///
 /// # Validity
 ///
-/// The model is close to linear over a few standard uncertainties, and one that is not normal does
-/// not dominate. [`Propagation::validate`](crate::Propagation::validate) tells.
+/// The model is close to linear over a few standard uncertainties, and no input that is not normal
+/// dominates. [`Propagation::validate`](crate::Propagation::validate) checks this.
 ///
 /// The [front page](crate) has an example.
 ///
@@ -80,7 +80,7 @@ impl FirstOrder {
                     .sum::<f64>()
         };
         let parts: Vec<f64> = (0..changes.len()).map(covariance).collect();
-        // What cancels by correlation may be negative by rounding.
+        // A sum that cancels by correlation may be negative by rounding.
         let variance = parts.iter().sum::<f64>().max(0.0);
         let contribution = |(i, &sensitivity): (usize, &f64)| Contribution {
             sensitivity,
@@ -117,7 +117,7 @@ impl FirstOrder {
         self.degrees_of_freedom
     }
 
-    /// Returns what each input contributes, in their order.
+    /// Returns the contributions of the inputs, in their order.
     pub fn contributions(&self) -> &[Contribution] {
         &self.contributions
     }
@@ -128,7 +128,7 @@ impl FirstOrder {
     }
 }
 
-/// Checks that differences settled on the derivatives.
+/// Checks that the differences converged to the derivatives.
 fn check_smooth(inputs: &Inputs, derivatives: &[Derivative]) -> Result<(), UncertaintyError> {
     const ALLOWED: f64 = 1e-6;
     let all = inputs.as_slice().iter().zip(derivatives);

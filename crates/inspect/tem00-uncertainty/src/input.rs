@@ -8,8 +8,8 @@ use crate::{Distribution, UncertaintyError};
 
 /// Estimate, uncertainty and distribution of an input quantity.
 ///
-/// `u` is the standard uncertainty, the square root of the variance; of a scaled and shifted t it
-/// is the scale, s/√n of n observations, and the standard deviation is
+/// `u` is the standard uncertainty, the square root of the variance; for a scaled and shifted t it
+/// is the scale, s/√n for n observations, and the standard deviation is
 /// [larger](Self::standard_deviation).
 ///
 /// # References
@@ -46,12 +46,12 @@ impl Input {
 
     /// Returns the same input with the degrees of freedom of its standard uncertainty.
     ///
-    /// If they are finite, a normal input becomes a scaled and shifted t (JCGM 101, § 6.4.9). Those
-    /// of other shapes count in the law of propagation alone.
+    /// If they are finite, a normal input becomes a scaled and shifted t (JCGM 101, § 6.4.9).
+    /// Degrees of freedom of other shapes count only in the law of propagation.
     ///
     /// # Errors
     ///
-    /// Returns an error if they are below 1.
+    /// Returns an error if the degrees of freedom are below 1.
     pub fn with_degrees_of_freedom(
         self,
         degrees_of_freedom: f64,
@@ -89,7 +89,7 @@ impl Input {
         self.degrees_of_freedom
     }
 
-    /// Returns the standard deviation of the distribution: `u`, or `u √(ν / (ν − 2))` of a t
+    /// Returns the standard deviation of the distribution: `u`, or `u √(ν / (ν − 2))` for a t
     /// distribution with ν degrees of freedom, infinite where they are 2 or fewer.
     pub fn standard_deviation(&self) -> f64 {
         let freedom = self.degrees_of_freedom;

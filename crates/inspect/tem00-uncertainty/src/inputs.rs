@@ -44,15 +44,15 @@ impl Inputs {
 
     /// Creates inputs of which some are correlated, and jointly normal.
     ///
-    /// The joint distribution is that of JCGM 101, § 6.4.8. It has none for other shapes, and the
+    /// The joint distribution follows JCGM 101, § 6.4.8. There is none for other shapes, and the
     /// formula of Welch and Satterthwaite holds for independent inputs: correlated inputs must be
     /// normal with infinite degrees of freedom. Correlations of ±1 are possible.
     ///
     /// # Errors
     ///
     /// Returns an error if there are no inputs, if a correlation is not between two different ones,
-    /// is given twice or is not from −1 to 1, if a correlated input is not normal, or if no
-    /// quantities have all of the correlations: if their matrix is not positive semi-definite, to
+    /// is given twice or is not from −1 to 1, if a correlated input is not normal, or if the
+    /// correlations are not possible together: if their matrix is not positive semi-definite, to
     /// 10⁻¹².
     pub fn correlated(
         inputs: Vec<Input>,
@@ -101,7 +101,7 @@ impl Inputs {
         }
     }
 
-    /// Checks that trials can settle on a variance of what is made of the inputs.
+    /// Checks that trials can converge to a variance of a function of the inputs.
     pub(crate) fn check_variances(&self) -> Result<(), UncertaintyError> {
         let has_none = |input: &&Input| input.standard_deviation().is_infinite();
         match self.inputs.iter().find(has_none) {

@@ -9,12 +9,12 @@ use crate::CoverageProbability;
 /// - JCGM 101:2008, § 7.7.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum IntervalKind {
-    /// The interval that the value is as probably below as above.
+    /// The interval with equal probabilities that the value lies below and above it.
     #[default]
     Symmetric,
     /// The shortest interval, which contains the mode of a distribution with one peak. Both of its
     /// ends scatter together, with the cube root of the number of trials; its length scatters no
-    /// more than that of others.
+    /// more than the length of other intervals.
     Shortest,
 }
 
@@ -56,7 +56,7 @@ impl CoverageInterval {
     }
 }
 
-/// Returns where the shortest interval begins that has so many values behind its lower end; the
+/// Returns the start of the shortest interval that has `between` values behind its lower end; the
 /// first of several.
 fn shortest(values: &[f64], between: usize) -> usize {
     let length = |first: &usize| values[first + between] - values[*first];

@@ -4,8 +4,9 @@
 //!
 //! - A model takes the values of all inputs, in their order and in any units, and returns one
 //!   number.
-//! - Uncertainties are *standard* uncertainties: of bounded distributions the half-width is
-//!   [`Distribution::half_width`] times that, of a scaled and shifted t it is the scale.
+//! - Uncertainties are *standard* uncertainties: for bounded distributions the half-width is
+//!   [`Distribution::half_width`] times the standard uncertainty, for a scaled and shifted t the
+//!   standard uncertainty is the scale.
 //! - Positions of inputs count from 0.
 //! - Same seed, same bits, for any number of threads.
 //!
@@ -15,11 +16,11 @@
 //! - [`FirstOrder`]: the law of propagation of uncertainty, [`coverage_factor`],
 //!   [`effective_degrees_of_freedom`].
 //! - [`Propagation`]: trials until their results are stable; [`CoverageInterval`], [`Validation`].
-//! - [`Decomposition`]: the part of the variance that each input makes.
+//! - [`Decomposition`]: the fraction of the variance that each input contributes.
 //!
 //! # Scope and non-goals
 //!
-//! One result of a model that is a function of its inputs. Correlations are those of normal
+//! One result of a model that is a function of its inputs. Correlations hold between normal
 //! quantities, the only ones for which JCGM 101 states a joint distribution (§ 6.4.8). Models of
 //! several results (JCGM 102), models that are implicit, and second-order terms of the law of
 //! propagation are left out: trials need none.

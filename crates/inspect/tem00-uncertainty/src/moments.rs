@@ -29,7 +29,7 @@ impl Moments {
         }
     }
 
-    /// Returns the standard deviation of the values, by their number less one.
+    /// Returns the standard deviation of the values, with their number minus one as the divisor.
     pub(crate) fn deviation(&self) -> f64 {
         (self.squares / (self.count - 1.0)).sqrt()
     }

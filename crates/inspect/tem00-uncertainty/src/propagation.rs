@@ -19,7 +19,7 @@ pub struct PropagationOptions {
     pub tolerance_divisor: f64,
     /// The maximum number of trials.
     pub max_trials: u64,
-    /// The seed of everything random.
+    /// The seed of all random numbers.
     pub seed: u64,
 }
 
@@ -42,7 +42,7 @@ impl Default for PropagationOptions {
 /// Blocks of M = max(⌈100/(1 − p)⌉, 10⁴) trials are drawn until twice the standard deviations of
 /// the averages of the estimate, the standard uncertainty and both ends of the coverage interval
 /// are at most the numerical tolerance δ = ½ 10^ℓ of the standard uncertainty c · 10^ℓ, whose c has
-/// as many digits as are asked for.
+/// the requested number of digits.
 ///
 /// Each block has random numbers of its own, so that the result is the same for any number of
 /// threads; the feature `parallel` brings them.
@@ -83,7 +83,7 @@ impl Validation {
 }
 
 impl Propagation {
-    /// Draws values of a model until they are stable or as many as are allowed.
+    /// Draws values of a model until they are stable or their number is the maximum.
     ///
     /// # Errors
     ///
@@ -111,7 +111,7 @@ impl Propagation {
             next = range.end;
             let of_block = |block| trials::block((inputs, &model), (options.seed, block), trials);
             for values in trials::map(range, of_block) {
-                // Threads may have drawn more than are wanted.
+                // Threads may have drawn more than are needed.
                 if !result.is_stable() {
                     result.add(values?, &mut summaries)?;
                 }
@@ -165,12 +165,12 @@ impl Propagation {
         self.moments.deviation()
     }
 
-    /// Returns the coverage interval that was asked for.
+    /// Returns the requested coverage interval.
     pub fn interval(&self) -> CoverageInterval {
         self.interval_of(self.options.interval)
     }
 
-    /// Returns a coverage interval of the probability that was asked for.
+    /// Returns a coverage interval of the requested probability.
     pub fn interval_of(&self, kind: IntervalKind) -> CoverageInterval {
         CoverageInterval::of_sorted(&self.values, self.options.probability, kind)
     }
@@ -196,7 +196,7 @@ impl Propagation {
         self.largest_error <= self.tolerance()
     }
 
-    /// Compares the coverage interval of a first order with that of the trials.
+    /// Compares the coverage interval of a first order with the interval of the trials.
     ///
     /// The trials should be stable with a
     /// [`tolerance_divisor`](PropagationOptions::tolerance_divisor) of 5.
@@ -235,8 +235,8 @@ impl PropagationOptions {
     }
 }
 
-/// Returns the largest of the standard deviations of the averages of what blocks found; infinite of
-/// a single block.
+/// Returns the largest of the standard deviations of the averages of the results of blocks;
+/// infinite for a single block.
 fn largest_deviation_of_averages(summaries: &[[f64; 4]]) -> f64 {
     if summaries.len() < 2 {
         return f64::INFINITY;
@@ -248,8 +248,8 @@ fn largest_deviation_of_averages(summaries: &[[f64; 4]]) -> f64 {
     (0..4).map(deviation).fold(0.0, f64::max)
 }
 
-/// Returns the numerical tolerance δ = ½ 10^ℓ of a number c · 10^ℓ whose c has so many digits (JCGM
-/// 101, § 7.9.2); 0 of 0.
+/// Returns the numerical tolerance δ = ½ 10^ℓ of a number c · 10^ℓ whose c has `digits` digits
+/// (JCGM 101, § 7.9.2); 0 for 0.
 fn numerical_tolerance(number: f64, digits: u8) -> f64 {
     if number == 0.0 {
         return 0.0;

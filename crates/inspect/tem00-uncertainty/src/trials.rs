@@ -62,7 +62,7 @@ pub(crate) fn block(
     (0..trials).map(|_| trial()).collect()
 }
 
-/// Returns what `work` makes of each number of a range, in their order.
+/// Returns the results of `work` for the numbers of a range, in their order.
 pub(crate) fn map<T: Send>(range: Range<u64>, work: impl Fn(u64) -> T + Sync) -> Vec<T> {
     #[cfg(feature = "parallel")]
     let range = range.into_par_iter();

@@ -231,7 +231,7 @@ impl Stage {
         by_line.min(MAX_SHIFT * self.middle.distance(self.camera.position()))
     }
 
-    /// Tells whether all squares of a board are in the image.
+    /// Returns whether all squares of a board are in the image.
     fn sees(&self, board: &Checkerboard, pose: &RigidMotion) -> bool {
         let [right, up] = board.corners().map(|corners| corners as f64);
         let outline = [(-1.0, -1.0), (right, -1.0), (-1.0, up), (right, up)];

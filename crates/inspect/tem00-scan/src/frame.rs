@@ -326,7 +326,7 @@ impl NoiseFreeFrame {
             .min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 
-    /// Tells whether an edge of the part cuts the line at a point, or there would be no line
+    /// Returns whether an edge of the part cuts the line at a point, or there would be no line
     /// without noise.
     ///
     /// First order would give such a position a very small uncertainty, because little light moves

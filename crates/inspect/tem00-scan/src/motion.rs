@@ -105,7 +105,7 @@ fn head(scene: &Scene) -> Result<Trajectory, ScanError> {
     ))
 }
 
-/// Tells whether two motions have the same poses in all frames, to a picometre over a metre.
+/// Returns whether two motions have the same poses in all frames, to a picometre over a metre.
 fn alike(a: &Trajectory, b: &Trajectory, frames: u32) -> bool {
     const CLOSE: f64 = 1e-12;
     a == b

@@ -345,13 +345,13 @@ impl<'a> Integrator<'a> {
         (path.depth < self.rules.max_depth || self.finds_light(&ray)).then_some((next, ray))
     }
 
-    /// Tells whether a ray can find light if no surface may follow.
+    /// Returns whether a ray can find light if no surface may follow.
     #[inline(never)] // It is rare beside what surrounds it.
     fn finds_light(&self, ray: &Ray) -> bool {
         self.may_meet_light(ray) || self.rays_meet_lasers()
     }
 
-    /// Tells whether a ray from a surface can still find light where no surface may follow.
+    /// Returns whether a ray from a surface can still find light where no surface may follow.
     fn meets_light(&self, specular: bool) -> bool {
         self.rays_meet_lights(specular) || self.rays_meet_lasers()
     }

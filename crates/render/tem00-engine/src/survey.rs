@@ -43,8 +43,8 @@ pub(crate) struct Survey<'a> {
 /// Separates the random numbers of a survey from the random numbers of a render.
 const SEED: u64 = 0x005e_ed0f;
 
-/// Tells whether a frame shows multiple light whose speckle differs from the speckle of the single
-/// light: its paths differ by a length that counts, by a motion, or by polarisation.
+/// Returns whether a frame shows multiple light whose speckle differs from the speckle of the
+/// single light: its paths differ by a length that counts, by a motion, or by polarisation.
 pub(crate) fn asks_for_survey(scene: &Scene, frame: u32, options: &RenderOptions) -> bool {
     let is_broad = scene
         .lasers
@@ -55,7 +55,7 @@ pub(crate) fn asks_for_survey(scene: &Scene, frame: u32, options: &RenderOptions
     !is_single(scene, options) && (is_broad || is_depolarised || is_other_frame)
 }
 
-/// Tells whether light cannot meet more than one rough surface.
+/// Returns whether light cannot meet more than one rough surface.
 fn is_single(scene: &Scene, options: &RenderOptions) -> bool {
     is_plate(scene) || options.max_depth == Some(1)
 }

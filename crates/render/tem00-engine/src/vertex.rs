@@ -43,7 +43,7 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// Tells whether the material only mirrors and refracts.
+    /// Returns whether the material only mirrors and refracts.
     pub(crate) fn is_specular(&self) -> bool {
         self.material.is_specular()
     }
@@ -82,7 +82,7 @@ impl<'a> Vertex<'a> {
         pdf * self.cosine.abs() / self.hit.distance.powi(2)
     }
 
-    /// Tells whether the local direction is on the side from which the path came.
+    /// Returns whether the local direction is on the side from which the path came.
     pub(crate) fn is_seen_side(&self, wi: DVec3) -> bool {
         wi.z * self.back.z > 0.0
     }

@@ -116,7 +116,7 @@ impl Intersector {
         );
     }
 
-    /// Tells whether nothing stands between a surface point and another point.
+    /// Returns whether nothing stands between a surface point and another point.
     ///
     /// `from` lies on a surface with the unit normal `from_normal`, of either sign; that surface
     /// does not hide `to` at either side. A surface on which `to` lies does not hide it.

@@ -192,7 +192,7 @@ fn pdf_of_rectangle(rectangle: &Rectangle, from: DVec3, direction: DVec3) -> f64
     }
 }
 
-/// Tells whether a point sees the front of a rectangle.
+/// Returns whether a point sees the front of a rectangle.
 fn faces(rectangle: &Rectangle, from: DVec3) -> bool {
     (from - rectangle.centre()).dot(rectangle.normal()) > 0.0
 }

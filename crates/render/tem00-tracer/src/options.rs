@@ -146,7 +146,7 @@ impl Default for RenderOptions {
 }
 
 impl RenderOptions {
-    /// Tells whether directions towards lasers are drawn, and paths meet their beams by chance.
+    /// Returns whether directions towards lasers are drawn, and paths meet their beams by chance.
     pub fn samples_beams(&self) -> bool {
         self.laser_events == LaserEvents::Sampled
     }

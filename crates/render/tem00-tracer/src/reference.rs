@@ -148,7 +148,7 @@ impl<'a> Reference<'a> {
         })
     }
 
-    /// Tells whether paths from the camera look for light of the lasers.
+    /// Returns whether paths from the camera look for light of the lasers.
     fn finds_lasers(&self) -> bool {
         self.options.method == Method::Path
     }

@@ -199,7 +199,7 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    /// Tells whether rays can find lasers by chance.
+    /// Returns whether rays can find lasers by chance.
     pub(super) fn rays_meet_lasers(&self) -> bool {
         self.rules.finds_lasers && self.rules.samples_beams && !self.lasers.is_empty()
     }

@@ -110,13 +110,13 @@ impl<'a> Integrator<'a> {
         light.unwrap_or_default()
     }
 
-    /// Tells whether a ray can find lights that connections do not, behind a mirror or not.
+    /// Returns whether a ray can find lights that connections do not, behind a mirror or not.
     pub(super) fn rays_meet_lights(&self, specular: bool) -> bool {
         let is_needed = specular || self.rules.light_events != LightEvents::NextEvent;
         is_needed && self.scene.lights.iter().any(can_be_met)
     }
 
-    /// Tells whether a ray meets a light if nothing is in its way.
+    /// Returns whether a ray meets a light if nothing is in its way.
     pub(super) fn may_meet_light(&self, ray: &Ray) -> bool {
         self.scene.lights.iter().any(|light| match light {
             Light::Point { .. } => false,
@@ -131,7 +131,7 @@ impl<'a> Integrator<'a> {
     }
 }
 
-/// Tells whether a ray can meet the light.
+/// Returns whether a ray can meet the light.
 const fn can_be_met(light: &Light) -> bool {
     !matches!(light, Light::Point { .. })
 }

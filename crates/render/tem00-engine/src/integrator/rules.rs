@@ -20,7 +20,8 @@ pub(crate) struct PathRules {
 }
 
 impl PathRules {
-    /// Tells whether light of lasers over two rough surfaces is found from the first of them, too.
+    /// Returns whether light of lasers over two rough surfaces is found from the first of them,
+    /// too.
     pub(super) fn connects_to_lit_points(&self) -> bool {
         self.finds_lasers && !self.samples_beams && self.max_depth > 1
     }

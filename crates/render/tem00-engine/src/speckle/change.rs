@@ -53,7 +53,7 @@ pub(super) struct ReferencePoint {
     way: DVec3,
 }
 
-/// Tells whether anything that matters to speckle moves.
+/// Returns whether anything that matters to speckle moves.
 pub(crate) fn moves(scene: &Scene) -> bool {
     let mut lasers = 0..scene.lasers.len();
     lasers.any(|laser| (0..scene.surfaces.len()).any(|surface| scene.speckle_moves(laser, surface)))

@@ -299,7 +299,7 @@ impl Widening<'_> {
         }
     }
 
-    /// Tells whether a node may be opened: the first one if it has children at all, others while
+    /// Returns whether a node may be opened: the first one if it has children at all, others while
     /// there is room and they do not fit into one leaf.
     fn can_open(&self, index: usize, children: usize) -> bool {
         let fits = self.counts[index] <= self.capacity;

@@ -102,8 +102,8 @@ fn placement(instance: &MeshInstance) -> Placement {
     }
 }
 
-/// Tells whether the rounding of coordinates in the scene, 2⁻⁵³ `reach`, is not small compared with
-/// the resolution of single precision in a mesh, 2⁻²⁴ of its size.
+/// Returns whether the rounding of coordinates in the scene, 2⁻⁵³ `reach`, is not small compared
+/// with the resolution of single precision in a mesh, 2⁻²⁴ of its size.
 fn is_tiny(instance: &MeshInstance, reach: f64) -> bool {
     const LARGE_ENOUGH: f64 = 1.0 / (1 << 24) as f64;
     let (low, high) = instance.bounds();

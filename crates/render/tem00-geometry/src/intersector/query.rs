@@ -27,7 +27,7 @@ pub(super) trait Query {
     /// Records that something is in the way, well before the end.
     fn settle(&mut self);
 
-    /// Tells whether the answer is known.
+    /// Returns whether the answer is known.
     fn is_over(&self) -> bool;
 }
 

@@ -54,7 +54,7 @@ impl LaserSample {
         }
     }
 
-    /// Tells whether the sample finds no light of the laser.
+    /// Returns whether the sample finds no light of the laser.
     pub fn is_dark(&self) -> bool {
         self.single == 0.0 && self.multiple == 0.0
     }

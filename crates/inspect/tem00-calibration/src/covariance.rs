@@ -10,11 +10,11 @@ pub(super) const COUNT: usize = PARAMETERS.len();
 
 /// Uncertain parameter of a calibration, in the order of the covariance.
 ///
-/// The camera's axes are those of its image: to the right, down, and along the view. A tilt is the
-/// vector of [`SensorTilt`](tem00_camera::SensorTilt): its angle along the right of the image and
-/// along its top. The board is turned and shifted in the axes of the camera about its own origin,
-/// where the origin of heights is. The normal of the laser plane changes by a vector across itself,
-/// and the plane is shifted along its normal.
+/// The camera's axes are the axes of its image: to the right, down, and along the view. A tilt is
+/// the vector of [`SensorTilt`](tem00_camera::SensorTilt): its angle along the right of the image
+/// and along its top. The board is turned and shifted in the axes of the camera about its own
+/// origin, where the origin of heights is. The normal of the laser plane changes by a vector across
+/// itself, and the plane is shifted along its normal.
 pub const PARAMETERS: [Parameter; 18] = [
     Parameter::new("image distance", "m"),
     Parameter::new("principal point x", "pixel"),

@@ -276,7 +276,7 @@ fn assemble(
         .map(|calibration| calibration.with_quality(quality))
 }
 
-/// Returns the motion that takes the axes of the camera to those of a board.
+/// Returns the motion that takes the axes of the camera to the axes of a board.
 fn to_board(pose: &Pose) -> Result<RigidMotion, TriangulationError> {
     let rotation: DMat3 = pose.rotation.transpose();
     RigidMotion::new(rotation, -(rotation * pose.translation)).map_err(|_| OUTSIDE)

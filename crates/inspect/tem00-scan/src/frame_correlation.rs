@@ -8,7 +8,8 @@ pub struct FrameCorrelation {
 }
 
 impl FrameCorrelation {
-    /// Keeps correlations: for each number of frames those of columns from −n to n apart.
+    /// Keeps correlations: for each number of frames, the correlations of columns from −n to n
+    /// apart.
     ///
     /// # Panics
     ///

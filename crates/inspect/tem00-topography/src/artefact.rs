@@ -59,7 +59,7 @@ pub struct Artefact {
 }
 
 impl Artefact {
-    /// Returns the height at a place, in metres, or `None` beside the artefact.
+    /// Returns the height at a place, in metres, or `None` outside of the artefact.
     pub fn height(&self, x: f64, y: f64) -> Option<f64> {
         let [half_x, half_y] = self.size.map(|side| 0.5 * side);
         if x.abs() > half_x || y.abs() > half_y {

@@ -27,7 +27,7 @@ const HALF: f64 = 0.5;
 const FIDELITY: f64 = 0.1;
 /// The steps of the scan over one groove.
 const STEPS: u32 = 64;
-/// The profiles of grooves across the scan: in each and beside it, and over the widest.
+/// The profiles of grooves across the scan: in each and next to it, and over the widest.
 pub(crate) const PROFILES: usize = (2 * WIDTHS) as usize + STEPS as usize;
 
 /// Measured depth of grooves of one width.
@@ -152,7 +152,7 @@ struct Comb {
     across: Axis,
     /// The distance of neighbouring grooves' walls, in metres.
     land: f64,
-    /// The grooves of the first copy, then those of the next.
+    /// The grooves of the first copy, then the grooves of the next copy.
     grooves: Vec<Groove>,
     /// The length of all copies, in metres.
     length: f64,

@@ -24,8 +24,8 @@ pub struct SphereResult {
     /// The probing size error, in metres: the diameter of the sphere of least squares through all
     /// points, minus the true diameter.
     pub size: Estimate,
-    /// The probing form error of 95 % of the points, in metres: the least distance of two spheres
-    /// about the centre of that sphere that enclose them.
+    /// The probing form error of 95 % of the points, in metres: the smallest distance of two
+    /// spheres about the centre of that sphere that enclose them.
     pub form: Estimate,
     /// The probing form error of 25 places, in metres: the range of the distances from the sphere
     /// of least squares through them, each the mean of the points of a region.

@@ -17,7 +17,7 @@ pub use self::{
 /// The uncertainty budget of a height, after the GUM.
 ///
 /// To first order the position of a line moves with the grey values of its column, δy = Σ gᵢ δIᵢ,
-/// for any detector; the sensitivities gᵢ are those of the noise-free column. Each source adds a
+/// for any detector; the sensitivities gᵢ belong to the noise-free column. Each source adds a
 /// variance ([`PositionNoise`](crate::PositionNoise)), which the geometry converts to a variance of
 /// the height. The variances are means over the position of the line within a pixel.
 ///

@@ -18,8 +18,8 @@ use crate::{
 
 /// Minimum number of samples of a speckle along each axis.
 ///
-/// A pixel is a sum over its samples. To second order the sum passes frequencies f by the factor `1
-/// + (π f s)²/6` too well, with the spacing s: at 6 samples, 2 % of amplitude for the average
+/// A pixel is a sum over its samples. To second order the sum passes frequencies f too well by the
+/// factor `1 + (π f s)²/6`, with the spacing s: at 6 samples, 2 % of amplitude for the average
 /// frequency of speckle in pixels smaller than a speckle, and less in larger pixels.
 const SAMPLES_PER_SPECKLE: f64 = 6.0;
 
@@ -341,8 +341,8 @@ fn samples_per_pixel([along, across]: [f64; 2]) -> [usize; 2] {
     [nx, ny].map(to_usize)
 }
 
-/// Returns the side of a pattern of `needed` pixels, and `dark` ones beside them, that is fast to
-/// transform: the smallest number without prime factors above 5.
+/// Returns the side of a pattern of `needed` pixels, and `dark` pixels next to them, that is fast
+/// to transform: the smallest number without prime factors above 5.
 fn pattern_side(needed: usize, dark: f64) -> usize {
     let min = needed.saturating_add(to_usize(dark.ceil()));
     let smooth = |&n: &usize| {

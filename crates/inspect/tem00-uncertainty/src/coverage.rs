@@ -3,7 +3,7 @@ use tem00_numerics::check;
 
 use crate::UncertaintyError;
 
-/// From this many degrees of freedom on, the quantiles of Student's t are those of a normal
+/// From this many degrees of freedom on, the quantiles of Student's t are the quantiles of a normal
 /// distribution and a term in 1/ν, to 10⁻⁸.
 const NEARLY_NORMAL: f64 = 1e5;
 

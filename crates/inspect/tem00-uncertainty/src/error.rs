@@ -31,8 +31,8 @@ pub enum UncertaintyError {
     },
     /// No quantities have these correlations: their matrix is not positive semi-definite.
     Contradiction {
-        /// The position of the first input whose correlations contradict those of the inputs
-        /// before.
+        /// The position of the first input whose correlations contradict the correlations of the
+        /// inputs before.
         input: usize,
     },
     /// The model has no finite value.

@@ -155,7 +155,7 @@ mod tests {
             }
             Distribution::Arcsine => 0.5 + libm::asin(inside(2.0_f64.sqrt())) / PI,
             Distribution::StudentT => {
-                // Of so many degrees of freedom it is normal.
+                // With this many degrees of freedom it is normal.
                 let freedom = input.degrees_of_freedom().min(1e9);
                 StudentsT::new(0.0, 1.0, freedom).unwrap().cdf(x)
             }

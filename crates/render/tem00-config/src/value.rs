@@ -294,7 +294,7 @@ impl<'a> Value<'a> {
     }
 }
 
-/// Returns the number that an integer spells; digits beyond those of `f64` are rounded.
+/// Returns the number that an integer spells; digits beyond the precision of `f64` are rounded.
 fn decimal(digits: &str, radix: u32) -> Option<f64> {
     if radix == 10 {
         return digits.parse().ok();

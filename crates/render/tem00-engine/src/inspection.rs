@@ -78,7 +78,7 @@ pub enum LightFate {
     /// The lit surface lies outside the image, or outside its rendered part.
     OutsideImage,
     /// An object stands between the lit surface and the camera: the surface of this index, or a
-    /// light for an index beyond those of the surfaces.
+    /// light for an index beyond the surfaces.
     Hidden {
         /// The index among the surfaces, and the area lights behind them.
         by: usize,

@@ -68,7 +68,7 @@ impl Child {
         Self(bits)
     }
 
-    /// Returns the index of the node, or that of the leaf as the error.
+    /// Returns the index of the node, or the index of the leaf as the error.
     #[inline(always)]
     pub(crate) const fn index(self) -> Result<u32, u32> {
         if self.0 & Self::LEAF == 0 {

@@ -38,7 +38,7 @@ pub use self::{
 #[derive(Clone, Debug)]
 pub struct Report {
     title: String,
-    /// Values for programs, beside the sections.
+    /// Values for programs, in addition to the sections.
     data: Map<String, Value>,
     verdicts: Vec<String>,
     warnings: Vec<String>,

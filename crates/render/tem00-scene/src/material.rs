@@ -18,7 +18,7 @@ const REFLECTANCE: f64 = 0.8;
 const ROUGHNESS: f64 = 0.3;
 /// The rms slope of plaster, in radians: 20°.
 const SLOPE: f64 = core::f64::consts::PI / 9.0;
-/// The index of crown glass, and nearly that of lacquers and plastics.
+/// The index of crown glass, and nearly the index of lacquers and plastics.
 const INDEX: f64 = 1.5;
 /// The roughness of a satin coat.
 const COAT_ROUGHNESS: f64 = 0.1;

@@ -117,8 +117,8 @@ fn list(report: &mut Report, design: &Design<'_>) {
     report.section(heading).table(table.under(key));
 }
 
-/// Returns the figures, those of a listing first. A varied quantity may be a figure as well, and
-/// then has its column already.
+/// Returns the figures, with the figures of a listing first. A varied quantity may be a figure as
+/// well, and then has its column already.
 fn figures(design: &Design<'_>) -> Vec<DesignFigure> {
     let others = DesignFigure::ALL
         .into_iter()

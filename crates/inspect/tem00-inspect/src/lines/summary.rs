@@ -226,8 +226,8 @@ mod tests {
             .collect();
         let noise = noise_about_parabola(&values).expect("there are enough");
         let expected = 1.0 / 12.0_f64.sqrt();
-        // Four standard errors: that of a variance of n uniform values is √(0.8 / n) of it, 0.6 %,
-        // and a little more for the neighbours that residuals share.
+        // Four standard errors: the standard error of a variance of n uniform values is √(0.8 / n)
+        // of it, 0.6 %, and a little more for the neighbours that residuals share.
         assert!(
             (noise / expected - 1.0).abs() < 0.015,
             "{noise} for {expected}"

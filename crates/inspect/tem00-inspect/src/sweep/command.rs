@@ -57,7 +57,7 @@ impl SweptCommand {
     }
 }
 
-/// Returns the options of a command and its file, whose name may be that of an option.
+/// Returns the options of a command and its file, whose name may be the name of an option.
 fn parsed<A: Args>(grid: &Grid) -> Result<A, Failure> {
     let command = A::augment_args(clap::Command::new(grid.command.name()).no_binary_name(true));
     let options = grid.options.iter().map(OsStr::new);

@@ -149,7 +149,7 @@ fn background(
     )
 }
 
-/// The pixels that belong to each line: up to the least smoothed value between it and its
+/// The pixels that belong to each line: up to the smallest smoothed value between it and its
 /// neighbours, of equal values, the one nearest to the middle. That pixel belongs to neither.
 fn zones(smoothed: &[f64], centres: &[usize]) -> Vec<Range<usize>> {
     let valley = |pair: &[usize]| {

@@ -37,8 +37,8 @@ named! {
         Crowded = "crowded",
         /// A pixel of the window is not a finite number; it counts as background.
         Missing = "missing",
-        /// The estimate did not converge or lies outside of the window; the position is that of the
-        /// peak.
+        /// The estimate did not converge or lies outside of the window; the position is the
+        /// position of the peak.
         Failed = "failed",
         /// An edge of the part cuts the line so that only a sliver is seen, whose position is the
         /// position of the edge; or there is no line except by noise. This requires knowledge of

@@ -27,7 +27,7 @@ pub(super) struct Strip {
     pub(super) defocus: f64,
     /// The size of the image.
     pub(super) size: [f64; 2],
-    /// The size of the image with the darkness beside it, after which it repeats.
+    /// The size of the image with the darkness next to it, after which it repeats.
     pub(super) period: [f64; 2],
     pub(super) speckle_size: [f64; 2],
     /// The position of the first sample of the image.
@@ -67,8 +67,8 @@ impl Strip {
     /// fraction of the light of the line that the period of the image holds.
     ///
     /// Scatterers are half a line or half a speckle apart across the line, from where a sum of
-    /// normal amplitudes is the integral to 10⁻⁸. Those beyond the darkness beside the image are
-    /// left out.
+    /// normal amplitudes is the integral to 10⁻⁸. Scatterers beyond the darkness next to the image
+    /// are left out.
     pub(super) fn pupil(
         &self,
         positions: &[f64],

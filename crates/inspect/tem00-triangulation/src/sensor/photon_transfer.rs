@@ -29,7 +29,8 @@ impl Sensor {
 
 /// A point of the photon transfer curve: what two frames under the same light show about a sensor.
 ///
-/// The variance over the mean grey value above that of the dark frames is the gain K.
+/// The variance over the mean grey value above the mean grey value of the dark frames is the gain
+/// K.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhotonTransferPoint {
     /// The mean grey value, in DN.

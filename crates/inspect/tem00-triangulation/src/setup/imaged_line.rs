@@ -65,8 +65,8 @@ pub struct ImagedLine {
 ///
 /// # Validity
 ///
-/// The effect is the one of [`PolychromaticSpeckle`], with the surface square to the light, as
-/// everywhere in a set-up.
+/// The effect follows [`PolychromaticSpeckle`], with the surface square to the light, as everywhere
+/// in a set-up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandwidthEffect {
     /// The ratio of the contrast in a point. Pixels larger than a speckle lose less than this.

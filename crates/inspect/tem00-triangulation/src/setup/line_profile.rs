@@ -70,7 +70,7 @@ impl LineProfile {
     }
 
     /// Returns the fraction of the light per pixel, averaged over the sensitive part of a pixel
-    /// whose middle is `distance` from that of the line.
+    /// whose middle is `distance` from the middle of the line.
     pub(crate) fn at(&self, distance: f64) -> f64 {
         let angle = 2.0 * PI * distance / self.period;
         let (double, mut before, mut now) = (2.0 * angle.cos(), angle.cos(), 1.0);

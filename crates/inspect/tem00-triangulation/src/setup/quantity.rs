@@ -283,7 +283,7 @@ impl SetupQuantity {
         self.row().unit
     }
 
-    /// Returns the comment beside the key in a written set-up; `None` if the set-up needs no such
+    /// Returns the comment next to the key in a written set-up; `None` if the set-up needs no such
     /// key.
     pub(crate) fn note_in(self, description: &SetupDescription) -> Option<&'static str> {
         (self.row().is_written)(description).then_some(self.row().note)

@@ -23,7 +23,7 @@ pub(super) struct Row {
     pub(super) is_read_with_others: bool,
     /// Returns whether a written set-up has the key.
     pub(super) is_written: fn(&SetupDescription) -> bool,
-    /// The comment beside the key in a written set-up.
+    /// The comment next to the key in a written set-up.
     pub(super) note: &'static str,
     /// The place among the quantities that a search may vary.
     pub(super) design: Option<u8>,

@@ -64,7 +64,7 @@ impl QuantityUnit {
 pub(crate) const MILLIMETRES: QuantityUnit = QuantityUnit::length("mm", "mm", 1e-3);
 pub(crate) const MICROMETRES: QuantityUnit = QuantityUnit::length("um", "µm", 1e-6);
 pub(crate) const NANOMETRES: QuantityUnit = QuantityUnit::length("nm", "nm", 1e-9);
-/// Heights of reliefs: files have them beside correlation lengths.
+/// Heights of reliefs: files have them next to correlation lengths.
 pub(crate) const RELIEF: QuantityUnit = QuantityUnit {
     symbol: "um",
     ..NANOMETRES

@@ -10,7 +10,7 @@ const SIDE: u32 = 64;
 /// The number of rays of each laser that are followed to their first surface.
 const RAYS: u32 = 256;
 
-/// Tells whether, in `frame`, both a laser and the camera face a mirror or smooth glass.
+/// Returns whether, in `frame`, both a laser and the camera face a mirror or smooth glass.
 ///
 /// Light that meets such objects on both sides of a rough surface, between laser and surface and
 /// between surface and camera, is found neither by paths from the camera nor by paths from the

@@ -150,7 +150,7 @@ mod tests {
 
     const COUNTS: [u32; 8] = [8, 16, 32, 64, 128, 256, 512, 1024];
 
-    /// A pilot of 8 samples in a row of pixels, each of which stands three times beside itself.
+    /// A pilot of 8 samples in a row of pixels, each repeated three times.
     fn pilot(deviations: &[f32]) -> Pilot {
         let layer = |values: &[f32]| {
             let row: Vec<f32> = values.iter().flat_map(|&value| [value; 3]).collect();

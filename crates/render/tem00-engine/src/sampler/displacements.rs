@@ -78,7 +78,7 @@ mod tests {
         for count in [1, 2, 3, 4, 7, 16, 64] {
             let sequence = Sequence::new(count);
             for size in [0.1, 0.4, 1.6] {
-                // A smooth autocovariance, as that of speckle.
+                // A smooth autocovariance, as speckle has.
                 let law = |[x, y]: [f64; 2]| (-(x * x + y * y) / (size * size)).exp();
                 let of_pixel = |pixel: u32| {
                     let first = Stream {

@@ -81,7 +81,7 @@ impl PatternAllocation {
 pub(super) struct Part {
     /// Its fraction of the light.
     pub fraction: f64,
-    /// The stack, among those of the allocation.
+    /// The index of the stack in the allocation.
     pub stack: usize,
     /// Its position in the stack, in periods along x and y.
     pub offset: [f64; 2],

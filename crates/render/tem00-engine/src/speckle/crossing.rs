@@ -137,7 +137,7 @@ pub(super) struct Tracks {
 /// The displacement of the pupil over the speckle of a point.
 #[derive(Clone, Copy, Debug)]
 struct Way {
-    /// The frame, among those of the tracks.
+    /// The index of the frame in the tracks.
     frame: usize,
     vector: DVec2,
     /// Its length, negative on the other side of the reference frame.

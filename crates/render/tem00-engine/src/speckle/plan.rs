@@ -46,7 +46,7 @@ pub struct PatternPlan {
 /// Patterns in which a surface looks up its speckle.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct SurfacePatterns {
-    /// The patterns, among those of the laser.
+    /// The index of the patterns among the patterns of the laser.
     pub allocation: usize,
     /// The parts that add up: for each equal pattern, for each component of polarisation, for each
     /// mode.

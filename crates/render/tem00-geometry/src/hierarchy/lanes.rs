@@ -68,7 +68,7 @@ pub(crate) fn meet_boxes<S: Simd, V: SimdFloat<S, Element = f32>>(
     (near, near.simd_le(far).to_bitmask())
 }
 
-/// Tells in which lanes rays meet triangles (Möller and Trumbore 1997, without the division).
+/// Returns the lanes in which rays meet triangles (Möller and Trumbore 1997, without the division).
 #[inline(always)]
 pub(crate) fn meet_triangles<S: Simd, V: SimdFloat<S, Element = f32>>(
     ray: &RayLanes<V>,

@@ -96,7 +96,7 @@ struct Chosen<'a, 'b> {
 struct NamedChannel<'a> {
     /// The index and the name of the part of the file.
     part: (usize, String),
-    /// The name in the part, with those of its layers.
+    /// The name in the part, with the names of its layers.
     name: String,
     size: (usize, usize),
     is_identifier: bool,

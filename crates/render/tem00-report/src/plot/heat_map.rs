@@ -13,7 +13,7 @@ use super::{
 /// The maximum number of cells that are drawn along an axis.
 const MAX_CELLS: usize = 200;
 
-/// Values over a plane, as colours beside a scale; a value that is not finite is a hole.
+/// Values over a plane, as colours next to a scale; a value that is not finite is a hole.
 ///
 /// More than 200 cells along an axis are drawn as the means of blocks of them.
 #[derive(Clone, Debug)]

@@ -44,7 +44,7 @@ pub(super) fn parse(content: &[u8]) -> Result<Polygons, MeshFileError> {
 }
 
 fn strip_comment(line: &str) -> &str {
-    // `1.#QNAN` is a number that is none.
+    // `1.#QNAN` is how some programs write NaN.
     let mut marks = line.match_indices('#');
     let comment = marks.find(|&(start, _)| !line[..start].ends_with("1."));
     let end = comment.map_or(line.len(), |(start, _)| start);

@@ -60,13 +60,13 @@ impl Ggx {
 
     /// Draws the normal of a facet in proportion to its area as `wo` sees it (Heitz 2018).
     pub(super) fn sample_visible(self, wo: DVec3, [u, v]: [f64; 2]) -> DVec3 {
-        // Stretch the surface until the facets are those of a hemisphere.
+        // Stretch the surface until the facets form a hemisphere.
         let view = DVec3::new(self.alpha * wo.x, self.alpha * wo.y, wo.z).normalize();
         let across = DVec3::new(-view.y, view.x, 0.0)
             .try_normalize()
             .unwrap_or(DVec3::X);
         let upward = view.cross(across);
-        // Draw a point of the hemisphere's projection: a half disc beside a half ellipse.
+        // Draw a point of the hemisphere's projection: a half disc next to a half ellipse.
         let DVec2 { x, y: up } = u.sqrt() * DVec2::from(circle_point_at_turn(v));
         let lift = 0.5 * (1.0 + view.z);
         let half_disc = ((1.0 - x) * (1.0 + x)).sqrt();

@@ -41,7 +41,7 @@ pub(super) struct OrenNayar {
 impl OrenNayar {
     /// Creates facets from their reflectance and the rms angle of their slopes, in radians.
     ///
-    /// The ratio is the one of the qualitative model of Oren and Nayar (1994, eq. 30):
+    /// The ratio follows the qualitative model of Oren and Nayar (1994, eq. 30):
     ///
     /// ```text
     /// r = (0.45 σ² / (σ² + 0.09)) / (1 − 0.5 σ² / (σ² + 0.33))

@@ -5,7 +5,8 @@ use tem00_numerics::seed::scattered;
 pub(super) struct Random(u64);
 
 impl Random {
-    /// Starts the numbers of a seed and three indices, as those of a frame, a column and a row.
+    /// Starts the numbers of a seed and three indices, such as the numbers of a frame, a column and
+    /// a row.
     pub(super) fn new(seed: u64, indices: [u64; 3]) -> Self {
         let mixed = |state, index| scattered(state ^ scattered(index));
         Self(indices.into_iter().fold(scattered(!seed), mixed))

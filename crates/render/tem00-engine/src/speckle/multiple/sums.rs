@@ -28,8 +28,8 @@ pub(crate) struct MultipleSums {
 pub(crate) struct MultiplePath {
     /// In W/(m² sr).
     pub radiance: f64,
-    /// The optical path beyond that of the single light, in metres, and what motion has added to
-    /// it.
+    /// The optical path beyond the path of the single light, in metres, and what motion has added
+    /// to it.
     pub delay: f64,
     pub added: f64,
     pub polarisation: f64,

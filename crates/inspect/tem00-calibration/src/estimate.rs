@@ -59,11 +59,11 @@ impl BoardView {
 
 /// Estimates camera and laser plane from views of a checkerboard.
 ///
-/// The camera and the poses of the boards are those that minimise the sum of squared distances of
-/// the corners from their expected positions. The laser plane minimises the sum of squared
-/// distances from the points where the lines of sight to the laser line meet the boards. The
-/// scatter of both gives the covariance of all parameters: the scatter of the corners through the
-/// poses into the plane, and the scatter of the line, whose neighbouring points are correlated.
+/// The camera and the poses of the boards minimise the sum of squared distances of the corners from
+/// their expected positions. The laser plane minimises the sum of squared distances from the points
+/// where the lines of sight to the laser line meet the boards. The scatter of both gives the
+/// covariance of all parameters: the scatter of the corners through the poses into the plane, and
+/// the scatter of the line, whose neighbouring points are correlated.
 ///
 /// The world is the frame of the first board: heights are counted from it.
 ///

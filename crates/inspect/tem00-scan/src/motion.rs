@@ -15,7 +15,7 @@ pub struct ScanMotion {
 }
 
 impl ScanMotion {
-    /// Finds the moving part of a scene: the surface with a name, or all surfaces that move.
+    /// Finds the moving part of a scene: the surface with a given name, or all surfaces that move.
     ///
     /// # Errors
     ///

@@ -96,8 +96,8 @@ impl MeasurementInput {
 /// distance and angle change, the camera still looks at it.
 ///
 /// A quantity that affects only the noise, such as the wavelength, changes the standard
-/// uncertainties of the terms: they change in proportion to the quantity, by their differences over
-/// ± one standard uncertainty. To first order this changes no height.
+/// uncertainties of the terms: they change in proportion to the quantity, as their differences over
+/// ± one standard uncertainty show. To first order this changes no height.
 ///
 /// # Examples
 ///

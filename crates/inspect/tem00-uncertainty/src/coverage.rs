@@ -4,7 +4,7 @@ use tem00_numerics::check;
 use crate::UncertaintyError;
 
 /// From this many degrees of freedom on, the quantiles of Student's t are the quantiles of a normal
-/// distribution and a term in 1/ν, to 10⁻⁸.
+/// distribution plus a term in 1/ν, to 10⁻⁸.
 const NEARLY_NORMAL: f64 = 1e5;
 
 /// Probability with which a coverage interval contains the value of the quantity.

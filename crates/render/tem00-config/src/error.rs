@@ -54,7 +54,7 @@ impl ConfigError {
         &self.source_text
     }
 
-    /// Returns whether a file could not be read, which says nothing about their content.
+    /// Returns whether a file could not be read, which says nothing about the content of the files.
     pub const fn is_unreadable(&self) -> bool {
         self.problem.is_unreadable
     }

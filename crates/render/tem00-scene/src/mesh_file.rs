@@ -60,7 +60,7 @@ impl MeshFormat {
 /// Faces of any number of corners are cut into triangles in the plane that is closest to them,
 /// convex or not. Triangle strips and fans are read. Normals of vertices are kept as they are, also
 /// where they point to the back of a triangle; a normal that is zero or NaN counts as missing, and
-/// STL has no normals of vertices. Everything else is ignored: points, lines, colours, materials,
+/// STL has no vertex normals. Everything else is ignored: points, lines, colours, materials,
 /// textures, skins, animations; for a scene, [`SceneFile::notes`](crate::SceneFile::notes) says
 /// what was left out of the shapes. Text may begin with a byte order mark. Files with the data of a
 /// glTF file lie below its folder. No file has more than [4 GiB](tem00_config::MAX_ASSET_BYTES).

@@ -75,8 +75,8 @@ impl<'a> Sweep<'a> {
     ///
     /// # Errors
     ///
-    /// Returns the failures of the command except those that are an outcome; such a failure leaves
-    /// no row.
+    /// Returns the failures of the command except those that are an outcome; a task that fails with
+    /// one leaves no row.
     pub(super) fn run(&self, task: usize) -> Result<Worked, Failure> {
         if self.find(task).is_some() {
             return Ok(Worked::Done);

@@ -180,8 +180,8 @@ fn position_noise(
     Some(averaged(d, mean))
 }
 
-/// Divides by the numbers of columns and frames that each source is independent in; the columns of
-/// speckle are counted already.
+/// Divides by the numbers of columns and frames that each source is independent in; for speckle,
+/// the columns are counted already.
 fn averaged(d: &SetupDescription, noise: PositionNoise) -> PositionNoise {
     let columns = f64::from(d.average.columns);
     let frames = f64::from(d.average.frames);

@@ -41,8 +41,8 @@ named! {
         /// position of the peak.
         Failed = "failed",
         /// An edge of the part cuts the line so that only a sliver is seen, whose position is the
-        /// position of the edge; or there is no line except by noise. This requires knowledge of
-        /// the line without noise, which a detector does not have.
+        /// position of the edge; or there is no line except by noise. Only code that knows the line
+        /// without noise can find this; a detector does not.
         Sliver = "sliver",
     }
 }

@@ -29,8 +29,7 @@ impl Sensor {
 
 /// A point of the photon transfer curve: what two frames under the same light show about a sensor.
 ///
-/// The variance over the mean grey value above the mean grey value of the dark frames is the gain
-/// K.
+/// Above the dark frames, the ratio of the variance to the mean grey value is the gain K.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhotonTransferPoint {
     /// The mean grey value, in DN.

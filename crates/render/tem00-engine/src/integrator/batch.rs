@@ -31,8 +31,8 @@ pub(crate) struct Batch<'a> {
     pub(super) rays: Vec<Ray>,
     pub(super) hits: Vec<Option<Hit>>,
     pub(super) vertices: Vec<Vertex<'a>>,
-    /// For each sample, the fraction of the radiance at the end of its path that reaches the
-    /// camera, by wavelength.
+    /// For each sample, the ratio of the radiance at the camera to the radiance at the end of its
+    /// path, by wavelength.
     pub(super) throughput: Vec<f64>,
     pub(super) connections: Connections,
     pub(super) lit: LaserEventBatch,

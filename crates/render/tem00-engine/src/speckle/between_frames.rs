@@ -43,8 +43,8 @@ impl SpeckleChange {
     /// ```
     ///
     /// P maps from the sensor, which may be tilted and lie behind a lens with distortion, to the
-    /// plane across the axis in which the law gives the displacement a. This plane is in focus at
-    /// the image point, not on the axis.
+    /// plane across the axis in which the law gives the displacement a. This is the plane that is
+    /// in focus at the image point, not the plane in focus on the axis.
     ///
     /// A sensor head that moves over a fixed part changes speckle in the same way as a part that
     /// moves under a fixed head.

@@ -29,8 +29,8 @@ impl MeasurementScene {
     ///
     /// # Errors
     ///
-    /// Returns an error if a file cannot be read or does not describe a scene and a sensor. It
-    /// names key, value and what is allowed, and knows its location in its file.
+    /// Returns an error if a file cannot be read or does not describe a scene and a sensor. The
+    /// error names key, value and what is allowed, and knows its location in its file.
     pub fn read<'a>(
         path: &Path,
         reading: impl Into<Reading<'a>>,

@@ -265,7 +265,7 @@ impl ProfileSensor for SetupSensor<'_> {
         let frames: Vec<&[DVec3]> = places.chunk_by(|a, b| a == b).collect();
         let mut profiles = Vec::new();
         for frames in frames.chunks(FRAMES) {
-            // Each scene has speckle and noise of its own.
+            // Each scene has its own speckle and noise.
             self.seed = derived(self.seed, Purpose::Frame, 0);
             let measurement = Measurement::new(self.scene(artefact, frames)?)?;
             for (same, number) in frames.iter().zip(0..) {

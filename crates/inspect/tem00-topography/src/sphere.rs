@@ -10,7 +10,7 @@ use crate::{
 pub(crate) const PROFILES: u32 = 64;
 /// The half-angle of the cap that is measured, in radians: 45°.
 const CAP: f64 = core::f64::consts::FRAC_PI_4;
-/// The rings of places that stand for the cap: their angle, as a fraction of the cap's, and the
+/// The rings of places that represent the cap: their angle, as a fraction of the cap's, and the
 /// number of places.
 const RINGS: [(f64, u32); 3] = [(0.0, 1), (0.5, 8), (0.85, 16)];
 /// The half-angle of the region of one place, as a fraction of the cap's.

@@ -44,7 +44,7 @@ impl Objective {
     }
 }
 
-/// Task of a search: a set-up, what is varied, the constraints and the objective.
+/// Task of a search: a set-up, the varied parameters, the constraints and the objective.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignQuestion {
     /// The set-up to begin with: quantities that are not varied keep their values.

@@ -31,7 +31,7 @@ pub enum TriangulationError {
         /// The number of corners of squares that the image shows.
         found: usize,
     },
-    /// Measurements leave open what they should determine.
+    /// Measurements do not determine a quantity that they should determine.
     NotDetermined {
         /// The undetermined quantity.
         what: &'static str,

@@ -199,7 +199,7 @@ impl ColumnLight<'_> {
 
     /// The rows that count, and how far the position moves with the speckle factor in each.
     ///
-    /// Those that move it by less than a millionth of the first are left out.
+    /// Rows that move it by less than a millionth of the first are left out.
     fn weights(&self) -> Vec<(f64, f64)> {
         let products = self.sensitivities.iter().zip(self.coherent);
         let rows = products

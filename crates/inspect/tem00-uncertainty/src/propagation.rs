@@ -44,8 +44,8 @@ impl Default for PropagationOptions {
 /// are at most the numerical tolerance δ = ½ 10^ℓ of the standard uncertainty c · 10^ℓ, whose c has
 /// the requested number of digits.
 ///
-/// Each block has random numbers of its own, so that the result is the same for any number of
-/// threads; the feature `parallel` brings them.
+/// Each block has its own random numbers, so that the result is the same for any number of threads;
+/// the feature `parallel` brings them.
 ///
 /// The [front page](crate) has an example.
 ///

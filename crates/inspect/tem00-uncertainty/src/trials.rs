@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use crate::{Inputs, UncertaintyError};
 
-/// Returns the random numbers of a block of trials: a stream of its own.
+/// Returns the random numbers of a block of trials: a separate stream.
 pub(crate) fn stream(seed: u64, block: u64) -> ChaCha8Rng {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     random.set_stream(block);

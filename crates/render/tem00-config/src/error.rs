@@ -39,7 +39,7 @@ impl ConfigError {
         self.path.as_deref()
     }
 
-    /// Returns what is wrong, in one sentence without the location.
+    /// Returns the description of the error, in one sentence without the location.
     pub fn message(&self) -> &str {
         &self.problem.message
     }

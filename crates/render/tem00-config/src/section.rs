@@ -95,7 +95,7 @@ impl<'a> Section<'a> {
         })
     }
 
-    /// Returns what `read` makes of the value of a key, or `default` without such a key.
+    /// Returns the result of `read` for the value of a key, or `default` without such a key.
     ///
     /// # Errors
     ///

@@ -157,7 +157,7 @@ impl<'a> Integrator<'a> {
             self.connect_to_lights(batch);
             // Remember the first rough surface of each path: all light of the path has its speckle.
             self.note_speckle(batch);
-            // Choose where the paths go on.
+            // Choose how the paths continue.
             self.scatter(batch);
         }
         if self.speckle.is_some() {

@@ -62,9 +62,9 @@ pub(crate) enum Use {
     Pixel,
     /// The position in the pupil.
     Lens,
-    /// The direction in which a path goes on from its vertex of this number.
+    /// The direction in which a path continues from its vertex of this number.
     Scattering(u32),
-    /// The decision whether a path goes on from its vertex of this number.
+    /// The decision whether a path continues from its vertex of this number.
     Survival(u32),
     /// The position on a light: number of the vertex, number of the light.
     Light(u32, u32),

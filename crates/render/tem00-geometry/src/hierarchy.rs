@@ -23,7 +23,7 @@ pub(crate) struct Hierarchy {
     radius: f64,
 }
 
-/// Up to eight boxes, and what is in them.
+/// Up to eight boxes, and their content.
 #[repr(align(32))]
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Node {

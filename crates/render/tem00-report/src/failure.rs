@@ -118,7 +118,7 @@ impl Failure {
         }
     }
 
-    /// Returns what is wrong, in one line.
+    /// Returns the message of the failure, in one line.
     pub fn message(&self) -> &str {
         self.problem().map_or("", |problem| &problem.message)
     }

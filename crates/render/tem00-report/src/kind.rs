@@ -6,7 +6,7 @@ use tem00_config::{DocumentKind, kind_of_document};
 
 use crate::failure::Failure;
 
-/// Returns what the end of a file's name stands for, in capitals or not.
+/// Returns the meaning of the end of a file's name, in capitals or not.
 pub(crate) fn of_ending<T: Copy>(path: &Path, known: &[(&str, T)]) -> Option<T> {
     let ending = path.extension()?.to_str()?;
     let found = known

@@ -208,7 +208,7 @@ fn write_grid<T: Element>(grid: &Grid<T>, mut writer: impl Write) -> io::Result<
     writer.flush()
 }
 
-/// Makes room for `more` values, doubling what is there, but never for more than `count`.
+/// Makes room for `more` values, doubling the memory, but never for more than `count`.
 fn reserve<T>(values: &mut Vec<T>, more: usize, count: usize) -> Result<(), NpyError> {
     let needed = values.len() + more;
     if values.capacity() >= needed {

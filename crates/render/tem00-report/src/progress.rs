@@ -56,7 +56,7 @@ impl Progress {
         Self { bar, lines }
     }
 
-    /// Says what the work belongs to from now on.
+    /// Names the work that the progress belongs to from now on.
     pub fn name(&self, message: String) {
         let message = printable_line(&message, 60);
         if let Some(lines) = &self.lines {

@@ -133,7 +133,7 @@ impl Report {
 }
 
 impl Section {
-    /// Puts the quantities and tables into an object of their own in JSON.
+    /// Puts the quantities and tables into a separate object in JSON.
     pub const fn under(&mut self, key: &'static str) -> &mut Self {
         self.key = Some(key);
         self

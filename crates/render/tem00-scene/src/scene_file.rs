@@ -37,8 +37,8 @@ const SCENE: Format = Format {
 ///
 /// # Errors
 ///
-/// Returns an error if a file cannot be read, is not valid TOML, or if they do not describe a
-/// scene. It names key, value and what is allowed, and knows its location in its file.
+/// Returns an error if a file cannot be read, is not valid TOML, or if the files do not describe a
+/// scene. The error names key, value and what is allowed, and knows its location in its file.
 pub fn read_scene(path: &Path) -> Result<Scene, ConfigError> {
     SceneFile::read(path).map(|file| file.scene)
 }

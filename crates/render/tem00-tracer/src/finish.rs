@@ -30,7 +30,7 @@ use crate::Metal;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FinishingProcess {
-    /// The name of what it leaves: "milled".
+    /// The name of the finish that it leaves: "milled".
     pub name: &'static str,
     /// The minimum and the maximum usual arithmetic mean deviation Ra of the profile, in metres.
     pub mean_deviation: [f64; 2],

@@ -14,7 +14,7 @@ use crate::{Environment, TracerError};
 /// rectangles are: its rounding error is 1e−11 of this.
 const SMALL_SOLID_ANGLE: f64 = 1e-4;
 
-/// A source of incoherent light, without colour of its own.
+/// A source of incoherent light, without its own colour.
 ///
 /// # Examples
 ///

@@ -326,7 +326,7 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// Sends a path on in a direction drawn from the material; returns whether it goes on.
+    /// Sends a path on in a direction drawn from the material; returns whether it continues.
     fn scatter(&self, path: &mut Path, point: &Point<'_>, random: &mut Random) -> bool {
         let wavelengths = self.lasers.iter().map(Laser::wavelength).chain([WHITE]);
         let first = wavelengths.clone().next().unwrap_or(WHITE);
@@ -341,7 +341,7 @@ impl<'a> Reference<'a> {
             *throughput *= point.material.reweighted(point.back, &drawn, wavelength);
         }
         path.compression *= drawn.eta_squared;
-        // Long and dark paths end by chance; those that go on stand for them.
+        // Long and dark paths end by chance; the paths that continue represent them.
         let largest = path.throughput.iter().copied().fold(0.0, f64::max);
         if path.depth > CERTAIN_SURFACES {
             let survival = (largest * path.compression).min(0.95);

@@ -25,8 +25,8 @@ const COLUMNS: usize = 128;
 /// Options of the simulation of a set-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SimulationOptions {
-    /// The number of trials, at least 10: each has a position of the line within a pixel, speckle
-    /// and a camera of its own, and as many frames as are averaged.
+    /// The number of trials, at least 10: each has its own position of the line within a pixel, its
+    /// own speckle and camera, and as many frames as are averaged.
     pub trials: u32,
     /// The seed of all random numbers.
     pub seed: u64,

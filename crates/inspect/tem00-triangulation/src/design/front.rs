@@ -1,7 +1,7 @@
 /// Returns the points that no other point betters: none has less of the first number without also
 /// having less of the second (Pareto's front of "less of the first, more of the second").
 ///
-/// The indices come in the order of the first number; of equal points the first stands for all.
+/// The indices come in the order of the first number; of equal points the first represents all.
 /// Points with a NaN are on no front.
 ///
 /// # Examples

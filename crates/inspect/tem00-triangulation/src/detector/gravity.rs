@@ -9,7 +9,7 @@ pub(super) fn plain(profile: &Profile<'_>) -> Option<f64> {
     centre(profile, |value| value)
 }
 
-/// The centre of gravity of what lies above a fraction of the greatest value.
+/// The centre of gravity of the values above a fraction of the greatest value.
 pub(super) fn thresholded(profile: &Profile<'_>, threshold: f64) -> Option<f64> {
     let level = threshold * profile.at(0);
     centre(profile, |value| (value - level).max(0.0))

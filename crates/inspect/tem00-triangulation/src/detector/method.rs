@@ -18,7 +18,7 @@ pub enum LineMethod {
     /// Exact except for the light outside of the window. Negative values count as such: cut off,
     /// they would draw the estimate towards the middle of the window.
     CentreOfGravity,
-    /// The centre of gravity of what lies above a fraction of the peak, over the window.
+    /// The centre of gravity of the values above a fraction of the peak, over the window.
     ///
     /// ```text
     /// ŷ = Σ w_i y_i / Σ w_i      w_i = max(0, I_i − b − t P)

@@ -12,7 +12,8 @@ pub struct LinePoint {
     pub width: f64,
     /// The greatest grey value above the background.
     pub peak: f64,
-    /// The sum of the grey values above the background over the window: what the surface reflects.
+    /// The sum of the grey values above the background over the window: the light that the surface
+    /// reflects.
     pub integral: f64,
     /// The grey value of the background.
     pub background: f64,

@@ -80,7 +80,7 @@ pub(super) fn in_image(
     let window = profile.line.window.clone();
     let mut pixels = vec![[0.0; 3]; window.len()];
     for offset in -kernels.radius..=kernels.radius {
-        // The first and the last column go on beyond the image.
+        // The first and the last column continue beyond the image.
         let neighbour = x.saturating_add_signed(offset).min(columns.height() - 1);
         let weights = kernels.at(-offset);
         for (sums, &value) in pixels

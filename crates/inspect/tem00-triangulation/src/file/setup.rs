@@ -43,7 +43,7 @@ const AVERAGE: &[&str] = &["columns", "frames", "independent_speckle"];
 /// # Errors
 ///
 /// Returns an error if the file cannot be read, is not valid TOML, or does not describe a set-up.
-/// It names key, value and what is allowed, and knows its position in the file.
+/// The error names key, value and what is allowed, and knows its position in the file.
 pub fn read_setup(path: &Path) -> Result<Setup, ConfigError> {
     read_setup_with(path, FileAccess::WithinFolder, |_, _| Ok(())).map(|(setup, ())| setup)
 }

@@ -16,7 +16,7 @@ named! {
         Good = "good",
         /// The mean of the brightest pixels fits, single bright grains of speckle do not.
         SaturatedGrains = "bright grains saturate",
-        /// The mean of the brightest pixels exceeds what the sensor can hold or tell.
+        /// The mean of the brightest pixels exceeds what the sensor can hold or represent.
         Saturated = "saturated",
     }
 }
@@ -100,8 +100,8 @@ impl Setup {
         self.line().peak_electrons() + self.sensor().dark_electrons()
     }
 
-    /// Returns the mean of the brightest pixel as a fraction of what the sensor can hold or tell,
-    /// whichever is less: the full well, or the range of its grey values.
+    /// Returns the mean of the brightest pixel as a fraction of what the sensor can hold or
+    /// represent, whichever is less: the full well, or the range of its grey values.
     ///
     /// Speckle makes single pixels brighter than the mean: several times, where pixels are small
     /// compared with a speckle. See [`grain_saturation`](Self::grain_saturation).
@@ -109,8 +109,8 @@ impl Setup {
         self.saturation_of(self.peak_electrons())
     }
 
-    /// Returns the bright grains of speckle as a fraction of what the sensor can hold or tell: the
-    /// brightest pixel at three standard deviations of speckle above its mean.
+    /// Returns the bright grains of speckle as a fraction of what the sensor can hold or represent:
+    /// the brightest pixel at three standard deviations of speckle above its mean.
     pub fn grain_saturation(&self) -> f64 {
         self.grain_saturation_of(self.line())
     }
@@ -121,7 +121,7 @@ impl Setup {
     }
 
     /// Returns the exposure time, in seconds, with which bright grains fill 0.9 of what the sensor
-    /// can hold or tell, rounded down to two digits.
+    /// can hold or represent, rounded down to two digits.
     ///
     /// Light and dark current grow with the time, the black level does not.
     ///
@@ -158,7 +158,7 @@ impl Setup {
         line.peak_electrons() / noise
     }
 
-    /// Returns a number of electrons as a fraction of what the sensor can hold or tell.
+    /// Returns a number of electrons as a fraction of what the sensor can hold or represent.
     fn saturation_of(&self, electrons: f64) -> f64 {
         let sensor = &self.description().sensor;
         let grey = (sensor.black_level + sensor.gain * electrons) / sensor.largest_value();

@@ -26,7 +26,7 @@ pub(crate) struct Batch<'a> {
     pub(super) solid_angles: Vec<f64>,
     /// For each sample, its values for each laser.
     pub(super) laser_samples: Vec<LaserSample>,
-    /// The paths that go on, with the ray and the surface point of each.
+    /// The paths that continue, with the ray and the surface point of each.
     pub(super) paths: Vec<Path>,
     pub(super) rays: Vec<Ray>,
     pub(super) hits: Vec<Option<Hit>>,
@@ -41,7 +41,7 @@ pub(crate) struct Batch<'a> {
     pub(super) rays_followed: u64,
 }
 
-/// A position in the image and in the pupil, and what is found there.
+/// A position in the image and in the pupil, and the light found there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CameraSample {
     /// The number of the pixel, among those that are sampled together.

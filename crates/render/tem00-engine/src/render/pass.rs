@@ -178,7 +178,7 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
         self.integrator.draw_lens(first, batch);
     }
 
-    /// Every pixel of every frame has random numbers of its own, wherever the image is cropped.
+    /// Every pixel of every frame has its own random numbers, wherever the image is cropped.
     fn key(&self, seed: u64, [x, y]: [usize; 2]) -> u64 {
         pixel_key(seed, [self.frame.into(), x as u64, y as u64])
     }

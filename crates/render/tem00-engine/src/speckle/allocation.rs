@@ -66,7 +66,7 @@ impl PatternAllocation {
         self.stack.memory_bytes().saturating_mul(stacks)
     }
 
-    /// Returns the largest motions of the pupil that the slices tell apart, to either side of the
+    /// Returns the largest motions of the pupil that the slices distinguish, to either side of the
     /// reference frame, in its diameters.
     pub(super) fn reaches(&self) -> [f64; 2] {
         if !self.middles.is_empty() {

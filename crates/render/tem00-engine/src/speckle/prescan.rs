@@ -135,7 +135,7 @@ pub(super) struct LaserGroups<'a> {
     pub groups: &'a [usize],
 }
 
-/// Returns the multiple light in a frame, if it asks for slices of its own.
+/// Returns the multiple light in a frame, if it needs its own slices.
 pub(crate) type SurveyOfFrame<'a> =
     dyn Fn(u32, &Intersector, &Change) -> Option<MultipleMap> + Sync + 'a;
 

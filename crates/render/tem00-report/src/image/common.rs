@@ -23,7 +23,7 @@ pub(super) const MAX_IMAGE_BYTES: u64 = 8 << 30;
 /// The maximum number of bytes that a byte of compressed data stands for (zlib, Technical Details).
 pub(super) const MAX_DEFLATION: u64 = 1032;
 
-/// The formats of patterns, told apart by the end of the file's name.
+/// The formats of patterns, distinguished by the end of the file's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// 16-bit grey or colour, for the eye.

@@ -27,7 +27,7 @@ colours! {
     DSNU = "#18a0b0", "#4fd0e0";
     DETECTOR_BIAS = "#8a6030", "#c8a070";
     CALIBRATION = "#8a8a20", "#c8c850";
-    /// A source without a colour of its own.
+    /// A source without its own colour.
     OTHER = "#808080", "#a0a0a0";
     /// Uncertainties by formulas.
     FORMULAS = "#55606e", "#a8b4c2";

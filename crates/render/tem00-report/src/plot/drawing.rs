@@ -15,7 +15,7 @@ use crate::{atomic::write_atomically, failure::Failure, kind::of_ending, report:
 /// The pixels of a PNG per unit of the drawing.
 const PNG_SCALE: f32 = 2.5;
 
-/// The formats of a drawing, told apart by the end of the file's name.
+/// The formats of a drawing, distinguished by the end of the file's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     Svg,

@@ -26,7 +26,7 @@ pub struct HeatMap<'a> {
     pub ranges: [(f64, f64); 2],
     /// `true` if both axes are lengths: they get one scale, and circles are circles.
     pub to_scale: bool,
-    /// The kind of the values: each quantity has colours of its own.
+    /// The kind of the values: each quantity has its own colours.
     pub scale: Scale,
     /// The values; the first row is at the *bottom*, where the axis up begins.
     pub values: &'a Grid<f32>,

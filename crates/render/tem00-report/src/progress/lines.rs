@@ -44,7 +44,7 @@ impl Lines {
         }
     }
 
-    /// Says what the work belongs to from now on.
+    /// Names the work that the progress belongs to from now on.
     pub(super) fn name(&self, name: String) {
         if let Ok(mut state) = self.state.lock() {
             state.name = name;

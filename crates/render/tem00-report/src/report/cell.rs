@@ -19,7 +19,7 @@ pub(super) fn value(value: impl Serialize) -> Value {
 }
 
 impl Cell {
-    /// A value with a text of its own; a number that is not finite is `null` in JSON.
+    /// A value with its own text; a number that is not finite is `null` in JSON.
     pub fn new(data: impl Serialize, text: impl Into<String>) -> Self {
         let (data, text) = (value(data), text.into());
         Self { data, text }

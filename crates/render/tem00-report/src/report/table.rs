@@ -70,8 +70,7 @@ impl Table {
         self.rows.push(cells.into());
     }
 
-    /// Adds a row that sums up the rows above, for people alone: in JSON, sums have keys of their
-    /// own.
+    /// Adds a row that sums up the rows above, for people alone: in JSON, sums have their own keys.
     pub fn total(&mut self, cells: impl Into<Vec<Cell>>) {
         self.totals.push(cells.into());
     }

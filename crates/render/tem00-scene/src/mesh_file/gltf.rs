@@ -20,7 +20,7 @@ use super::polygons::{Polygons, note};
 /// Reads all triangles of the scene of a glTF 2.0 file, text or binary, each where its nodes put
 /// it.
 ///
-/// Buffers in files of their own are looked for in a folder.
+/// Buffers in separate files are looked for in a folder.
 pub(super) fn parse(
     content: &[u8],
     folder: Option<(&Path, FileAccess)>,

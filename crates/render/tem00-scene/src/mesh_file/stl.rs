@@ -109,7 +109,7 @@ fn parse_text(text: &str) -> Result<Polygons, MeshFileError> {
     Ok(soup.polygons)
 }
 
-/// Triangles whose corners are vertices of their own, made to share vertices again.
+/// Triangles with separate vertices at their corners, made to share vertices again.
 #[derive(Debug, Default)]
 struct Soup {
     polygons: Polygons,

@@ -44,10 +44,10 @@ pub struct OpticalRoughnessQuery {
 ///
 /// # Validity
 ///
-/// GGX has no rms slope of its own: its roughness is taken as the roughness of Beckmann's facets,
-/// whose lobe has the same height, and whose light is therefore correlated over the same area. The
-/// relations hold for Gaussian surfaces without shadowing. For N patches the variance of the
-/// intensity departs from its value for fully developed speckle by the order of 1/N.
+/// GGX has no rms slope: its roughness is taken as the roughness of Beckmann's facets, whose lobe
+/// has the same height, and whose light is therefore correlated over the same area. The relations
+/// hold for Gaussian surfaces without shadowing. For N patches the variance of the intensity
+/// departs from its value for fully developed speckle by the order of 1/N.
 ///
 /// # Examples
 ///

@@ -143,7 +143,7 @@ impl Reference<'_> {
             if !surface.material.is_specular() {
                 splats.extend(self.splat(laser, &arrival, area, random));
             }
-            // Choose where the light goes on.
+            // Choose where the light continues.
             let axes = LocalFrame::from_normal(hit.shading_normal);
             let back = axes.to_local(-ray.direction);
             let wavelength = source.wavelength();

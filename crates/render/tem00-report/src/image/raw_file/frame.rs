@@ -54,7 +54,7 @@ pub(super) fn count(marked: &Grid<bool>) -> usize {
     marked.values().iter().filter(|&&is| is).count()
 }
 
-/// The formats of frames, told apart by the end of the file's name.
+/// The formats of frames, distinguished by the end of the file's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RawFormat {
     Png,

@@ -103,7 +103,7 @@ impl Samples {
         Ok(JudgedSamples { samples, levels })
     }
 
-    /// Turns the image as it is to be shown.
+    /// Turns the image to the orientation in which it is to be shown.
     pub(in crate::image) fn upright(mut self) -> Self {
         if self.orientation == 1 {
             return self;

@@ -165,7 +165,7 @@ fn a_further_uncertainty_of_heights_is_one_along_them() {
     measured.calibration.uncertainty = 7e-6;
     measured.scan.height = DVec3::new(2.0, 3.0, 6.0) / 7.0;
     let point = first_frame(measured).points[0];
-    // 7 µm times the cosine to the heights, for the calibration is exact but for them.
+    // 7 µm times the cosine to the heights, since the calibration is exact apart from the heights.
     for (direction, expected) in [
         (DVec3::X, 2e-6),
         (DVec3::Y, 3e-6),
@@ -208,7 +208,7 @@ fn pixels_are_saturated_from_four_deviations_of_noise_below_a_full_well() {
 
 #[test]
 fn speckle_has_the_variance_of_the_surface_where_it_is_greatest() {
-    // (1 + P²) / 2 by the number of patterns.
+    // (1 + P²) / 2 divided by the number of patterns.
     for (others, expected) in [((0.0, 2), 0.25), ((0.0, 4), 0.17)] {
         let mut measured = measured(SCENE);
         let kinds = [(0.6, 4), others];
@@ -272,7 +272,8 @@ fn light_that_met_a_second_wall_moves_a_line_by_what_is_stated() {
         let within = |uncertainty: f64| f64::from(error.abs() < 1.96 * uncertainty);
         held += within(point.uncertainty_along(DVec3::Z));
         by_noise += within(noise);
-        // What the shift leaves is noise of the sensor and of 32 samples of a pixel.
+        // The error that remains after the shift is noise of the sensor and of 32 samples of a
+        // pixel.
         left += ((error - point.indirect.shift * point.per_pixel.z) / noise).powi(2);
         let fraction = point.indirect.fraction;
         let is_near = point.position.x.abs() < 1e-3;
@@ -312,12 +313,12 @@ fn a_mean_is_as_uncertain_as_its_correlations_say() {
     let halving = Law(|columns, later| 0.5_f64.powf(columns.abs() as f64 + 2.0 * f64::from(later)));
     let mean = mean_point(&members, &halving).unwrap();
     assert!((mean.position - 1e-3 * DVec3::Z).length() < 1e-18);
-    // Sum of ρ: (2 + 2 · 1/2) within a frame, twice, and as much times 1/4 between them, twice.
+    // Sum of ρ: (2 + 2 · 1/2) within a frame, twice, and the same times 1/4 between them, twice.
     assert_absolute(mean.noise.speckle, 0.04 * 7.5 / 16.0, 1e-15);
     assert_absolute(mean.noise.shot, 0.0025 / 4.0, 1e-15);
     // The response of a pixel stays over frames: two columns average.
     assert_absolute(mean.noise.prnu, 0.01 / 2.0, 1e-15);
-    // Indirect light moves all alike.
+    // Indirect light moves all points alike.
     let up = 1e-5 * mean.noise.total().sqrt().hypot(0.3);
     assert_absolute(mean.uncertainty_along(DVec3::Z), up, 1e-18);
 }
@@ -330,7 +331,7 @@ fn a_mean_is_not_better_than_one_over_independent_frames() {
     let mean = mean_point(&[(0, &points), (1, &points)], &opposite).unwrap();
     assert_absolute(mean.noise.speckle, 0.04 / 2.0, 1e-15);
     let law = FrameCorrelation::new(vec![vec![1.0], vec![-0.9], vec![0.5]]);
-    // Three frames, of which the first and the last go together: 9 / (3 + 2 · 1/2).
+    // Three frames, of which the first and the last are correlated: 9 / (3 + 2 · 1/2).
     assert_absolute(law.effective_frames(3), 9.0 / 4.0, 1e-15);
     assert_eq!(law.effective_frames(2), 2.0, "both count");
     assert_eq!(law.between(0, 1), -0.9, "the law is told as it is");
@@ -349,7 +350,7 @@ fn settings_that_no_scan_has_are_refused() {
 
 #[test]
 fn slivers_of_a_line_are_no_places_of_the_line() {
-    // A plate that the whole line falls on, and beside it a strip of 50 µm, a pixel in the image.
+    // A plate that the whole line falls on, and next to it a strip of 50 µm, a pixel in the image.
     let changes = [
         ("[32, 24]", "[32, 64]"),
         ("[\"-10 mm\", 0, 0]", "[\"-9.8 mm\", 0, 0]"),

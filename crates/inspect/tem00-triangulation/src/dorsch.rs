@@ -32,8 +32,8 @@ impl Dorsch {
     /// # Validity
     ///
     /// A uniformly lit round spot, much wider than a speckle, and a rough surface. For a camera
-    /// without a tilt of its own, `sin u = D / 2L` with the diameter D of its pupil at the
-    /// distance L.
+    /// without a tilt of its own, `sin u = D / 2L` with the diameter D of its pupil at the distance
+    /// L.
     ///
     /// # Errors
     ///

@@ -60,11 +60,11 @@ fn parameters_move_heights_as_the_geometry_says() {
         ("plane offset", 1e-6, DVec3::ZERO, 3.0_f64.sqrt() * 1e-6),
         // A pixel of the principal point is pitch / (m sin 30°).
         ("principal point y", 0.1, DVec3::ZERO, 0.1 * 3.45e-6 * 22.0),
-        // A board that stands higher by δ along the view: cos 30° of it.
+        // A board that stands higher by δ along the view: cos 30° of δ.
         ("shift view", 1e-6, DVec3::ZERO, 0.75_f64.sqrt() * 1e-6),
         // Turned about the right of the image by ω, a point at the height z moves along y alone.
         ("rotation right", 1e-4, high, 0.0),
-        // On the axis the image distance does nothing.
+        // On the axis the image distance has no effect.
         ("image distance", 1e-6, DVec3::ZERO, 0.0),
     ] {
         let calibration = with_uncertain(parameter(name), uncertainty);
@@ -80,7 +80,7 @@ fn what_moves_both_points_alike_leaves_their_step_certain() {
     let points = [DVec3::ZERO, DVec3::new(1e-3, 0.0, 2e-3)];
     let step = calibration.step_uncertainty(points, DVec3::Z).unwrap();
     assert!(step < 1e-18, "{step:e}");
-    // A scale does not: the step is wrong by the fraction by which the plane is.
+    // A scale does not: the step is wrong by the same fraction as the plane.
     let plane = with_uncertain(PARAMETERS.len() - 1, 1e-4);
     let step = plane.step_uncertainty(points, DVec3::Z).unwrap();
     let alone = plane.height_uncertainty(points[1], DVec3::Z).unwrap();

@@ -112,8 +112,9 @@ fn exact_corners_give_the_camera_back() {
         let calibration =
             calibrate(&board(), &views(&truth, 6), &model(tilt != 0.0, radial)).unwrap();
         let (found, expected) = (calibration.camera().description(), truth.description());
-        // The search ends when 1e-12 of the sum of squares is left to gain; the sum itself is the
-        // rounding of pixels, 1e-12 pixel. Pixels on the far side of derivatives leave 1e-6 of all.
+        // The search ends when at most 1e-12 of the sum of squares can be gained; the sum itself is
+        // the rounding of pixels, 1e-12 pixel. Pixels on the far side of derivatives leave 1e-6 of
+        // all.
         let distance = calibration.camera().image_distance();
         assert_relative(distance, truth.image_distance(), 1e-6);
         assert_relative(found.focus_distance, expected.focus_distance, 1e-4);

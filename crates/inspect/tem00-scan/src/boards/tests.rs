@@ -114,7 +114,7 @@ fn rendered_boards_give_the_scene_back() {
             error < 4.0 * uncertainty,
             "{pixel}: {error:e}, {uncertainty:e} m"
         );
-        // A pixel is 1 mm in height; six boards know it to a fifth.
+        // A pixel is 1 mm in height; six boards determine it to a fifth.
         assert!(uncertainty < 2e-4, "{uncertainty:e} m");
     }
 }
@@ -132,8 +132,8 @@ fn stage() -> Stage {
 #[test]
 fn boards_shift_until_the_line_is_off_their_middle_or_by_a_tenth_of_the_distance() {
     // A board leans by half of the angle between view and laser plane. A shift s moves its middle
-    // from the plane by s sin of that angle, and the line on it by so much over the cosine of the
-    // half.
+    // from the plane by s sin of that angle, and the line on it by this shift over the cosine of
+    // the half.
     let angle = 125_f64.atan2(216.5);
     let by_line = 0.3 * 20e-3 * (0.5 * angle).cos() / angle.sin();
     for (square, expected) in [(5e-3, by_line), (20e-3, 0.1 * 0.125_f64.hypot(0.2165))] {
@@ -150,7 +150,7 @@ fn a_board_is_seen_if_four_pixels_are_left_beside_its_squares() {
     // Across the axis, in the plane in focus, where a pixel is 16 µm (L − f) / f wide.
     let focus = stage.camera.position() - 0.25 * axes.z_axis;
     let pixel = 16e-6 * 242.0 / 8.0;
-    // Half of the image less half of the 8 × 6 squares, which are turned so that one corner leads
+    // Half of the image minus half of the 8 × 6 squares, which are turned so that one corner leads
     // on each side.
     let turn = 0.2_f64;
     let (right, up) = (

@@ -29,7 +29,8 @@ fn squares_of_window(n: f64) -> f64 {
 }
 
 /// The second moment along one axis of the part of an Airy pattern within `reach` of its middle,
-/// all in units of the speckle size: ∫ A(r) r³ k(r) dr, k being what the angles leave of ∫ sin² dφ.
+/// all in units of the speckle size: ∫ A(r) r³ k(r) dr, where k is the part of ∫ sin² dφ over the
+/// angles.
 fn second_moment_of_airy(reach: f64) -> f64 {
     const STEP: f64 = 0.02;
     let term = |i: u32| {
@@ -45,7 +46,7 @@ fn second_moment_of_airy(reach: f64) -> f64 {
     (0..50_000).map(term).sum()
 }
 
-/// The part of the light of a column that a detector with a window of 31 pixels counts, beside a
+/// The fraction of the light of a column that a detector with a window of 31 pixels counts, above a
 /// background that it takes from pixels some 25 away.
 fn counted_light(setup: &Setup) -> f64 {
     let line = setup.line();
@@ -65,8 +66,8 @@ fn shot_noise_of_a_centre_of_gravity_is_the_bound_and_that_of_the_wings() {
     let variance = line.projected_thickness.powi(2) / 16.0 + 1.0 / 12.0 + lens;
     let bound = (variance / line.column_electrons).sqrt() / counted_light(&setup);
     // The background is that of 25 pixels away to a fifth, 1e−3 of the light in the window; the
-    // window that follows the noise adds the ends' 1 % of a motion that is no larger than that of
-    // the position.
+    // window that follows the noise adds the ends' 1 % of a motion that is no larger than the
+    // motion of the position.
     assert_relative(position(&budget, Source::ShotNoise), bound, 1.5e-2);
 }
 
@@ -164,7 +165,7 @@ fn averages_lower_what_is_independent() {
         let line = SpeckledLine::new(0.5 * 5.44 / h, columns / h).unwrap();
         line.centroid_deviation()
     };
-    // Pixels of the height 0.6 h take as much of both to half a per cent.
+    // Pixels of the height 0.6 h reduce both equally, to within half a per cent.
     assert_relative(ratio, law(4.0) / law(1.0), 0.02);
     assert!(ratio > 0.5 && ratio < 0.8, "{ratio}");
 }
@@ -210,7 +211,7 @@ fn a_budget_adds_up() {
     let combined = squares.iter().sum::<f64>().sqrt();
     assert_relative(budget.combined(), combined, 1e-12);
     assert_eq!(budget.dominant().source, Source::Speckle, "{budget:?}");
-    // All terms are known, so k is that of a normal distribution.
+    // All terms are known, so k is the factor of a normal distribution.
     assert_relative(budget.expanded(), 1.959_964 * combined, 1e-6);
     let setup = setup_of(|_| ());
     let per_pixel = setup.line().height_per_pixel;

@@ -79,7 +79,7 @@ fn every_combination_is_tried_once_and_in_order() {
             (candidate.index, (camera.angle, camera.f_number)),
             (index, expected)
         );
-        // What is not varied stays, and the figures are those of the set-up alone.
+        // Quantities that are not varied stay, and the figures are the figures of the set-up alone.
         assert_eq!(description.laser, base().laser);
         assert_eq!(candidate.figures, DesignFigures::evaluate(description));
     }
@@ -232,7 +232,7 @@ fn speckle_grows_as_the_root_of_the_f_number_for_fine_pixels_and_as_it_for_coars
         let found = growth(UncertaintySource::Speckle);
         assert_absolute(found, law, 0.01);
         assert!(exponents.contains(&found), "∝ F^{found}");
-        // Light falls as 1 / F² but for the aperture's sine; diffraction widens the line of fine
+        // Light falls as 1 / F² except for the aperture's sine; diffraction widens the line of fine
         // pixels.
         let widening = if pitch < 10e-6 { 0.04 } else { 0.01 };
         assert_absolute(growth(UncertaintySource::ShotNoise), 1.0, widening);
@@ -266,7 +266,7 @@ fn depth_of_field_is_that_of_the_lens_or_of_the_fine_line() {
     let depths = [1.0, -1.0].map(|sign| 1.0 / (1.0 / camera.distance - sign * vergence));
     let lens = (depths[0] - depths[1]) / camera.angle.cos();
     assert_relative(figures(&description).depth_of_field, lens, 1e-9);
-    // A line of 20 µm: twice its Rayleigh range of π w₀² / λ, whatever the lens does.
+    // A line of 20 µm: twice its Rayleigh range of π w₀² / λ, independent of the lens.
     description.laser.line_thickness = 20e-6;
     description.camera.scheimpflug = true;
     let twice = 2.0 * core::f64::consts::PI * 10e-6_f64.powi(2) / 650e-9;
@@ -371,7 +371,7 @@ fn neighbours_differ_in_one_parameter() {
     assert!(more < less, "{more:e} m with more, {less:e} m with less");
     let [_, more] = of(&near, SetupQuantity::Power);
     let (exact, root) = (figures(&description), 1.1_f64.sqrt());
-    // Shot noise falls as the root of the power, speckle does not know of it: to the rounding of
+    // Shot noise falls as the root of the power, speckle does not depend on it: to the rounding of
     // columns of f32, 6e-8.
     for (source, falls) in [
         (UncertaintySource::ShotNoise, root),

@@ -1,7 +1,7 @@
 //! Detectors against closed forms.
 //!
-//! Lines are Gaussians with the standard deviation σ = w/2, in pixels. Their pixels are `f32`: a
-//! part of 6e−8 of the peak is rounding everywhere.
+//! Lines are Gaussians with the standard deviation σ = w/2, in pixels. Their pixels are `f32`: 6e−8
+//! of the peak is rounding everywhere.
 
 mod bias;
 mod lines_of_an_image;
@@ -46,7 +46,7 @@ fn density(u: f64, sigma: f64) -> f64 {
     (-0.5 * (u / sigma).powi(2)).exp() / (TAU.sqrt() * sigma)
 }
 
-/// The part of a normal distribution about 0 below u.
+/// The fraction of a normal distribution about 0 below u.
 fn cumulative(u: f64, sigma: f64) -> f64 {
     0.5 * libm::erfc(-u / sigma * FRAC_1_SQRT_2)
 }
@@ -78,6 +78,6 @@ fn phases() -> impl Iterator<Item = f64> {
     (-9..=9).map(|i| f64::from(i) * 0.05)
 }
 
-/// The middle of the pixel that the lines of these tests are about.
+/// The middle of the pixel in which the lines of these tests lie.
 const MIDDLE: f64 = 200.5;
 const LENGTH: usize = 401;

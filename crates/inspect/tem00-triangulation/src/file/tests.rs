@@ -89,7 +89,7 @@ fn a_written_set_up_is_what_a_person_would_write() {
     ] {
         has(&text, line);
     }
-    // What follows from the rest, or is as always, is not written.
+    // Values that follow from the others, or equal their defaults, are not written.
     for key in [
         "gain",
         "black_level",
@@ -175,7 +175,8 @@ fn a_linewidth_lowers_the_noise_of_a_line_less_than_the_contrast() {
         ),
     ] {
         for (index, linewidth) in [1, 5, 10, 40].into_iter().enumerate() {
-            // f / 2 L F = 0.025, at a magnification at which pixels are fine against a speckle.
+            // f / 2 L F = 0.025, at a magnification at which pixels are small compared with a
+            // speckle.
             let changes = [
                 ("focal_length", "0.12"),
                 ("pixel_pitch", "1e-6"),

@@ -184,7 +184,7 @@ fn profiles_keep_what_the_detector_found() {
             "{point:?}"
         );
     }
-    // The uncertainty is the one that was asked for, per point.
+    // The uncertainty is the requested one, per point.
     let ratio = profile[2].point.along / profile[0].point.along;
     assert!((ratio / 3005.0 - 1.0).abs() < 0.1, "{ratio}");
 }

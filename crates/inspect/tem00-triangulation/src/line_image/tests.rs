@@ -52,8 +52,8 @@ fn the_mean_of_many_images_is_the_line_that_the_lens_blurs() {
                         .sum::<f64>(),
                 ];
                 // 200 images of 12 columns, 7.5 speckles, have 1500 independent positions: 2.6 %
-                // each, four of them. What lies in the darkness beside the image comes in at the
-                // other side.
+                // each, four of them. Light in the darkness next to the image comes in at the other
+                // side.
                 assert_absolute(found, expected, f64::max(1.0, 0.104 * expected));
             }
         }
@@ -61,9 +61,9 @@ fn the_mean_of_many_images_is_the_line_that_the_lens_blurs() {
             sum.iter().sum::<f64>(),
             mean.values().iter().map(|&v| f64::from(v)).sum(),
         ];
-        // All light of a column but what falls into the darkness: of the wings, 4h/(π³ Y) = 0.9 %,
-        // that lie outside of the image, some come in from the lines after which it repeats. The
-        // power of columns fluctuates.
+        // All light of a column except for the light that falls into the darkness: of the wings,
+        // 4h/(π³ Y) = 0.9 %, that lie outside of the image, some come in from the lines after which
+        // it repeats. The power of columns fluctuates.
         let all = 96.0 * 1e4;
         let chance = 4.0 * ((squares - found * found) / IMAGES as f64).sqrt();
         assert!(
@@ -95,8 +95,8 @@ fn speckle_leaves_the_mean_and_has_the_contrast_of_its_pixels() {
         }
     }
     let n = 4.0 * 40_000.0;
-    // A pattern has the mean 1 over its period, which the image fills but for 15 % of its area: the
-    // rest has the mean 1 ± √(0.15/125²).
+    // A pattern has the mean 1 over its period, which the image fills except for 15 % of its area:
+    // the rest has the mean 1 ± √(0.15/125²).
     assert!((sum / n - 1.0).abs() < 6e-3, "mean {}", sum / n);
     let contrast = (squares / n - (sum / n).powi(2)).sqrt();
     // The spread of C² of one pattern of 125 speckles is 1.53/125; of the contrast, half of that,
@@ -226,8 +226,8 @@ fn a_line_that_is_given_by_its_light_has_the_mean_and_the_noise_of_one_that_is_g
         assert_relative(strip[1].sqrt(), light[1].sqrt(), 0.08);
         let chance = 4.0 * (2.0 * strip[1] / 2500.0).sqrt();
         assert_absolute(strip[0], light[0], chance);
-        // Light that falls beside the image comes in again at the other side but for that in the
-        // darkness: 2 %.
+        // Light that falls next to the image comes in again at the other side, except for the light
+        // in the darkness: 2 %.
         assert_relative(strip[2], light[2], 0.02);
     }
 }

@@ -5,7 +5,7 @@ use crate::{SetupEnvironment, SimulationOptions, setup::tests::setup_of};
 
 const HEIGHT: f64 = 4e-3;
 
-/// A warm set-up whose laser plane stands beside the axis, and leans.
+/// A warm set-up whose laser plane stands next to the axis, and leans.
 fn setup() -> Setup {
     setup_of(|d| {
         (d.laser.offset, d.laser.tilt) = (1e-3, -0.05);

@@ -31,7 +31,7 @@ fn a_joule_of_red_light_is_three_times_ten_to_the_eighteen_photons() {
     let photons = sensor.photons(1.0, 632.8e-9);
     // Nine digits are given.
     assert_relative(photons, 3.185_588_96e18, 2e-9);
-    // A quarter of twice the photons, whatever part of the pixel is sensitive.
+    // A quarter of twice the photons, for any sensitive part of the pixel.
     assert_relative(sensor.electrons(2.0, 632.8e-9), 0.5 * photons, 1e-15);
     // The energy of all electrons is a joule.
     assert_relative(
@@ -71,8 +71,8 @@ fn the_signal_is_the_noise_at_the_threshold() {
     let sensor = typical();
     let threshold = sensor.threshold_electrons();
     assert_relative(sensor.signal_to_noise_ratio(threshold), 1.0, 1e-12);
-    // Half an electron, and the dark noise with that of the dark current, 0.003, and of rounding,
-    // 0.75 e⁻.
+    // Half an electron, and the dark noise with the noise of the dark current, 0.003, and of
+    // rounding, 0.75 e⁻.
     let gain: f64 = 4_031.0 / 10_500.0;
     let dark = (2.3_f64.powi(2) + 0.003 + 1.0 / (12.0 * gain * gain) + 0.25).sqrt();
     assert_absolute(threshold, 0.5 + dark, 1e-12);

@@ -169,7 +169,7 @@ fn a_line_on_a_leaning_plane_is_blurred_by_its_depth() {
     }
 }
 
-/// The set-up with a laser that leans, by degrees, and stands beside the axis, at an angle of the
+/// The set-up with a laser that leans, by degrees, and stands next to the axis, at an angle of the
 /// camera.
 fn leaning(tilt: f64, offset: f64, angle: f64, scheimpflug: bool) -> Setup {
     setup_of(|d| {
@@ -210,7 +210,7 @@ fn a_sensor_after_scheimpflug_has_a_leaning_laser_in_focus_if_it_stands_on_the_a
             assert!(blur < 1e-11, "{tilt}°, {angle}°, {height}: {blur}");
         }
     }
-    // Beside the axis the image of the depth at which the range of the lens ends is blurred by the
+    // Off the axis the image of the depth at which the range of the lens ends is blurred by the
     // width of the line.
     for (tilt, offset, angle) in [(0.0, 20e-3, 30.0), (0.0, -15e-3, 30.0), (10.0, 30e-3, 40.0)] {
         let mut description = leaning(tilt, offset, angle, true).description().clone();
@@ -303,7 +303,7 @@ fn a_chosen_exposure_leaves_room_for_bright_grains_and_not_much_more() {
 
 #[test]
 fn each_quantity_is_the_field_of_its_key_in_values_and_in_text() {
-    // Each gets a number of its own, in the order of the table.
+    // Each gets its own number, in the order of the table.
     let mut d = description();
     for (quantity, number) in SetupQuantity::ALL.iter().zip(1_u32..) {
         quantity.set(&mut d, 1e-7 * f64::from(number));

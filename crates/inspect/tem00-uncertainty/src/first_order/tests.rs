@@ -75,7 +75,7 @@ fn what_is_fully_correlated_cancels() {
     };
     let inputs = Inputs::correlated(vec![input(5.0, 0.1); 2], &[correlation]).unwrap();
     let found = FirstOrder::new(&inputs, |x| x[0] - x[1]).unwrap();
-    // The root of what rounding leaves of a variance of 0.01 · 10⁻¹⁶ · 10².
+    // The root of the rounding error of a variance of 0.01 · 10⁻¹⁶ · 10².
     assert!(found.combined() < 1e-8, "{found:?}");
     assert!(found.expanded(CoverageProbability::P95) < 2e-8, "{found:?}");
     // x₂ is made of both others: rounding leaves a variance of some 1e-16, of either sign.

@@ -193,8 +193,8 @@ fn inputs_that_leave_what_is_possible_are_named() {
             }
         }
     }
-    // An arcsine one ends before, and two that only together leave what is possible are none to
-    // blame.
+    // An arcsine distribution ends before, and of two inputs that only together reach impossible
+    // values neither is named.
     let arcsine = of(Distribution::Arcsine);
     assert!(Propagation::new(&arcsine, root, PropagationOptions::default()).is_ok());
     let both = |x: &[f64]| (12.0 - x[0] - x[1]).sqrt();

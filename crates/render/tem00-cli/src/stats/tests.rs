@@ -46,7 +46,7 @@ fn drawn(measurement: &Measurement) -> String {
     page.draw().svg().to_owned()
 }
 
-/// A window out of a pattern with speckles of 4 samples, and a brightness of its own.
+/// A window out of a pattern with speckles of 4 samples, and its own brightness.
 fn window(seed: u64) -> Grid<f32> {
     let pattern = PupilField::new(512, 128, seed).expect("valid").pattern();
     Grid::from_fn(400, 300, |x, y| 7.0 * pattern.values()[(x, y)])
@@ -157,7 +157,7 @@ fn pedestal(values: Grid<f32>) -> Option<String> {
 
 #[test]
 fn a_pedestal_is_told_by_the_darkest_values() {
-    // A tenth of the mean of 3500 to thirty times that of 70 over a black level of 64 and more.
+    // A tenth of the mean of 3500 to thirty times the mean of 70 over a black level of 64 and more.
     for (mean, level) in [
         (3_500.0, 350.0),
         (300.0, 64.0),

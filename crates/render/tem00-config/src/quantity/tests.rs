@@ -68,7 +68,8 @@ fn anything_else_is_no_quantity() {
 
 #[test]
 fn values_are_written_as_a_person_writes_them() {
-    // The text that is read, and that which is written: as short, in the usual unit if it may be.
+    // The text that is read, and the text that is written: as short, in the usual unit if it may
+    // be.
     for (dimension, usual, text, expected) in [
         (&DURATION, "ms", "0.16 ms", "0.16 ms"),
         (&DURATION, "ms", "20 us", "0.02 ms"),

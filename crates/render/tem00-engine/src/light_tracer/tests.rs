@@ -81,7 +81,7 @@ fn traces(scene: &Scene, paths: u64, seeds: u64) -> Vec<LaserLayers> {
     (0..seeds).map(|seed| trace(scene, paths, seed)).collect()
 }
 
-/// The power of each, in parts of that of the laser.
+/// The power of each, as a fraction of the power of the laser.
 fn powers(layers: &[LaserLayers]) -> Vec<f64> {
     layers.iter().map(|l| l.power_on_target / POWER).collect()
 }
@@ -105,7 +105,7 @@ fn lit(scene: &Scene, pixel: DVec2, normal: DVec3) -> f64 {
     REFLECTANCE / PI * sum / f64::from(SIDE * SIDE)
 }
 
-/// The fraction of the laser's light that falls on what a pixel shows.
+/// The fraction of the laser's light that falls on the surface that a pixel shows.
 fn fraction_of_light(scene: &Scene, pixel: DVec2) -> f64 {
     let centre = pixel + 0.5;
     let towards = on_plate(scene, centre) - scene.camera.position();

@@ -26,7 +26,7 @@ fn positions(sequence: &Sequence, key: u64) -> Vec<[f64; 2]> {
     streams.map(|stream| position(sequence, stream)).collect()
 }
 
-/// The mean square over many pixels of what `error` finds for the positions of each.
+/// The mean square over many pixels of the error that `error` finds for the positions of each.
 fn mean_square(count: u32, error: impl Fn(u32, &[[f64; 2]]) -> f64) -> f64 {
     const PIXELS: u32 = 4000;
     let sequence = Sequence::new(count);
@@ -37,7 +37,7 @@ fn mean_square(count: u32, error: impl Fn(u32, &[[f64; 2]]) -> f64) -> f64 {
     (0..PIXELS).map(square).sum::<f64>() / f64::from(PIXELS)
 }
 
-/// What the mean of points misses of the area to one side of an edge in some direction.
+/// The error of the mean of points for the area to one side of an edge in some direction.
 fn edge_error(pixel: u32, points: &[[f64; 2]]) -> f64 {
     let angle = (f64::from(pixel) + 0.5) * 2.4;
     let offset = (f64::from(pixel) * 0.618).fract() * 0.8 - 0.4;
@@ -53,7 +53,7 @@ fn edge_error(pixel: u32, points: &[[f64; 2]]) -> f64 {
     found / points.len() as f64 - area
 }
 
-/// Returns which of so many equal parts of (0, 1) holds `x`.
+/// Returns the index of the part that holds `x`, of equal parts of (0, 1).
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -63,7 +63,8 @@ fn place(x: f64, parts: usize) -> usize {
     (x * parts as f64) as usize
 }
 
-/// Tells whether each cell of a grid of so many columns and rows holds one of the points.
+/// Returns whether each cell of a grid of `columns` columns and `rows` rows holds one of the
+/// points.
 fn one_in_each_cell(points: &[[f64; 2]], columns: usize, rows: usize) -> bool {
     let mut cells = vec![0; columns * rows];
     for [x, y] in points {

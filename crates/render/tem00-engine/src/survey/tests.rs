@@ -34,7 +34,7 @@ fn corner(line: SpectralLine, waist_radius: f64) -> Scene {
     camera.depth_of_field = false;
     let mut scene = testing::scene(camera, &[laser], floor);
     scene.surfaces.push(wall);
-    // The closed form is that of one further surface.
+    // The closed form is for one further surface.
     scene.render.max_depth = Some(2);
     scene
 }

@@ -147,7 +147,7 @@ fn brute_force(shapes: &[Shape], ray: &Ray) -> Option<(f64, usize)> {
     distances.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// Asserts that a ray meets what a search of all primitives finds, at the same distance, and
+/// Asserts that a ray has the hit that a search of all primitives finds, at the same distance, and
 /// returns it.
 #[track_caller]
 fn assert_found(intersector: &Intersector, shapes: &[Shape], ray: &Ray) -> Option<Hit> {

@@ -14,7 +14,7 @@ pub(crate) fn hex(text: &str) -> Vec<u8> {
     (0..digits.len()).step_by(2).map(byte).collect()
 }
 
-/// What stands before the values, byte by byte as the format says, without a line of the library.
+/// The content before the values, byte by byte as the format says, without a line of the library.
 fn header(version: u8, text: &str) -> Vec<u8> {
     let length = u32::try_from(text.len()).unwrap().to_le_bytes();
     let mut file = b"\x93NUMPY".to_vec();
@@ -219,7 +219,7 @@ fn memory_is_only_asked_for_as_the_file_fills_it() {
     let cut = NpyReader::new(endless.as_slice()).and_then(|array| array.into_complex(u64::MAX));
     assert!(matches!(cut, Err(NpyError::Memory(_))), "{cut:?}");
 
-    // What the limit counts: once the values, twice if they are turned.
+    // What the limit counts: the values once, or twice if they are transposed.
     let file = array("<c16", "(4, 4)", &[0; 256]);
     let within = |file: &[u8], limit| {
         let array = NpyReader::new(file).and_then(|array| array.into_complex(limit));

@@ -36,7 +36,7 @@ fn pyramid() -> Vec<[DVec3; 3]> {
     base.iter().chain(&SIDES).map(|t| t.map(corner)).collect()
 }
 
-/// Writes a file into a folder of its own and reads it as millimetres.
+/// Writes a file into its own folder and reads it as millimetres.
 fn read(name: &str, content: impl AsRef<[u8]>) -> (Result<TriangleMesh, MeshFileError>, PathBuf) {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join(name);
@@ -65,7 +65,7 @@ fn assert_pyramid(name: &str, content: impl AsRef<[u8]>) {
     assert_eq!(mesh.vertices().len(), 5, "{name}: vertices are shared");
 }
 
-/// Returns what the error says after the name of the file.
+/// Returns the text of the error after the name of the file.
 fn complaint(name: &str, content: impl AsRef<[u8]>) -> String {
     let (result, path) = read(name, content);
     let text = result.unwrap_err().to_string();
@@ -211,8 +211,8 @@ fn independent_readers_see_the_same_triangles() {
         triangulate: true,
         ..tobj::LoadOptions::default()
     };
-    // What tobj does not take: comments after a vertex, continued lines, weights, and colours of
-    // some vertices only.
+    // Content that tobj does not read: comments after a vertex, continued lines, weights, and
+    // colours of some vertices only.
     let plain = OBJ
         .replace(" # the last of the base", "")
         .replace("\\\n", "")

@@ -111,7 +111,7 @@ fn colours_are_those_that_the_file_states() {
             [0.343_966_45, 0.728_166_1, -0.072_132_54],
             1e-6,
         ),
-        // S-2014-004, that of AP1.
+        // S-2014-004, the matrix of AP1.
         (
             [[0.713, 0.293], [0.165, 0.83], [0.128, 0.044], ACES],
             [0.272_228_72, 0.674_081_77, 0.053_689_517],
@@ -134,7 +134,7 @@ fn colours_are_those_that_the_file_states() {
     }
     let rec_709 = [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], D65];
     assert_close(&written(rec_709).unwrap(), &GREY);
-    // Of a single channel nothing is converted.
+    // A single channel is not converted.
     let grey = exr_file_in(&[("Y", RED)], Some(XYZ));
     assert_close(&read_file("sky.exr", &grey, 1.0).unwrap(), &RED);
     for colours in [

@@ -137,7 +137,7 @@ fn the_map_is_upright_and_seen_from_inside() {
     let map = Grid::from_fn(8, 4, |x, y| if (x, y) == (4, 0) { 1.0 } else { 0.0 });
     let sky = Environment::from_radiance(map, DVec3::Z, DVec3::X).unwrap();
     let bright = sky.sample([0.5, 0.5]).unwrap().direction;
-    // Who looks along x, with z up, has −y on his right.
+    // An observer who looks along x, with z up, has −y on the right.
     assert!(bright.z > 0.7, "up: {bright}");
     assert!(bright.x > 0.0 && bright.y < 0.0, "right of x: {bright}");
     assert!(-bright.y < bright.x, "within 45° of the middle: {bright}");

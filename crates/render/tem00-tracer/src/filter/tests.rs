@@ -48,9 +48,9 @@ fn mean(filter: Filter, f: impl Fn(f64) -> f64) -> f64 {
 fn samples_have_the_moments_and_the_frequency_response_of_the_kernel() {
     for filter in filters() {
         let norm = integral(filter, |_| 1.0);
-        // Where the kernel is small, as at the ends of a long tail and beside zeros, a point stands
-        // for a long piece of x: the midpoint rule errs by up to the weight of a point, 2^−17, at
-        // each of up to six such positions.
+        // Where the kernel is small, as at the ends of a long tail and next to zeros, a point
+        // stands for a long piece of x: the midpoint rule errs by up to the weight of a point,
+        // 2^−17, at each of up to six such positions.
         let tolerance = 4e-5;
         assert_absolute(mean(filter, |_| 1.0), 1.0, tolerance);
         for power in 1..=4 {
@@ -105,7 +105,7 @@ fn strata_stay_strata() {
             assert!(is_in_order, "{filter:?} at {u}: {offset} after {last}");
             let mirrored = sampler.sample([0.5, 1.0 - u]).offset.y;
             // The uniform numbers themselves are mirrored to rounding; the slope of the inverse
-            // grows to some 1e6 beside zeros of the density.
+            // grows to some 1e6 next to zeros of the density.
             assert!((mirrored + offset).abs() < 1e-9, "{filter:?} at {u}");
             last = offset;
         }

@@ -91,7 +91,7 @@ proptest! {
         prop_assert!(light.radiance_along(sample.direction) > 2.9, "the lit side");
         let pdf = sample.pdf.unwrap();
         prop_assert!((sample.radiance_over_pdf * pdf / 3.0 - 1.0).abs() < 1e-15);
-        // Just beside an edge by rounding there is no density.
+        // Just next to an edge by rounding there is no density.
         if across.abs().max(along.abs()) < 1.0 - 1e-9 {
             prop_assert!((light.pdf(from, sample.direction) / pdf - 1.0).abs() < 1e-11);
         }

@@ -238,7 +238,7 @@ fn mirror_direction_is_brightest_for_smooth_metal() {
     let material = iron(0.01);
     let wo = direction(0.8, 0.3);
     let mirror = DVec3::new(-wo.x, -wo.y, wo.z);
-    // D(0) = 1/(π α²), V = 1/(4 cos²θ) but for α², and the facet sees the light at cos θ.
+    // D(0) = 1/(π α²), V = 1/(4 cos²θ) except for α², and the facet sees the light at cos θ.
     let reflectance = fresnel_reflectance(0.8, Metal::Iron.refractive_index(RED).unwrap());
     let peak = reflectance / (PI * 1e-4) / (4.0 * 0.64);
     // Masking at α² tan²θ / 4 = 1.4e−5 for each direction is left out above.

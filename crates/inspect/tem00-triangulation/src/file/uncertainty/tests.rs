@@ -127,7 +127,7 @@ fn every_quantity_may_be_uncertain() {
     }
 }
 
-/// Asserts that a text is refused at a position, with such words.
+/// Asserts that a text is refused at a position, with the given words.
 fn assert_refused(text: &str, at: &str, words: &str) {
     let error = read(text).map(drop).unwrap_err();
     let message = error.to_string();

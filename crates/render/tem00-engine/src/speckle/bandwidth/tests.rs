@@ -94,7 +94,7 @@ fn cell(scene: &Scene) -> ResolutionCell {
     cell.with_source_extent(scene.lasers[0].source_extent().clone())
 }
 
-/// What the law has in the middle of the picture.
+/// The value of the law in the middle of the picture.
 fn by_law(scene: &Scene, value: impl Fn(&PolychromaticSpeckle<'_>) -> f64) -> f64 {
     let (line, cell) = (scene.lasers[0].spectral_line(), cell(scene));
     value(&PolychromaticSpeckle { line, cell: &cell })
@@ -124,8 +124,8 @@ fn contrasts_are_those_of_the_law() {
 
 #[test]
 fn frames_of_motions_along_and_across_the_tilt_are_those_of_the_law() {
-    // What the camera sees the plate move by in a frame, in diameters of its pupil: along the tilt,
-    // and across it.
+    // The motion of the plate that the camera sees in a frame, in diameters of its pupil: along the
+    // tilt, and across it.
     for (way, line, height) in [
         ([0.25, 0.0], gaussian(5e-9), 0.0),
         ([0.0, 0.25], gaussian(5e-9), 0.0),

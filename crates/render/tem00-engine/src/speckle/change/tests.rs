@@ -34,7 +34,7 @@ fn steady(axis: DVec3, angle: f64, displacement: DVec3) -> Trajectory {
     Trajectory::turning(pivot, Rotation { axis, angle }, displacement).unwrap()
 }
 
-/// A scene in which the plate, the camera and the laser each have a motion of their own.
+/// A scene in which the plate, the camera and the laser each have their own motion.
 fn moving() -> Scene {
     let mut scene = scene();
     scene.surfaces[0].trajectory = steady(DVec3::Y, 2e-3, DVec3::new(1e-4, 2e-4, 3e-4));
@@ -147,7 +147,8 @@ fn time_backwards_moves_the_speckle_back() {
         let back = speckle_shift(&scene, 1, place);
         let sum = (forth.displacement + back.displacement).length();
         let size = forth.displacement.length();
-        // What the pupil displacement stretches on its way differs both ways in second order.
+        // The stretching by the displacement of the pupil differs in second order between the two
+        // directions.
         assert!(sum < 0.01 * size, "{place:?}: {forth:?} {back:?}");
         assert_absolute(forth.pupil / back.pupil, 1.0, 0.02);
     }
@@ -167,7 +168,7 @@ fn points_that_the_theory_does_not_know_have_speckle_of_their_own() {
     assert_eq!(speckle_shift(&scene, 3, [0.0, 0.0]), expected);
 }
 
-/// A block of many points has what each of them has alone.
+/// A block of many points has the same values as each of them alone.
 #[test]
 fn a_point_does_not_depend_on_the_points_beside_it() {
     let scene = moving();

@@ -70,7 +70,7 @@ fn plan(scene: &Scene) -> PatternPlan {
     try_plan(scene).unwrap()
 }
 
-/// The plan with patterns of at most so many MiB.
+/// The plan with patterns of at most `mebibytes` MiB.
 fn plan_within(mebibytes: f64, mut scene: Scene) -> Result<PatternPlan, TracerError> {
     scene.speckle.memory = tem00_numerics::cast::to_usize(mebibytes * f64::from(1 << 20)) as u64;
     try_plan(&scene)
@@ -301,8 +301,8 @@ fn frames_share_no_speckle_while_a_smaller_field_fits_the_memory() {
 
 #[test]
 fn every_frame_of_a_long_sequence_is_sampled() {
-    // A plate of 0.1 m leaves the field after so many frames; 16 that are spread evenly would see
-    // it in the first.
+    // A plate of 0.1 m leaves the field after `seen` frames; 16 that are spread evenly would see it
+    // in the first.
     for (frames, step, seen) in [(65, 2e-3, 27.0), (1000, 6.25e-3, 8.0), (1000, 12.5e-3, 4.0)] {
         let plan = plan_within(8192.0, scene(frames, step * DVec3::X)).unwrap();
         assert_absolute(plan.largest_shift(), step / 3.125e-3 * seen, 0.02);
@@ -319,7 +319,7 @@ fn frames_that_slices_cannot_follow_are_noted() {
     ];
     let mut scene = keyframed(3, &square);
     assert_eq!(notes(&scene), []);
-    // Bodies that share a stack for want of memory have one line.
+    // Bodies that share a stack for lack of memory have one line.
     scene.surfaces.push(rest());
     assert_eq!(notes(&scene), []);
     scene.speckle.memory = 24 << 20;
@@ -339,7 +339,7 @@ fn frames_far_from_a_reference_frame_without_a_law_are_noted() {
     scene.lasers[0] = Laser::new(testing::spot(DVec3::new(0.1, 0.0, 0.173), 0.5e-3)).unwrap();
     let notes = notes(&scene);
     assert_eq!(notes.len(), 1, "{notes:?}");
-    // 0.16 pupil diameters, of frames that have speckle of their own.
+    // 0.16 pupil diameters, of frames that have their own speckle.
     assert_eq!(
         (notes[0].frames, notes[0].rendered),
         ([1, 2], 0.0),

@@ -30,7 +30,7 @@ fn values(bit_depth: u32) -> Grid<u16> {
     })
 }
 
-/// Writes a frame of so many bits.
+/// Writes a frame of `bit_depth` bits.
 fn write(path: &Path, bit_depth: u32) -> Grid<u16> {
     let values = values(bit_depth);
     let frame = GreyFrame {
@@ -108,7 +108,8 @@ fn the_bits_of_a_camera_can_be_told() {
     let path = folder().keep().join("a.png");
     png(&path, ColorType::Grayscale, &[7, 1_023], &[]);
     let of = |bits| read_raw(&path, None, bits);
-    // The file has 16 and does not know better, but its values end at the largest of 10.
+    // The file has 16 bits and no further information, but its values end at the largest value of
+    // 10 bits.
     for (told, bits, saturated) in [
         (None, 16, 1),
         (Some(10), 10, 1),

@@ -90,13 +90,13 @@ pub use tem00_scan as scan;
 #[cfg(feature = "tracer")]
 pub use tem00_scene as scene;
 pub use tem00_speckle as speckle;
-pub use tem00_translucence as translucence;
 #[cfg(feature = "statistics")]
 pub use tem00_statistics as statistics;
 #[cfg(feature = "scan")]
 pub use tem00_topography as topography;
 #[cfg(feature = "tracer")]
 pub use tem00_tracer as tracer;
+pub use tem00_translucence as translucence;
 #[cfg(feature = "triangulation")]
 pub use tem00_triangulation as triangulation;
 #[cfg(feature = "triangulation")]

@@ -3,7 +3,9 @@ use core::f64::consts::PI;
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use tem00_numerics::{
-    Refusal, check,
+    Refusal,
+    cast::to_usize,
+    check,
     seed::{Purpose, derived},
 };
 
@@ -94,13 +96,13 @@ fn block(medium: &Medium, walk: &Walk, number: u64) -> Block {
     // First flights are stratified: they decide where the line is seen. In random order, so that
     // neighbours are independent pairs of paths.
     let count = walk.photons.div_ceil(BLOCKS);
-    let mut strata: Vec<_> = (0..count as u32).collect();
+    let mut strata: Vec<_> = (0..count).collect();
     for left in (1..strata.len()).rev() {
         let drawn = uniform(&mut photon.random) * (left + 1) as f64;
-        strata.swap(left, drawn as usize);
+        strata.swap(left, to_usize(drawn));
     }
     for stratum in strata {
-        let first = (f64::from(stratum) + uniform(&mut photon.random)) / count as f64;
+        let first = (stratum as f64 + uniform(&mut photon.random)) / count as f64;
         photon.follow([sine, 0.0, cosine], first);
     }
     photon.seen

@@ -57,7 +57,7 @@ pub(super) fn read(mut reader: impl Read) -> Result<Samples, ImageError> {
         if bits <= 8 {
             let index = row[bit / 8] >> (8 - bits as usize - bit % 8) & (0xff >> (8 - bits));
             let [blue, green, red, _] = *palette.get(usize::from(index))?;
-            return Some([red, green, blue].map(f32::from));
+            return Some([red, green, blue]);
         }
         let bytes = row[bit / 8..].iter().take(bits as usize / 8).rev();
         let value = bytes.fold(0, |value, &byte| value << 8 | u32::from(byte));
@@ -75,9 +75,9 @@ pub(super) fn read(mut reader: impl Read) -> Result<Samples, ImageError> {
             move |x| pixel(row, x)
         })
     });
-    let pixels: Vec<[f32; 3]> = pixels.collect::<Option<_>>().ok_or(ImageError::Bmp)?;
-    let is_grey = |[red, green, blue]: &[f32; 3]| red == green && green == blue;
-    let (components, values) = if bits <= 8 && pixels.iter().all(is_grey) {
+    let pixels: Vec<[u8; 3]> = pixels.collect::<Option<_>>().ok_or(ImageError::Bmp)?;
+    let is_grey = |[red, green, blue]: &[u8; 3]| red == green && green == blue;
+    let (components, values): (_, Vec<u8>) = if bits <= 8 && pixels.iter().all(is_grey) {
         (
             Components::Grey,
             pixels.iter().map(|pixel| pixel[0]).collect(),
@@ -85,12 +85,13 @@ pub(super) fn read(mut reader: impl Read) -> Result<Samples, ImageError> {
     } else {
         (Components::Rgb, pixels.into_flattened())
     };
+    let values = values.into_iter().map(f32::from).collect();
     Ok(Samples::new([width, height], components, values, Some(8)))
 }
 
 /// Returns the component under a mask as a number of 0 to 255, rounded.
-fn in_eight_bits(value: u32, mask: u32) -> f32 {
+fn in_eight_bits(value: u32, mask: u32) -> u8 {
     let shift = mask.trailing_zeros().min(31);
     let [part, full] = [value & mask, mask].map(|bits| u64::from(bits >> shift));
-    ((part * 255 + full / 2) / full.max(1)) as f32
+    u8::try_from((part * 255 + full / 2) / full.max(1)).unwrap_or(u8::MAX)
 }

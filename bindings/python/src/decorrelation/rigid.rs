@@ -1,7 +1,7 @@
 use tem00_decorrelation::{self as physics, DMat3, DVec3};
 
 use crate::{
-    arrays::Floats,
+    arrays::{Floats, LIMIT},
     error::{OrRaise, refused},
 };
 

@@ -111,7 +111,10 @@ mod tests {
             panic!("two pixels");
         };
         // Three times too bright, and as red as before: 0.52 / 2.5.
-        assert!(laser[0] > 0.999 && laser[1] < 0.21, "red on grey: {laser:?}");
+        assert!(
+            laser[0] > 0.999 && laser[1] < 0.21,
+            "red on grey: {laser:?}"
+        );
         assert!(
             light.iter().all(|c| (c - 0.5).abs() < 1e-7),
             "grey: {light:?}"

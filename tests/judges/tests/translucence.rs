@@ -217,7 +217,9 @@ fn light_paths_can_be_reversed_at_any_anisotropy() {
 /// line at 1 pm, 10 pm, 0.1 nm and 1 nm about 660 nm, contrast of the light that leaves within
 /// 0.1 mm of the entry, and the fraction that leaves; counted photon by photon, without next events,
 /// by a program that shares no code with this one.
-const COUNTED: [([f64; 3], [f64; 4], [f64; 4], f64); 3] = [
+type Counted = ([f64; 3], [f64; 4], [f64; 4], f64);
+
+const COUNTED: [Counted; 3] = [
     (
         [1.5, 2.19, 0.0021],
         [0.8915, 0.5885, 0.2541, 0.0854],

@@ -1,14 +1,15 @@
 //! Bits and refusals; `tests/judges` holds the physics against other sources.
 
-use tem00_translucence::{LineSpread, Medium, Walk};
+use tem00_translucence::{LineSpread, Medium, Refusal, Walk};
 
-fn marble() -> Medium {
-    Medium::new(1.5, 2.19e3, 2.1).expect("a medium")
+/// Marble in red light.
+fn marble() -> Result<Medium, Refusal> {
+    Medium::new(1.5, 2.19e3, 2.1)
 }
 
 #[test]
 fn the_same_seed_gives_the_same_bits() {
-    let medium = marble();
+    let medium = marble().expect("a medium");
     let walk = Walk {
         incidence: 0.1,
         exits: vec![0.3, 0.5],
@@ -21,7 +22,7 @@ fn the_same_seed_gives_the_same_bits() {
 
 #[test]
 fn what_is_out_of_range_is_named() {
-    let medium = marble();
+    let medium = marble().expect("a medium");
     let walk = |incidence, exit, photons| {
         let walk = Walk {
             incidence,

@@ -63,7 +63,10 @@ function code(page, span, linked) {
 
 // Blocks of code, spans of code, links, formulas in a line, and signs of formulas that are left.
 const parts =
-    /^( *)(```+)(.*)\n([^]*?)^ *\2 *$|(`+)[^]*?[^`]\5(?!`)|(!?\[[^\]]*\])\(([^)\s]+)\)|\$((?:[^$\n]|\n(?!\n))+)\$|\$/gm;
+    /^( *)(```+)(.*)\n([^]*?)^ *\2 *$|(`+)[^]*?[^`]\5(?!`)|(!?\[(?:!\[[^\]]*\]\([^)\s]+\)|[^\]])*\])\(([^)\s]+)\)|\$((?:[^$\n]|\n(?!\n))+)\$|\$/gm;
+
+// A picture, as the text of a link.
+const picture = /(!\[[^\]]*\])\(([^)\s]+)\)/g;
 
 for (const chapter of chapters) {
     const page = path.join("docs", chapter.path);
@@ -72,7 +75,7 @@ for (const chapter of chapters) {
     chapter.content = chapter.content.replace(parts, (all, indent, fence, kind, block, tick, text, target, tex) => {
         if (fence) return kind === "math" ? indent + formula(page, block, true) : all;
         if (tick) return code(page, all, linked);
-        if (text) return link(page, text, target);
+        if (text) return link(page, text.replace(picture, (_, alt, file) => link(page, alt, file)), target);
         if (!tex) errors.push(`${page}: a $ without its other`);
         return tex ? formula(page, tex, false) : all;
     });

@@ -164,7 +164,7 @@ fn the_centre_of_the_line_is_that_of_the_integral_equation() {
             let walk = Walk {
                 incidence,
                 exits,
-                photons: 60_000,
+                photons: 30_000,
                 seed: 7,
             };
             let seen = LineSpread::simulate(&medium, &walk).expect("a simulation");
@@ -196,7 +196,7 @@ fn light_paths_can_be_reversed_at_any_anisotropy() {
             let walk = Walk {
                 incidence,
                 exits: vec![exit],
-                photons: 60_000,
+                photons: 30_000,
                 seed,
             };
             LineSpread::simulate(&medium, &walk)

@@ -11,7 +11,7 @@
 //! let marble = Medium::new(1.5, 2.19e3, 2.1)?; // red light: 1/µs′ = 0.46 mm
 //! let view = Walk { incidence: 0.0, exits: vec![0.5], photons: 20_000, seed: 1 };
 //! let [seen] = &LineSpread::simulate(&marble, &view)?[..] else { panic!("one camera") };
-//! let law = marble.transport_length() * 0.5_f64.sin() / 1.5;
+//! let law = marble.shift_without_absorption(0.0, 0.5);
 //! assert!((seen.centroid() / law - 1.0).abs() < 0.1);
 //! # Ok::<(), tem00_translucence::Refusal>(())
 //! ```

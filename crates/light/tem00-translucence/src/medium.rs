@@ -55,16 +55,6 @@ impl Medium {
         self.refractive_index
     }
 
-    /// Returns the absorption coefficient µa, in 1/m.
-    pub const fn absorption(&self) -> f64 {
-        self.absorption
-    }
-
-    /// Returns the mean cosine g of the scattering angle.
-    pub const fn anisotropy(&self) -> f64 {
-        self.anisotropy
-    }
-
     /// Returns the transport length ℓ* = 1/µs′, in metres.
     pub fn transport_length(&self) -> f64 {
         1.0 / self.reduced_scattering

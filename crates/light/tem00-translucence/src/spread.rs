@@ -124,27 +124,19 @@ pub(crate) struct Tally {
 
 impl Tally {
     /// Begins a photon, with a uniform number that chooses one of its paths.
-    pub(crate) const fn begin(&mut self, uniform: f64) {
-        (self.drawn, self.uniform) = (
-            PathSample {
-                weight: 0.0,
-                place: 0.0,
-                length: 0.0,
-            },
-            uniform,
-        );
+    pub(crate) fn begin(&mut self, uniform: f64) {
+        (self.drawn, self.uniform) = (PathSample::default(), uniform);
     }
 
     pub(crate) fn add(&mut self, path: PathSample) {
         self.sums[0] += path.weight;
         self.sums[1] += path.weight * path.place;
-        // One number serves all choices of a photon: what is left of it is uniform again.
         let weight = self.drawn.weight + path.weight;
-        let chance = if weight > 0.0 {
-            path.weight / weight
-        } else {
-            0.0
-        };
+        if weight <= 0.0 {
+            return;
+        }
+        // One number serves all choices of a photon: the remainder is uniform again.
+        let chance = path.weight / weight;
         if self.uniform < chance {
             self.uniform /= chance;
             self.drawn = path;

@@ -35,10 +35,10 @@ impl LineSpread {
     /// Follows photons through a medium and returns what each camera sees.
     ///
     /// A photon flies from collision to collision, is reflected at the boundary by chance, and sends
-    /// a part of its light to each camera at every collision (next event). A walk and its mirror
-    /// image across the line are equally likely between the first and the last collision but for
-    /// the two scattering angles there: both count, each with its conditional probability, so that
-    /// the sideways diffusion does not add noise to the centre of the line.
+    /// a part of its light to each camera at every collision (next event). The walk from the first
+    /// collision on and its mirror image across the line differ in probability only by the first
+    /// scattering angle. Both count, each with its conditional probability, so that the diffusion
+    /// across the line adds little noise to the centre.
     ///
     /// # Errors
     ///
@@ -121,15 +121,15 @@ struct Photon<'a> {
     seen: Block,
 }
 
-/// Where a photon is between its first collision and its end.
+/// State of a photon between its first collision and its end.
 struct State {
     /// Place of the first collision across the line.
     entry: f64,
-    /// Place across the line behind that, and depth.
+    /// Place across the line, relative to the first collision, and depth.
     place: [f64; 2],
     direction: [f64; 3],
     length: f64,
-    /// The conditional probability of the walk, of it and its mirror image.
+    /// The probability of the walk, given that it or its mirror image occurred.
     probability: f64,
 }
 

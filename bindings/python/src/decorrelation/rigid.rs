@@ -1,9 +1,12 @@
 use tem00_decorrelation::{self as physics, DMat3, DVec3};
 
 use crate::{
-    arrays::{Floats, LIMIT},
+    arrays::{Array, Floats, Vectors, map_inner},
     error::{OrRaise, refused},
 };
+
+/// The largest component of a vector to move: within it no rotation overflows.
+const LIMIT: f64 = 1e300;
 
 class! {
     /// A rotation and a translation of a rigid body, in world coordinates: x' = R x + t.
@@ -62,7 +65,11 @@ methods! {
     /// -------
     /// ndarray, shape (..., 3)
     ///     The points behind the motion, in metres.
-    over point(points: 3) -> [3] = |point| this.0.point(point.into()).to_array();
+    call point(py; points: Vectors<'py>) -> Array<'py> = {
+        finite("points", 2.0 * this.0.translation())?;
+        let points = columns!(LIMIT; points: 3);
+        map_inner(py, points, &[3], |point| this.0.point(point.into()).to_array())
+    };
 
     /// Return where the motion turns directions.
     ///

@@ -3,12 +3,12 @@
 
     cargo build --release -p tem00-cli -p tem00-inspect
     pip install numpy pillow
-    docs/figures/front_page.py face [SAMPLES_PER_PIXEL]    # machined_part.png, with the grain enlarged
-    docs/figures/front_page.py film [SAMPLES_PER_PIXEL]    # film.webp: ten minutes on two cores
+    docs/figures/front_page.py face 64    # machined_part.png, with pieces enlarged
+    docs/figures/front_page.py film 8     # film.webp: ten minutes on two cores
 
-In the film a part slides under a laser line, and its height map grows: above `machined_part.toml` with the laser
-and the motion of `triangulation/flange.toml`, seen from farther away, below the frames of the sensor and the heights
-of the profiles so far.
+The numbers are samples per pixel. In the film a part slides under a laser line, and its height map
+grows: above `machined_part.toml` with the laser and the motion of `triangulation/flange.toml`, seen
+from farther away; below the frames of the sensor and the heights of the profiles so far.
 """
 
 import pathlib
@@ -25,7 +25,7 @@ FIGURES = ROOT / "docs/figures"
 FRAMES = 60
 WIDTH, VIEW, BELOW = 640, 400, 220
 
-# Heights of 0 to 20 mm in colours of the same lightness steps.
+# Heights of 0 to 20 mm in five colours of viridis (Matplotlib, public domain).
 STOPS = [(68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37)]
 HOLE = (24, 24, 24)
 
@@ -53,14 +53,15 @@ def colours(heights: np.ndarray) -> np.ndarray:
 
 
 def height_map(heights: np.ndarray, profiles: int) -> Image.Image:
-    """The heights of the first profiles, the first of them at the top: the part moves away from the camera."""
+    """The heights of the first profiles, the first at the top: the part moves away."""
     seen = np.where(np.arange(len(heights))[:, None] < profiles, heights, np.nan)
     return Image.fromarray(colours(seen)).resize((BELOW, BELOW), Image.Resampling.NEAREST)
 
 
 def render(scene: str, folder: str, *options: str) -> None:
     """Renders a scene into a folder."""
-    subprocess.run([PROGRAMS / "tem00", "render", SCENES / scene, "-o", folder, *options], check=True)
+    command = [PROGRAMS / "tem00", "render", SCENES / scene, "-o", folder, *options]
+    subprocess.run(command, check=True)
 
 
 def face(samples: str) -> None:
@@ -70,9 +71,8 @@ def face(samples: str) -> None:
     with tempfile.TemporaryDirectory() as work:
         render("machined_part.toml", f"{work}/with", "--spp", samples)
         render("machined_part.toml", f"{work}/without", "--spp", samples, "--no-speckle")
-        pictures = [
-            Image.open(f"{work}/{name}/machined_part.png").convert("RGB") for name in ("with", "without")
-        ]
+        files = [f"{work}/{name}/machined_part.png" for name in ("with", "without")]
+        pictures = [Image.open(file).convert("RGB") for file in files]
     picture = pictures[0].copy()
     draw, font = ImageDraw.Draw(picture), ImageFont.load_default(15)
     box = (left, top, left + width, top + height)
@@ -80,7 +80,8 @@ def face(samples: str) -> None:
         piece = source.crop(box).resize((zoom * width, zoom * height), Image.Resampling.NEAREST)
         place = (12 + number * (zoom * width + 6), 12)
         picture.paste(piece, place)
-        draw.rectangle((*place, place[0] + piece.width - 1, place[1] + piece.height - 1), outline="white")
+        corner = (place[0] + piece.width - 1, place[1] + piece.height - 1)
+        draw.rectangle((*place, *corner), outline="white")
         draw.text((place[0] + 6, place[1] + piece.height - 22), name, font=font, fill="white")
     draw.rectangle(box, outline="white")
     picture.save(FIGURES / "machined_part.png", optimize=True)
@@ -92,8 +93,8 @@ def film(samples: str) -> None:
         view, scan = f"{work}/view", f"{work}/scan"
         changes = [part for key, value in OVERVIEW.items() for part in ("--set", f"{key}={value}")]
         render("machined_part.toml", view, "--spp", samples, *changes)
-        measure = [PROGRAMS / "tem00-inspect", "triangulate", SCENES / "triangulation/flange.toml", "-o", scan]
-        subprocess.run(measure, check=True)
+        sensor = SCENES / "triangulation/flange.toml"
+        subprocess.run([PROGRAMS / "tem00-inspect", "triangulate", sensor, "-o", scan], check=True)
         heights = np.load(f"{scan}/height.npy")
         frames = []
         for number in range(FRAMES):
@@ -110,5 +111,5 @@ def film(samples: str) -> None:
 
 
 if __name__ == "__main__":
-    what, *samples_per_pixel = sys.argv[1:]
-    {"face": face, "film": film}[what](*samples_per_pixel or ["12"])
+    what, samples_per_pixel = sys.argv[1:]
+    {"face": face, "film": film}[what](samples_per_pixel)

@@ -7,14 +7,14 @@ cd "$(dirname "$0")/../.."
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 for scene in examples/scenes/*.toml; do
-    cargo run --locked --release -p tem00-cli -- render "$scene" --spp "${1:-256}" -o "$work"
+    cargo run --locked --release -p tem00-cli -- render "$scene" --spp "${1:-64}" -o "$work"
 done
 for scene in spot line_on_metal grazing_waist; do
-    cargo run --locked --release -p tem00-cli -- render "examples/scenes/$scene.toml" --spp "${1:-256}" --no-speckle -o "$work/without"
+    cargo run --locked --release -p tem00-cli -- render "examples/scenes/$scene.toml" --spp "${1:-64}" --no-speckle -o "$work/without"
     cp "$work/without/$scene.png" "docs/figures/${scene}_without_speckle.png"
 done
 render_spot() {
-    cargo run --locked --release -p tem00-cli -- render examples/scenes/spot.toml --spp "${3:-256}" --set "$2" -o "$work/$1"
+    cargo run --locked --release -p tem00-cli -- render examples/scenes/spot.toml --spp "${3:-64}" --set "$2" -o "$work/$1"
     cp "$work/$1/spot.png" "docs/figures/spot_$1.png"
 }
 render_spot 1nm 'laser[0].linewidth="1 nm"' "$@"
@@ -22,7 +22,7 @@ render_spot 20nm 'laser[0].linewidth="20 nm"' "$@"
 render_spot defocused 'camera.focus_distance="250 mm"' "$@"
 cp "$work"/*.png docs/figures/
 # With pieces of it enlarged; needs NumPy and Pillow, and so does the film, which is not made here.
-docs/figures/front_page.py face "${1:-256}"
+docs/figures/front_page.py face "${1:-64}"
 for example in beam_caustic correlated_slices focus_by_lens knife_edge line_profile paper_errors thin_line; do
     cargo run --locked --release --example "$example"
     cp "out/$example.svg" docs/figures/

@@ -339,8 +339,8 @@ fn adaptive_samples_find_edges_with_fewer_samples_and_without_bias() {
         let asked = f64::from(samples);
         assert!((of_even - asked).abs() < 1e-9, "{of_even} of a pixel");
         // The pilot takes a quarter, and what it leaves is used.
-        let max = 0.73 * asked..=0.75 * asked;
-        assert!(max.contains(&of_adaptive), "{of_adaptive} of a pixel");
+        let about = 0.73 * asked..=0.75 * asked;
+        assert!(about.contains(&of_adaptive), "{of_adaptive} of a pixel");
         assert!(adaptive < 0.25 * even, "{adaptive:e} for {even:e}");
         // The standard error of the mean, were pixels independent.
         let deviation = (adaptive / (SEEDS * 40 * 9) as f64).sqrt();

@@ -24,8 +24,8 @@ pub(super) fn homography(from: &[DVec2], to: &[DVec2]) -> Option<DMat3> {
         }
     }
     let eigen = SymmetricEigen::new(rows.tr_mul(&rows));
-    let min = eigen.eigenvalues.imin();
-    let h = eigen.eigenvectors.column(min);
+    let smallest = eigen.eigenvalues.imin();
+    let h = eigen.eigenvectors.column(smallest);
     let row = |i: usize| DVec3::new(h[3 * i], h[3 * i + 1], h[3 * i + 2]);
     let normalised = DMat3::from_cols(row(0), row(1), row(2)).transpose();
     let map = after.inverse() * normalised * before;

@@ -205,8 +205,8 @@ impl ColumnLight<'_> {
         let rows = products
             .zip(0_u32..)
             .map(|((g, e), row)| (f64::from(row), g * e));
-        let max = rows.clone().map(|(_, weight)| weight.abs());
-        let min = 1e-6 * max.fold(0.0, f64::max);
+        let weights = rows.clone().map(|(_, weight)| weight.abs());
+        let min = 1e-6 * weights.fold(0.0, f64::max);
         rows.filter(|(_, weight)| weight.abs() > min).collect()
     }
 }

@@ -83,13 +83,9 @@ and metal do not tell.";
 fn surfaces() -> Table {
     let mut table = headed(["process", "Ra, typical (µm)", "rms height (µm)"]);
     for process in FinishingProcess::ALL {
-        let [min, greatest] = process.mean_deviation.map(|ra| rounded(1e6 * ra, 3));
+        let [min, max] = process.mean_deviation.map(|ra| rounded(1e6 * ra, 3));
         let height = rounded(1e6 * process.rms_height(), 3);
-        table.row(texts([
-            process.name,
-            &format!("{min} … {greatest}"),
-            &height,
-        ]));
+        table.row(texts([process.name, &format!("{min} … {max}"), &height]));
     }
     table
 }

@@ -36,10 +36,10 @@ pub struct FinishingProcess {
     pub mean_deviation: [f64; 2],
 }
 
-const fn process(name: &'static str, min: f64, greatest: f64) -> FinishingProcess {
+const fn process(name: &'static str, min: f64, max: f64) -> FinishingProcess {
     FinishingProcess {
         name,
-        mean_deviation: [min, greatest],
+        mean_deviation: [min, max],
     }
 }
 
@@ -84,8 +84,8 @@ impl FinishingProcess {
     /// σ_h = √(π/2) Ra      of Gaussian heights, whose mean deviation is √(2/π) σ_h
     /// ```
     pub fn rms_height(&self) -> f64 {
-        let [min, greatest] = self.mean_deviation;
-        FRAC_PI_2.sqrt() * (min * greatest).sqrt()
+        let [min, max] = self.mean_deviation;
+        FRAC_PI_2.sqrt() * (min * max).sqrt()
     }
 }
 
@@ -125,14 +125,11 @@ mod tests {
                     .sum::<f64>()
         };
         for process in FinishingProcess::ALL {
-            let [min, greatest] = process.mean_deviation;
-            assert!(min < greatest, "{process:?}");
+            let [min, max] = process.mean_deviation;
+            assert!(min < max, "{process:?}");
             let ra = mean_deviation(process.rms_height());
             // As far from either end, as a ratio.
-            assert!(
-                (ra / min / (greatest / ra) - 1.0).abs() < 1e-6,
-                "{process:?}"
-            );
+            assert!((ra / min / (max / ra) - 1.0).abs() < 1e-6, "{process:?}");
         }
     }
 }

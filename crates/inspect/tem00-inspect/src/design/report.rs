@@ -97,7 +97,7 @@ pub(super) fn report(
 
 /// Adds the best set-ups, or only the nearest one.
 fn list(report: &mut Report, design: &Design<'_>) {
-    let best = design.outcome.best(design.max);
+    let best = design.outcome.best(design.listed);
     let (heading, key, others, listed) = if best.is_empty() {
         let nearest = design.outcome.nearest().into_iter().collect();
         ("The nearest set-up", "nearest", "best", nearest)

@@ -19,7 +19,7 @@ pub(super) struct Design<'a> {
     /// No quantity of the set-up is uncertain.
     pub(super) is_exact: bool,
     /// The maximum number of set-ups that are listed.
-    pub(super) max: usize,
+    pub(super) listed: usize,
 }
 
 impl<'a> Design<'a> {
@@ -42,7 +42,7 @@ impl<'a> Design<'a> {
             search,
             outcome,
             is_exact: true,
-            max: args.best.into(),
+            listed: args.best.into(),
         })
     }
 

@@ -205,15 +205,15 @@ fn averaged(d: &SetupDescription, noise: PositionNoise) -> PositionNoise {
 fn autocovariance(d: &SetupDescription, line: &ImagedLine) -> Option<PixelAutocovariance> {
     let [along, across] = line.speckle_size;
     let side = line.sensitive_height;
-    let max = |size: f64| to_usize((LONGEST * size).floor().max(1.0));
+    let within = |size: f64| to_usize((LONGEST * size).floor().max(1.0));
     // Farther apart, both see little light or hardly the same speckle: 10⁻³ of its variance or
     // less.
     let reach = to_usize((2.5 * line.width).ceil()) + 2;
     PixelAutocovariance::new(&PixelColumn {
         size: [side / along, side / across],
         pitch: [1.0 / along, 1.0 / across],
-        pixels: rows(d, line).min(reach).min(max(across)),
-        averaged_columns: (d.average.columns as usize).min(max(along)),
+        pixels: rows(d, line).min(reach).min(within(across)),
+        averaged_columns: (d.average.columns as usize).min(within(along)),
     })
     .ok()
 }

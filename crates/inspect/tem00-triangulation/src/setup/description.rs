@@ -296,9 +296,9 @@ impl SetupDescription {
 pub(crate) fn within(
     parameter: &'static str,
     value: f64,
-    (min, greatest): (f64, f64),
+    (min, max): (f64, f64),
     allowed: &'static str,
 ) -> Result<(), TriangulationError> {
-    let holds = (min..=greatest).contains(&value);
+    let holds = (min..=max).contains(&value);
     Ok(check::that(holds, parameter, value, "", allowed)?)
 }

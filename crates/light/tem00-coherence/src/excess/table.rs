@@ -101,11 +101,11 @@ impl Row {
 /// The excess of all phases at one displacement.
 fn over_phases(rows: &[Row], lags: &[[f64; 3]], kernel: LagKernel, shift: f64) -> Vec<f64> {
     let is_met = |row: &Row| !is_beyond(shift, row.width);
-    let max = rows
+    let counts = rows
         .iter()
         .filter(|row| is_met(row))
         .map(|row| row.of_lags.len());
-    let lags = &lags[..max.max().unwrap_or(0)];
+    let lags = &lags[..counts.max().unwrap_or(0)];
     let weights: Vec<f64> = lags
         .iter()
         .map(|[lag, weight, _]| weight * libm::j0(TAU * shift * lag))

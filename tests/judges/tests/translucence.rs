@@ -319,15 +319,18 @@ fn radiances_of_all_directions_add_up_to_the_light_that_leaves() {
         let walk = Walk {
             incidence: 0.0,
             exits,
-            photons: 10_000,
+            photons: 60_000,
             seed: 11,
         };
         let seen = LineSpread::simulate(&medium, &walk).expect("a simulation");
         let left: f64 = seen.iter().map(LineSpread::radiance_factor).sum();
         let left = left / f64::from(DIRECTIONS);
         let expected = seen[0].albedo() * (1.0 - medium.reflectance_from_inside(1.0));
+        // Photons that leave are counted, and 24 directions are few near grazing.
+        let albedo = seen[0].albedo();
+        let error = ((1.0 - albedo) / albedo / 60_000.0).sqrt();
         assert!(
-            (left / expected - 1.0).abs() < 0.03,
+            (left / expected - 1.0).abs() < 4.0 * error + 0.01,
             "{body:?}: {left} for {expected}"
         );
     }

@@ -7,6 +7,10 @@ use crate::{
     walk::{BLOCKS, Block},
 };
 
+/// The number of following paths with which each path is paired: few pairs are coherent in light of
+/// a large linewidth.
+const PARTNERS: usize = 16;
+
 /// Line-spread function of a half space for one pair of angles, with the path lengths behind it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LineSpread {
@@ -104,8 +108,11 @@ impl LineSpread {
             });
         let paths: Vec<_> = paths.collect();
         let mut pairs = PathPairs::default();
-        for pair in paths.chunks_exact(2) {
-            pairs.add(line, &pair[..1], &pair[1..]);
+        for (first, path) in paths.iter().enumerate() {
+            let others = paths[first + 1..].iter().take(PARTNERS);
+            for other in others {
+                pairs.add(line, &[*path], &[*other]);
+            }
         }
         pairs.self_coherence().map(f64::sqrt)
     }

@@ -148,9 +148,9 @@ def test_rigid_motions_are_matrices() -> None:
     np.testing.assert_allclose(given.point(points), points @ matrix.T + [1, 2, 3], atol=1e-14)
     np.testing.assert_allclose(given.direction(points), points @ matrix.T, atol=1e-14)
     far = dc.RigidMotion.along([1.7e308, 0, 0])
-    for moved in (lambda: far.point(points), lambda: given.point([[1e301, 0, 0]])):
+    for motion, too_far in ((far, points), (given, np.array([[1e301, 0, 0]]))):
         with pytest.raises(ValueError, match="^points must be"):
-            moved()
+            motion.point(too_far)
 
 
 BENCH = Bench()

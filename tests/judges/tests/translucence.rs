@@ -1,7 +1,9 @@
 //! Light below a surface against the exact integral equation, reciprocity, the balance of energy,
 //! and photons that another program counted.
 
-use tem00::translucence::{LineShape, LineSpread, Medium, SpectralLine, Walk};
+use tem00::translucence::{
+    Bin, LineShape, LineSpread, Material, Medium, SpectralLine, SpreadLine, Walk,
+};
 
 /// Chance, up to a constant, that a collision at each of some depths is seen from outside.
 ///
@@ -227,6 +229,9 @@ struct Counted {
     near: [f64; 4],
     /// The fraction of the photons that leaves the body.
     albedo: f64,
+    /// A line of 0.2 mm between the points of 1/e²: its full width at half maximum, and its centre
+    /// within 0.2, 0.5 and 1.5 mm of itself, in millimetres.
+    detected: [f64; 4],
 }
 
 /// Red marble, the same with forward scattering, a white plastic, and skin.
@@ -238,6 +243,7 @@ const COUNTED: [Counted; 4] = [
         whole: [0.8915, 0.5885, 0.2541, 0.0854],
         near: [0.9841, 0.8790, 0.6127, 0.3084],
         albedo: 0.83797,
+        detected: [0.4, 0.0916, 0.1254, 0.1592],
     },
     Counted {
         body: [1.5, 2.19, 0.0021],
@@ -246,6 +252,7 @@ const COUNTED: [Counted; 4] = [
         whole: [0.8921, 0.5927, 0.2559, 0.0852],
         near: [0.9800, 0.8465, 0.5144, 0.2049],
         albedo: 0.83829,
+        detected: [0.992, 0.0977, 0.1596, 0.1992],
     },
     Counted {
         body: [1.5, 12.0, 0.003],
@@ -254,6 +261,7 @@ const COUNTED: [Counted; 4] = [
         whole: [0.9567, 0.7802, 0.4566, 0.1779],
         near: [0.9953, 0.9477, 0.7375, 0.3660],
         albedo: 0.91235,
+        detected: [0.248, 0.0259, 0.0327, 0.0376],
     },
     Counted {
         body: [1.3, 0.74, 0.032],
@@ -262,6 +270,7 @@ const COUNTED: [Counted; 4] = [
         whole: [0.9878, 0.7595, 0.3267, 0.1089],
         near: [0.9970, 0.9135, 0.6452, 0.3915],
         albedo: 0.43949,
+        detected: [0.686, 0.1559, 0.2755, 0.4131],
     },
 ];
 
@@ -304,6 +313,145 @@ fn shift_contrast_and_albedo_are_those_of_photons_that_were_counted() {
                     "{name}, {linewidth}: {contrast} for {expected}"
                 );
             }
+        }
+    }
+}
+
+/// The light of a line, in steps of 2 µm, as a lens without blur would image it.
+struct Profile {
+    places: Vec<f64>,
+    light: Vec<f64>,
+}
+
+impl Profile {
+    /// Returns the light of a Gaussian line of a full width between the points of 1/e².
+    fn new(line: &SpreadLine, width: f64) -> Self {
+        let scale = 8.0_f64.sqrt() / width;
+        let places: Vec<_> = (-4000..=4000).map(|step| 2e-6 * f64::from(step)).collect();
+        let at = |place: f64| -> f64 {
+            let part = |bin: Bin| {
+                let edge = |edge: f64| libm::erf(scale * (place - edge));
+                bin.fraction / (bin.to - bin.from) * (edge(bin.from) - edge(bin.to))
+            };
+            line.bins().map(part).sum()
+        };
+        let light = places.iter().map(|&place| at(place)).collect();
+        Self { places, light }
+    }
+
+    fn peak(&self) -> usize {
+        (0..self.light.len())
+            .max_by(|&a, &b| self.light[a].total_cmp(&self.light[b]))
+            .expect("light")
+    }
+
+    fn width_at_half_maximum(&self) -> f64 {
+        let half = 0.5 * self.light[self.peak()];
+        2e-6 * self.light.iter().filter(|&&light| light > half).count() as f64
+    }
+
+    /// Returns the centre of the light within `window` of that centre.
+    fn centre(&self, window: f64) -> f64 {
+        (0..200).fold(self.places[self.peak()], |centre, _| {
+            let pairs = self.places.iter().zip(&self.light);
+            let seen = pairs.filter(|(place, _)| (*place - centre).abs() <= window);
+            let sums = seen.fold([0.0; 2], |[light, moment], (place, l)| {
+                [light + l, moment + l * place]
+            });
+            sums[1] / sums[0]
+        })
+    }
+}
+
+#[test]
+fn detectors_find_the_line_where_they_find_counted_photons() {
+    for counted in COUNTED {
+        let medium = medium(counted.body).with_anisotropy(counted.anisotropy);
+        let line = SpreadLine::new(&medium.expect("a medium"), 0.0, 45_f64.to_radians());
+        let line = line.expect("a line");
+        // A twentieth of the photons that a simulation of one's own has.
+        for (index, linewidth) in [1e-12, 1e-11, 1e-10, 1e-9].into_iter().enumerate() {
+            let spectrum = SpectralLine::new(660e-9, linewidth, LineShape::Gaussian);
+            let spectrum = spectrum.expect("a spectrum");
+            for (end, expected) in [(1.0, counted.whole[index]), (1e-4, counted.near[index])] {
+                let contrast = line.contrast(&spectrum, [-end, end]).expect("paths");
+                let relative = contrast / expected - 1.0;
+                assert!(
+                    relative.abs() < 0.12,
+                    "{linewidth}: {contrast} for {expected}"
+                );
+            }
+        }
+        let profile = Profile::new(&line, 0.2e-3);
+        // Forward scattering spreads the line to a plateau, whose counts are noisy.
+        let tolerance = if counted.anisotropy > 0.0 { 0.12 } else { 0.03 };
+        let windows = [0.2e-3, 0.5e-3, 1.5e-3];
+        let found = [profile.width_at_half_maximum()]
+            .into_iter()
+            .chain(windows.map(|window| profile.centre(window)));
+        for (found, expected) in found.zip(counted.detected) {
+            let expected = 1e-3 * expected;
+            assert!(
+                (found - expected).abs() < tolerance * expected + 2e-6,
+                "{:?}, g = {}: {found} m for {expected} m",
+                counted.body,
+                counted.anisotropy
+            );
+        }
+    }
+}
+
+#[test]
+fn materials_have_the_diffuse_reflectance_that_was_published_with_them() {
+    // Jensen et al. 2001, table 1: in red, green and blue light, to two digits.
+    for (material, published) in Material::ALL.iter().zip([
+        [0.85, 0.84, 0.53],
+        [0.31, 0.15, 0.10],
+        [0.32, 0.16, 0.10],
+        [0.98, 0.90, 0.73],
+        [0.16, 0.01, 0.00],
+        [0.83, 0.79, 0.75],
+        [0.77, 0.62, 0.21],
+        [0.81, 0.81, 0.69],
+        [0.44, 0.22, 0.13],
+        [0.63, 0.44, 0.34],
+        [0.91, 0.88, 0.76],
+    ]) {
+        for (wavelength, expected) in [650e-9, 550e-9, 450e-9].into_iter().zip(published) {
+            let medium = material.medium(wavelength).expect("a medium");
+            let walk = Walk {
+                incidence: 0.0,
+                exits: vec![0.0],
+                photons: 20_000,
+                seed: 3,
+            };
+            let seen = LineSpread::simulate(&medium, &walk).expect("a simulation");
+            let albedo = seen[0].albedo();
+            let name = material.name;
+            assert!(
+                (albedo - expected).abs() < 0.02,
+                "{name}: {albedo} for {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn tables_hold_for_every_body_and_angle() {
+    for body in BODIES {
+        let medium = medium(body);
+        for [incidence, exit] in [[0.0, 45.0], [0.0, 22.5], [12.5, 37.5]] {
+            let [incidence, exit] = [incidence, exit].map(f64::to_radians);
+            let line = SpreadLine::new(&medium, incidence, exit).expect("a line");
+            let walk = Walk {
+                incidence,
+                exits: vec![exit],
+                photons: 100_000,
+                seed: 9,
+            };
+            let simulated = LineSpread::simulate(&medium, &walk).expect("a simulation");
+            let ratio = line.centroid() / simulated[0].centroid();
+            assert!((ratio - 1.0).abs() < 0.012, "{body:?}, {exit}: {ratio}");
         }
     }
 }

@@ -22,10 +22,16 @@
 //! length. Light that the boundary itself reflects is not part of the results. The wavelength is
 //! one at a time, and polarisation is averaged.
 
+mod bins;
+mod line;
+mod material;
 mod medium;
 mod spread;
 mod walk;
 
+pub use bins::Bin;
+pub use line::SpreadLine;
+pub use material::Material;
 pub use medium::Medium;
 pub use spread::{LineSpread, PathSample};
 pub use tem00_coherence::{LineShape, SpectralLine};

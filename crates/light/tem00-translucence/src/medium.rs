@@ -60,6 +60,16 @@ impl Medium {
         1.0 / self.reduced_scattering
     }
 
+    /// Returns the absorption coefficient µa, in 1/m.
+    pub const fn absorption(&self) -> f64 {
+        self.absorption
+    }
+
+    /// Returns the mean cosine g of the scattering angle.
+    pub const fn anisotropy(&self) -> f64 {
+        self.anisotropy
+    }
+
     /// Returns the extinction coefficient µt = µs′/(1 − g) + µa, in 1/m.
     pub fn extinction(&self) -> f64 {
         self.reduced_scattering / (1.0 - self.anisotropy) + self.absorption

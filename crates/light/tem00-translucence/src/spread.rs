@@ -3,7 +3,7 @@ use core::f64::consts::PI;
 use tem00_coherence::{DelayedLight, PathPairs, SpectralLine};
 
 use crate::{
-    Medium, Walk,
+    Medium, Walk, bins,
     walk::{BLOCKS, Block},
 };
 
@@ -97,25 +97,31 @@ impl LineSpread {
     /// C² = ⟨|γ(n (l − l′))|²⟩ over pairs of independent paths (Goodman 2007), for polarised light;
     /// unpolarised light has C/√2.
     pub fn contrast(&self, line: &SpectralLine, places: [f64; 2]) -> Option<f64> {
-        let within = |sample: &&PathSample| (places[0]..=places[1]).contains(&sample.place);
-        let paths = self
-            .samples
-            .iter()
-            .filter(within)
-            .map(|sample| DelayedLight {
-                weight: sample.weight,
-                delay: self.optical * sample.length,
-            });
-        let paths: Vec<_> = paths.collect();
-        let mut pairs = PathPairs::default();
-        for (first, path) in paths.iter().enumerate() {
-            let others = paths[first + 1..].iter().take(PARTNERS);
-            for other in others {
-                pairs.add(line, &[*path], &[*other]);
-            }
-        }
+        let pairs = pairs(&self.samples, self.optical, (line, places));
         pairs.self_coherence().map(f64::sqrt)
     }
+}
+
+/// Returns the coherence of the paths that leave at `places`, in a medium of a refractive index.
+pub(crate) fn pairs(
+    samples: &[PathSample],
+    refractive_index: f64,
+    (line, places): (&SpectralLine, [f64; 2]),
+) -> PathPairs {
+    let within = |sample: &&PathSample| (places[0]..=places[1]).contains(&sample.place);
+    let paths = samples.iter().filter(within).map(|sample| DelayedLight {
+        weight: sample.weight,
+        delay: refractive_index * sample.length,
+    });
+    let paths: Vec<_> = paths.collect();
+    let mut pairs = PathPairs::default();
+    for (first, path) in paths.iter().enumerate() {
+        let others = paths[first + 1..].iter().take(PARTNERS);
+        for other in others {
+            pairs.add(line, &[*path], &[*other]);
+        }
+    }
+    pairs
 }
 
 /// Light that a camera sees of a block of photons.
@@ -124,12 +130,34 @@ pub(crate) struct Tally {
     /// Σ w and Σ w x.
     sums: [f64; 2],
     samples: Vec<PathSample>,
+    /// The light in [bins](bins), or none.
+    bins: Vec<f64>,
     /// The path of the photon that is drawn so far, with the light of all of its paths.
     drawn: PathSample,
     uniform: f64,
 }
 
 impl Tally {
+    /// Creates a tally that also sorts the light into bins.
+    pub(crate) fn binned() -> Self {
+        Self {
+            bins: vec![0.0; bins::PLACES * bins::LENGTHS],
+            ..Self::default()
+        }
+    }
+
+    /// Adds the bins of tallies, and joins their samples.
+    pub(crate) fn joined(tallies: impl Iterator<Item = Self>) -> (Vec<f64>, Vec<PathSample>) {
+        let join = |mut sum: Self, mut next: Self| {
+            let bins = sum.bins.iter_mut().zip(&next.bins);
+            bins.for_each(|(sum, light)| *sum += light);
+            sum.samples.append(&mut next.samples);
+            sum
+        };
+        let all = tallies.reduce(join).unwrap_or_default();
+        (all.bins, all.samples)
+    }
+
     /// Begins a photon, with a uniform number that chooses one of its paths.
     pub(crate) fn begin(&mut self, uniform: f64) {
         (self.drawn, self.uniform) = (PathSample::default(), uniform);
@@ -138,6 +166,9 @@ impl Tally {
     pub(crate) fn add(&mut self, path: PathSample) {
         self.sums[0] += path.weight;
         self.sums[1] += path.weight * path.place;
+        if let Some(bin) = self.bins.get_mut(bins::index(path.place, path.length)) {
+            *bin += path.weight;
+        }
         let weight = self.drawn.weight + path.weight;
         if weight <= 0.0 {
             return;

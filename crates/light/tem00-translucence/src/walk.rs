@@ -12,7 +12,7 @@ use tem00_numerics::{
 use crate::{LineSpread, Medium, PathSample, spread::Tally};
 
 /// The largest angle of incidence or exit, in radians: 85°.
-const MAX_ANGLE: f64 = 85.0 * PI / 180.0;
+pub(crate) const MAX_ANGLE: f64 = 85.0 * PI / 180.0;
 
 /// Simulation of a laser line on a half space, seen by one camera or more.
 ///
@@ -48,9 +48,15 @@ impl LineSpread {
         angle("incidence", walk.incidence)?;
         check::each(&walk.exits, |exit| angle("exits", exit))?;
         check::range("photons", walk.photons as f64, [64.0, 1e9], "")?;
-        let blocks = blocks(|number| block(medium, walk, number));
+        let blocks = blocks(|number| block(medium, walk, number, Tally::default));
         let collected = |camera| Self::collect(medium, walk, camera, &blocks);
         Ok((0..walk.exits.len()).map(collected).collect())
+    }
+
+    /// Returns the light that the first camera sees, in bins, and the paths of single photons.
+    pub(crate) fn binned(medium: &Medium, walk: &Walk) -> (Vec<f64>, Vec<PathSample>) {
+        let blocks = blocks(|number| block(medium, walk, number, Tally::binned));
+        Tally::joined(blocks.into_iter().flat_map(|block| block.tallies))
     }
 }
 
@@ -77,7 +83,7 @@ pub(crate) struct Block {
 }
 
 /// Follows the photons of a block.
-fn block(medium: &Medium, walk: &Walk, number: u64) -> Block {
+fn block(medium: &Medium, walk: &Walk, number: u64, tally: fn() -> Tally) -> Block {
     let random = ChaCha8Rng::seed_from_u64(derived(walk.seed, Purpose::Pattern, number + 1));
     let exits = walk.exits.iter().map(|&exit| {
         let [sine, cosine] = medium.refracted(exit);
@@ -88,7 +94,7 @@ fn block(medium: &Medium, walk: &Walk, number: u64) -> Block {
         random,
         exits: exits.collect(),
         seen: Block {
-            tallies: walk.exits.iter().map(|_| Tally::default()).collect(),
+            tallies: walk.exits.iter().map(|_| tally()).collect(),
             escaped: 0,
         },
     };
@@ -132,6 +138,9 @@ struct State {
     /// The probability of the walk, given that it or its mirror image occurred.
     probability: f64,
 }
+
+/// Optical depth from which no light is sent to a camera: 10⁻⁷ of it would arrive.
+const DARK: f64 = 16.0;
 
 impl Photon<'_> {
     fn follow(&mut self, incident: [f64; 3], first: f64) {
@@ -205,6 +214,9 @@ impl Photon<'_> {
         let extinction = self.medium.extinction();
         for (exit, tally) in self.exits.iter().zip(&mut self.seen.tallies) {
             let flight = depth / exit.cosine;
+            if extinction * flight > DARK {
+                continue;
+            }
             let seen = libm::exp(-extinction * flight);
             let length = state.length + flight;
             let first = state.entry + flight * exit.sine;

@@ -42,6 +42,11 @@ pub use self::{
 /// can be trusted. Pixels count as linear, also where bright grains of speckle exceed the sensor's
 /// range; see [`Setup::light_level`].
 ///
+/// A part that lets light in spreads the line to one side: the budget corrects the
+/// [shift](Self::subsurface), and its speckle has the contrast that the lengths of the paths in the
+/// window of the detector leave. Speckle of light from below the surface counts as new in every
+/// frame of a part that moves.
+///
 /// The [front page](crate) has an example.
 ///
 /// # References
@@ -55,6 +60,18 @@ pub struct Budget {
     speckles: f64,
     line_law: f64,
     dorsch: f64,
+    subsurface: Option<SubsurfaceShift>,
+}
+
+/// Shift of a line by light from below the surface of the part, as the detector finds it. Measured
+/// heights are corrected by it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SubsurfaceShift {
+    /// The shift of the line along the column, in pixels.
+    pub position: f64,
+    /// The error of a height that is not corrected, in metres: negative for a part that reads too
+    /// low.
+    pub height: f64,
 }
 
 impl Budget {
@@ -102,7 +119,16 @@ impl Budget {
         let speckles = line.projected_thickness / line.speckle_size[1];
         let bandwidth = line.bandwidth;
         let position = law / frames.sqrt();
+        let shift = first_order::subsurface_shift(setup, line)?;
+        let shifted = || Some(setup.height_at(line.position + shift)? - height);
         Some(Self {
+            subsurface: match line.is_spread() {
+                true => Some(SubsurfaceShift {
+                    position: shift,
+                    height: shifted()?,
+                }),
+                false => None,
+            },
             height,
             terms,
             speckles,
@@ -120,6 +146,15 @@ impl Budget {
     /// without diffraction, in speckles.
     pub const fn speckles(&self) -> f64 {
         self.speckles
+    }
+
+    /// Returns the shift of the line by light from below the surface, which is corrected and part of
+    /// no term; `None` for a part that lets no light in.
+    ///
+    /// Its uncertainty follows from the values of the set-up: see
+    /// [`Measurement`](crate::Measurement).
+    pub const fn subsurface(&self) -> Option<SubsurfaceShift> {
+        self.subsurface
     }
 
     /// Returns all terms, in the order of [`UncertaintySource::ALL`].

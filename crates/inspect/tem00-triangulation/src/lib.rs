@@ -26,7 +26,7 @@ mod setup;
 
 pub use budget::{
     Budget, BudgetTerm, ErrorDistribution, Evaluation, MonteCarloEstimate, Simulation,
-    SimulationOptions, UncertaintySource, simulate,
+    SimulationOptions, SubsurfaceShift, UncertaintySource, simulate,
 };
 pub use design::{
     Candidate, Constraint, DesignFigure, DesignFigures, DesignOutcome, DesignQuestion,
@@ -49,10 +49,12 @@ pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
 pub use setup::{
     Averages, BandwidthEffect, HeightRange, ImagedLine, LaserLineData, LightLevel, QuantityUnit,
     Setup, SetupCamera, SetupDescription, SetupEnvironment, SetupQuantity, SetupSurface,
+    Subsurface,
 };
 
-/// The light of a laser and the relief of a surface.
 pub use tem00_coherence::{LaserLight, LineShape, Relief, Spectrum};
+/// The light of a laser and the relief of a surface.
+pub use tem00_translucence::Material;
 
 /// The positions and directions of this crate.
 pub use glam::{DVec2, DVec3};

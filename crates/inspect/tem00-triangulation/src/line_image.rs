@@ -13,7 +13,7 @@ use self::{
 };
 use crate::{
     ImagedLine, Setup, TriangulationError,
-    setup::{LensedLine, LineProfile, SPECKLE_SIZES, within},
+    setup::{LensedLine, LineProfile, PixelSpread, SPECKLE_SIZES, within},
 };
 
 /// Minimum number of samples of a speckle along each axis.
@@ -86,6 +86,8 @@ pub struct LineImage {
     speckle: f64,
     /// Treatment of the laser's linewidth.
     bandwidth: Option<Bandwidth>,
+    /// The spread of the line by light from below the surface.
+    spread: PixelSpread,
 }
 
 impl LineImage {
@@ -116,6 +118,7 @@ impl LineImage {
             period,
             speckle,
             bandwidth: None,
+            spread: PixelSpread::default(),
         })
     }
 
@@ -150,6 +153,7 @@ impl LineImage {
             patterns: surface.patterns,
             polarisation: surface.polarisation,
         })?;
+        image.spread = line.pixel_spread();
         if let Some(light) = PolychromaticLight::of_setup(setup) {
             image.fractions = fractions(&image.data, &light.modes)?;
             image.even = light.even;
@@ -174,7 +178,7 @@ impl LineImage {
             speckle_size: data.speckle_size[1],
             pixel: data.sensitive_side,
         };
-        let profile = LineProfile::new(&line, rows as f64);
+        let profile = LineProfile::new(&line, &self.spread, rows as f64);
         let centres: Vec<f64> = (0..columns).map(|x| centre(x as f64 + 0.5)).collect();
         let mut image = Grid::filled(columns, rows, 0.0_f32);
         image.for_each_row_mut(|y, pixels| {
@@ -255,9 +259,10 @@ impl LineImage {
         Grid::filled(columns, rows, 0.0)
     }
 
-    fn strip(&self) -> Strip {
+    fn strip(&self) -> Strip<'_> {
         Strip {
             width: self.data.width,
+            spread: &self.spread,
             defocus: self.data.blur / self.data.speckle_size[1],
             size: self.data.size.map(|side| side as f64),
             period: self.period.map(|side| side as f64),

@@ -84,7 +84,7 @@ impl MeasurementInput {
 /// The measurement model, in the words of JCGM 100, gives the height as a function of its inputs:
 ///
 /// ```text
-/// z = g(v + Σ eₖ; L, θ, f, p, v₀, y₀, τ) + e_c
+/// z = g(v + Σ eₖ − Δs; L, θ, f, p, v₀, y₀, τ) + e_c
 /// ```
 ///
 /// `v` is the row at which the set-up as it is described sees the height, known exactly; the `eₖ`
@@ -97,7 +97,9 @@ impl MeasurementInput {
 ///
 /// A quantity that affects only the noise, such as the wavelength, changes the standard
 /// uncertainties of the terms: they change in proportion to the quantity, as their differences over
-/// ± one standard uncertainty show. To first order this changes no height.
+/// ± one standard uncertainty show. To first order this changes no height. A quantity that affects
+/// the shift s of the line by light from below the surface, such as the transport length, changes
+/// the correction of the height by Δs, in proportion to the quantity as well.
 ///
 /// # Examples
 ///
@@ -147,6 +149,9 @@ pub struct Measurement {
     height: f64,
     row: f64,
     speckles: f64,
+    /// The shift of the line by light from below the surface, in pixels, and its change by each
+    /// quantity.
+    shift: (f64, Vec<f64>),
     sources: Vec<MeasurementInput>,
     inputs: Inputs,
     /// For each term with a position, the relative change of its standard uncertainty by each
@@ -179,12 +184,14 @@ impl Measurement {
             .map(|term| Ok((MeasurementInput::Term(term.source), error_of(term)?)));
         let all: Result<Vec<_>, TriangulationError> = of_set_up.chain(of_terms).collect();
         let (sources, inputs) = all?.into_iter().unzip();
+        let (slopes, shifts) = slopes(setup, height, quantities, &terms)?;
         Ok(Self {
             row: setup.line_at(height).map_or(f64::NAN, |line| line.position),
             speckles: budget.speckles(),
             sources,
             inputs: Inputs::correlated(inputs, &uncertainty.correlations)?,
-            slopes: slopes(setup, height, quantities, &terms)?,
+            slopes,
+            shift: (shift(&budget), shifts),
             height,
             setup: setup.clone(),
         })
@@ -222,9 +229,11 @@ impl Measurement {
         for ((source, error), slopes) in terms.zip(&self.slopes) {
             match source {
                 MeasurementInput::Term(UncertaintySource::Calibration) => calibration = *error,
-                _ => row += error * (1.0 + self.change_of_noise(quantities, slopes)),
+                _ => row += error * (1.0 + self.change(quantities, slopes)),
             }
         }
+        // The set-up as it is described sees the line where its own shift has it.
+        row -= self.change(quantities, &self.shift.1);
         let setup = self.with(quantities);
         height_at(&setup, row).map_or(f64::NAN, |height| height + calibration)
     }
@@ -294,8 +303,8 @@ impl Measurement {
         description
     }
 
-    /// Returns the relative change of the standard uncertainty of a term.
-    fn change_of_noise(&self, quantities: &[f64], slopes: &[f64]) -> f64 {
+    /// Returns the change of a value that is linear in the quantities.
+    fn change(&self, quantities: &[f64], slopes: &[f64]) -> f64 {
         let inputs = self.inputs.as_slice().iter().zip(quantities);
         let changes = inputs
             .zip(slopes)
@@ -325,15 +334,20 @@ fn error_of(term: &BudgetTerm) -> Result<Input, TriangulationError> {
     Ok(input.with_degrees_of_freedom(term.degrees_of_freedom)?)
 }
 
-/// Returns the relative changes of the standard uncertainties of the terms by each quantity, from
-/// differences over one standard uncertainty on both sides.
+/// Changes per unit of each quantity: of the standard uncertainty of each term, relative to it, and
+/// of the shift by light from below the surface, in pixels.
+type Slopes = (Vec<Vec<f64>>, Vec<f64>);
+
+/// Returns the changes by each quantity, from differences over one standard uncertainty on both
+/// sides.
 fn slopes(
     setup: &Setup,
     height: f64,
     quantities: &[(SetupQuantity, Input)],
     terms: &[BudgetTerm],
-) -> Result<Vec<Vec<f64>>, TriangulationError> {
+) -> Result<Slopes, TriangulationError> {
     let mut slopes = vec![Vec::new(); terms.len()];
+    let mut shifts = Vec::new();
     for (quantity, input) in quantities {
         let budget = |sign: f64| {
             let mut description = setup.exposed_description();
@@ -344,12 +358,18 @@ fn slopes(
             Budget::at_height(&Setup::new(description)?, height)
         };
         let (below, above) = (budget(-1.0)?, budget(1.0)?);
+        shifts.push((shift(&above) - shift(&below)) / (2.0 * input.uncertainty()));
         for (slopes, term) in slopes.iter_mut().zip(terms) {
             let [below, above] = [&below, &above].map(|budget| uncertainty(budget, term.source));
             slopes.push((above - below) / (2.0 * input.uncertainty() * term.uncertainty));
         }
     }
-    Ok(slopes)
+    Ok((slopes, shifts))
+}
+
+/// Returns the shift of a line by light from below the surface, in pixels.
+fn shift(budget: &Budget) -> f64 {
+    budget.subsurface().map_or(0.0, |shift| shift.position)
 }
 
 /// Returns the standard uncertainty of a term, in its own unit.

@@ -7,18 +7,21 @@ mod line_profile;
 mod quantity;
 mod range;
 mod row;
+mod subsurface;
 pub(crate) mod unit;
 
 use glam::{DVec2, DVec3};
 use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
 use tem00_coherence::ResolutionCell;
 
+use self::subsurface::SpreadLight;
 use crate::{DetectorSettings, LineDetector, Sensor, TriangulationError, Triangulator};
 
 pub(crate) use self::{
     description::within,
     light_level::{MAX_GRAIN_SATURATION, MIN_SIGNAL},
     line_profile::{LensedLine, LineProfile, transfer},
+    subsurface::PixelSpread,
 };
 pub use self::{
     description::{
@@ -28,6 +31,7 @@ pub use self::{
     light_level::LightLevel,
     quantity::SetupQuantity,
     range::HeightRange,
+    subsurface::Subsurface,
     unit::QuantityUnit,
 };
 
@@ -64,6 +68,7 @@ pub struct Setup {
     sensor: Sensor,
     detector: LineDetector,
     line: ImagedLine,
+    spread: Option<SpreadLight>,
 }
 
 impl Setup {
@@ -98,7 +103,8 @@ impl Setup {
             saturation: detector.settings().saturation.min(saturation(&sensor)),
             ..*detector.settings()
         })?;
-        let line = ImagedLine::at(&description, &camera, 0.0).ok_or(NOT_SEEN)?;
+        let spread = SpreadLight::new(&description)?;
+        let line = ImagedLine::at(&description, &camera, spread.as_ref(), 0.0).ok_or(NOT_SEEN)?;
         let plane = description.laser_plane()?;
         let setup = Self {
             description,
@@ -106,6 +112,7 @@ impl Setup {
             sensor,
             detector,
             line,
+            spread,
         };
         setup.check_image()?;
         Ok(setup)
@@ -165,7 +172,12 @@ impl Setup {
     /// Returns the image of the line on a flat surface at a height, in metres, or `None` where the
     /// camera does not see it. It may lie outside of the image.
     pub fn line_at(&self, height: f64) -> Option<ImagedLine> {
-        ImagedLine::at(&self.description, self.camera(), height)
+        ImagedLine::at(
+            &self.description,
+            self.camera(),
+            self.spread.as_ref(),
+            height,
+        )
     }
 
     /// Returns the height, in metres, of a line that is seen in the middle column at a position `y`

@@ -74,6 +74,8 @@ pub(super) struct ColumnProfile {
     /// The mean electrons that light frees in a column.
     electrons: f64,
     profile: LineProfile,
+    /// True if light from below the surface shifts the line.
+    is_spread: bool,
 }
 
 impl ColumnProfile {
@@ -83,6 +85,7 @@ impl ColumnProfile {
             rows,
             electrons: line.column_electrons,
             profile: line.profile(rows as f64),
+            is_spread: line.is_spread(),
         }
     }
 }
@@ -110,7 +113,7 @@ pub(super) fn rows(description: &SetupDescription, line: &ImagedLine) -> usize {
 pub(super) fn terms(setup: &Setup, line: &ImagedLine, law: f64) -> Option<Vec<BudgetTerm>> {
     let profile = ColumnProfile::new(setup, line);
     let noise = position_noise(setup, line, (&profile, law))?;
-    let bias = detector_bias(setup, &profile)?;
+    let bias = detector_bias(setup, &profile)?[1];
     let calibration = setup.description().calibration_uncertainty;
     let terms = UncertaintySource::ALL.map(|source| {
         let variance = match source {
@@ -173,9 +176,15 @@ fn position_noise(
         let light = column.light(&by_centroid);
         of_all_light += speckle_covariance(&d.sensor, &speckle, [&light; 2], [0.0; 2]);
     }
+    let mean = sum.scaled(1.0 / f64::from(PHASES));
+    // The law is that of a Gaussian line.
+    let speckle = match line.is_spread() {
+        true => d.surface.contrast().powi(2) * mean.speckle,
+        false => law.powi(2) * sum.speckle / of_all_light,
+    };
     let mean = PositionNoise {
-        speckle: (law * line.bandwidth.line_noise_ratio).powi(2) * sum.speckle / of_all_light,
-        ..sum.scaled(1.0 / f64::from(PHASES))
+        speckle: line.bandwidth.line_noise_ratio.powi(2) * speckle,
+        ..mean
     };
     Some(averaged(d, mean))
 }
@@ -218,13 +227,30 @@ fn autocovariance(d: &SetupDescription, line: &ImagedLine) -> Option<PixelAutoco
     .ok()
 }
 
-/// Returns the root mean square error of the detector on noise-free lines, in pixels.
-fn detector_bias(setup: &Setup, profile: &ColumnProfile) -> Option<f64> {
-    let mut squares = 0.0;
-    for phase in 0..BIAS_PHASES {
+/// Returns the shift of a line by light from below the surface, as the detector finds it, in pixels:
+/// 0 without such light, and `None` if the detector finds no line.
+pub(super) fn subsurface_shift(setup: &Setup, line: &ImagedLine) -> Option<f64> {
+    if !line.is_spread() {
+        return Some(0.0);
+    }
+    let [shift, _] = detector_bias(setup, &ColumnProfile::new(setup, line))?;
+    Some(shift)
+}
+
+/// Returns the shift of noise-free lines by light from below the surface, and the root mean square
+/// error of the detector about it, in pixels.
+fn detector_bias(setup: &Setup, profile: &ColumnProfile) -> Option<[f64; 2]> {
+    let errors = (0..BIAS_PHASES).map(|phase| {
         let phase = (f64::from(phase) + 0.5) / f64::from(BIAS_PHASES);
         let column = NoiseFreeColumn::new(setup, profile, phase);
-        squares += (column.found(setup)?.position - column.centre).powi(2);
-    }
-    Some((squares / f64::from(BIAS_PHASES)).sqrt())
+        Some(column.found(setup)?.position - column.centre)
+    });
+    let errors: Vec<f64> = errors.collect::<Option<_>>()?;
+    let count = f64::from(BIAS_PHASES);
+    let shift = match profile.is_spread {
+        true => errors.iter().sum::<f64>() / count,
+        false => 0.0,
+    };
+    let squares: f64 = errors.iter().map(|error| (error - shift).powi(2)).sum();
+    Some([shift, (squares / count).sqrt()])
 }

@@ -144,7 +144,7 @@ pub fn simulate(
     progress: impl Fn(u64) + Sync,
     cancel: &AtomicBool,
 ) -> Result<Simulation, TriangulationError> {
-    let simulator = Simulator::new(setup, *setup.line())?;
+    let simulator = Simulator::new(setup, setup.line())?;
     let trial = |index| simulator.trial(options.seed, index);
     let trials = in_parallel(options, trial, progress, cancel)?;
     Ok(simulator.summary(options, &trials))
@@ -181,22 +181,25 @@ pub(crate) struct Simulator<'a> {
     unlimited: LineDetector,
     image: LineImage,
     group: usize,
+    /// The shift of the line by light from below the surface, which is corrected, in pixels.
+    shift: f64,
 }
 
 impl<'a> Simulator<'a> {
-    pub(crate) fn new(setup: &'a Setup, line: ImagedLine) -> Result<Self, TriangulationError> {
+    pub(crate) fn new(setup: &'a Setup, line: &ImagedLine) -> Result<Self, TriangulationError> {
         let group = setup.description().average.columns as usize;
         let columns = group * COLUMNS.div_ceil(group);
-        let rows = first_order::rows(setup.description(), &line);
+        let rows = first_order::rows(setup.description(), line);
         let simulator = Self {
             setup,
-            line: ColumnProfile::new(setup, &line),
+            line: ColumnProfile::new(setup, line),
             unlimited: LineDetector::new(DetectorSettings {
                 saturation: f64::INFINITY,
                 ..*setup.detector().settings()
             })?,
-            image: LineImage::of_line(setup, &line, [columns, rows])?,
+            image: LineImage::of_line(setup, line, [columns, rows])?,
             group,
+            shift: first_order::subsurface_shift(setup, line).unwrap_or(0.0),
         };
         simulator.noise_free_position(0.0).map(|_| simulator)
     }
@@ -218,7 +221,7 @@ impl<'a> Simulator<'a> {
         let phase = phase(&mut random);
         let position = self.noise_free_position(phase)?;
         let frames = self.frames(phase, random.next_u64());
-        let centre = frames.centre();
+        let centre = frames.centre() + self.shift;
         let bias = Outcome {
             square: Some((position - centre).powi(2)),
             invalid: 0.0,
@@ -249,8 +252,8 @@ impl<'a> Simulator<'a> {
         })
     }
 
-    /// Returns how far the positions that are found in exposed frames are from the true one,
-    /// averaged over columns and frames, in pixels, and the fraction of the columns without a line
+    /// Returns how far the positions that are found in exposed frames are from the place where the
+    /// line enters the part, averaged over columns and frames, in pixels, and the fraction of the columns without a line
     /// that can be trusted.
     pub(crate) fn deviations(&self, seed: u64) -> Result<(Vec<f64>, f64), TriangulationError> {
         let mut random = ChaCha8Rng::seed_from_u64(seed);

@@ -10,6 +10,7 @@ use crate::{
     setup::tests::setup_of,
 };
 
+mod subsurface;
 mod trials;
 
 fn budget_of(change: impl Fn(&mut SetupDescription)) -> Budget {

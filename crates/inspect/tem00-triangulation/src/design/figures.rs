@@ -1,5 +1,6 @@
 use crate::{
-    BandwidthEffect, Budget, Setup, SetupDescription, TriangulationError, UncertaintySource,
+    BandwidthEffect, Budget, Setup, SetupDescription, SubsurfaceShift, TriangulationError,
+    UncertaintySource,
 };
 
 /// Figures of a set-up that searches compare.
@@ -39,6 +40,9 @@ pub struct DesignFigures {
     pub speckle_size: [f64; 2],
     /// Effect of the laser's linewidth on speckle.
     pub bandwidth: BandwidthEffect,
+    /// The shift of the line by light from below the surface, which is corrected; `None` on a part
+    /// that lets no light in.
+    pub subsurface: Option<SubsurfaceShift>,
 }
 
 impl DesignFigures {
@@ -71,6 +75,7 @@ impl DesignFigures {
             speckles: budget.speckles(),
             speckle_size: setup.line().speckle_size,
             bandwidth: setup.line().bandwidth,
+            subsurface: budget.subsurface(),
         })
     }
 }

@@ -6,6 +6,8 @@ use tem00_config::{
 };
 
 use super::{read_detector, read_uncertainty, sensor::read_sensor_or_auto};
+use tem00_translucence::Material;
+
 use crate::{Averages, Setup, SetupDescription, SetupQuantity, TriangulationError};
 
 /// Set-up files.
@@ -154,6 +156,11 @@ fn setup(document: &Document<'_>) -> Result<Setup, Problem> {
     SetupQuantity::read_all(("surface", &surface), d)?;
     d.surface.patterns = surface.or("patterns", 1, |value| count(value, 64))?;
     d.surface.relief = read_relief(&surface, None)?;
+    let body = &mut d.surface.subsurface;
+    body.material = surface.optional("material").map(material).transpose()?;
+    if body.transport_length != 0.0 && body.material.is_none() {
+        surface.required("absorption", "5")?;
+    }
     if let Some(section) = &environment {
         SetupQuantity::read_all(("environment", section), d)?;
     }
@@ -204,6 +211,11 @@ fn needed<'a>(
 fn pixels(value: &Value<'_>) -> Result<usize, Problem> {
     let pixels = value.integer(1..=1 << 20)?;
     usize::try_from(pixels).map_err(|_| value.must_be("a number of pixels that can be counted"))
+}
+
+fn material(value: Value<'_>) -> Result<&'static Material, Problem> {
+    let all = const { &Material::ALL };
+    value.one_of(&all.each_ref().map(|material| (material.name, material)))
 }
 
 fn read_average(section: &Section<'_>) -> Result<Averages, Problem> {

@@ -88,6 +88,11 @@ impl Sections {
                 self.value("patterns", description.surface.patterns)
                     .note("independent speckle patterns that add up");
             }
+            SetupQuantity::CorrelationLength => {
+                if let Some(material) = description.surface.subsurface.material {
+                    self.value("material", format_args!("\"{}\"", material.name));
+                }
+            }
             _ => {}
         }
     }

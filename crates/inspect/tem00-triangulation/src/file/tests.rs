@@ -1,8 +1,9 @@
 use tem00_testkit::rows;
+use tem00_translucence::Material;
 
 use crate::{
     Averages, FilterOrder, LaserLight, LineMethod, LineShape, Setup, SetupDescription, Spectrum,
-    parse_setup, setup::tests::description,
+    Subsurface, parse_setup, setup::tests::description,
 };
 
 /// A set-up file without what has a default.
@@ -145,6 +146,15 @@ fn a_written_description_reads_back_as_the_same_bits() {
         written.surface.relief.correlation_length = 0.7e-6;
         comes_back(&written);
     }
+    written.surface.subsurface = Subsurface {
+        material: Some(&Material::ALL[5]),
+        transport_length: 0.3e-3 / 7.0,
+        refractive_index: 1.4,
+        surface_fraction: 0.1,
+        ..Subsurface::default()
+    };
+    comes_back(&written);
+    written.surface.subsurface = Subsurface::default();
     let peaks = vec![[648e-9, 1.0], [651e-9, 0.1 + 0.2]];
     written.laser.light = LaserLight::of_peaks(peaks, 0.0).unwrap();
     comes_back(&written);
@@ -218,6 +228,11 @@ fn what_is_wrong_is_told_at_its_place() {
         columns = 1 => columns = 641 => 28:11 => columns of the image
         columns = 1 => columns = 1.5 => 28:11 => a whole number
         window = 31 => window = 30 => 22:10 => odd
+        patterns = 1 => material = "marbel" => 18:12 => marble
+        patterns = 1 => absorption = 5 => 18:14 => beside
+        patterns = 1 => refractive_index = 1.5 => 18:20 => beside
+        patterns = 1 => transport_length = "2 m"\nabsorption = 5 => 18:20 => to 1 m
+        patterns = 1 => transport_length = 1e-4 => 16:1 => needs the key `absorption`
     "#;
     let full = full();
     for [line, instead, position, part] in rows(table) {

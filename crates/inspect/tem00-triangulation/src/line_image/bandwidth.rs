@@ -21,6 +21,8 @@ pub(super) struct PolychromaticLight {
 
 /// The number of equal patterns that stand for more, together with those of the surface.
 const PATTERNS: f64 = 16.0;
+/// The same for paths below the surface, whose line is wide and has many speckles across.
+const FEW: f64 = 4.0;
 
 /// Wave numbers that stand for a line. Each sees the pupil displaced across the line by the tilt of
 /// the resolution cell, and heights of the relief in other phases.
@@ -54,6 +56,9 @@ impl PolychromaticLight {
         if line.is_monochromatic() && cell.source_extent().is_point() {
             return None;
         }
+        if setup.line().is_spread() {
+            return Some(Self::of_contrast(setup));
+        }
         let speckle = PolychromaticSpeckle {
             line: &line,
             cell: &cell,
@@ -85,6 +90,31 @@ impl PolychromaticLight {
             bandwidth: is_broad.then(|| Bandwidth::new(&from_point, &heights)),
         })
     }
+}
+
+impl PolychromaticLight {
+    /// Returns independent patterns that have the line noise of a set-up together, for paths below
+    /// the surface, which are longer by far than those within a resolution cell.
+    fn of_contrast(setup: &Setup) -> Self {
+        let squared = setup.line().bandwidth.line_noise_ratio.powi(2);
+        let patterns = f64::from(setup.description().surface.patterns);
+        let (modes, even) = enough(fewest(squared), squared, patterns * PATTERNS / FEW);
+        Self {
+            modes,
+            even,
+            bandwidth: None,
+        }
+    }
+}
+
+/// Returns the fewest modes whose squares sum to a variance: equal ones but for the first.
+fn fewest(variance: f64) -> Vec<f64> {
+    // Not more than are in use: see `enough`.
+    let count = variance.max(1.0 / FEW).recip().ceil();
+    let excess = ((variance - count.recip()).max(0.0) / (count * (count - 1.0)).max(1.0)).sqrt();
+    let mut modes = vec![count.recip() - excess; to_usize(count)];
+    modes[0] += count * excess;
+    modes
 }
 
 /// Returns modes that have a variance, and the fraction of even light that is added to them.

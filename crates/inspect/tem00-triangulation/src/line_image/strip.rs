@@ -9,7 +9,7 @@ use tem00_numerics::{
 };
 use tem00_speckle::Complex;
 
-use crate::setup::transfer;
+use crate::setup::{PixelSpread, transfer};
 
 /// Distance from its middle up to which a line has scatterers, in half-widths: 10⁻⁸ of the light
 /// lie beyond.
@@ -20,9 +20,11 @@ const TRANSFER: u32 = 512;
 
 /// A strip of a rough surface under a laser line, as the pupil of a camera sees it. Lengths are in
 /// pixels of the image; the first of two is along the line.
-pub(super) struct Strip {
+pub(super) struct Strip<'a> {
     /// The full width of the line between the points of 1/e².
     pub(super) width: f64,
+    /// The spread of the line by light from below the surface.
+    pub(super) spread: &'a PixelSpread,
     /// The diameter of the disc of defocus, in speckle sizes.
     pub(super) defocus: f64,
     /// The size of the image.
@@ -36,7 +38,7 @@ pub(super) struct Strip {
     pub(super) widest_tilt: f64,
 }
 
-impl Strip {
+impl Strip<'_> {
     /// Returns the positions of the line where scatterers lie along it: no farther apart than a
     /// speckle.
     ///
@@ -223,13 +225,17 @@ impl Strip {
         let spacing = 0.5 * radius.min(finest);
         let range = |start: f64, f: fn(f64, f64) -> f64| positions.iter().copied().fold(start, f);
         let [low, high] = self.dark();
-        let from = (low - range(f64::NEG_INFINITY, f64::max)).max(-REACH * radius);
-        let to = (high - range(f64::INFINITY, f64::min)).min(REACH * radius);
+        let [near, far] = self.spread.ends();
+        let from = (low - range(f64::NEG_INFINITY, f64::max)).max(near - REACH * radius);
+        let to = (high - range(f64::INFINITY, f64::min)).min(far + REACH * radius);
         let [first, last] = [(from / spacing).ceil(), (to / spacing).floor()].map(to_i64);
         let peak = spacing / radius * core::f64::consts::FRAC_2_PI.sqrt();
         let scatterer = |index: i64| {
             let distance = index as f64 * spacing;
-            (distance, peak * (-2.0 * (distance / radius).powi(2)).exp())
+            if self.spread.is_none() {
+                return (distance, peak * (-2.0 * (distance / radius).powi(2)).exp());
+            }
+            (distance, spacing * self.spread.irradiance(distance, radius))
         };
         (first..=last).map(scatterer).collect()
     }

@@ -116,8 +116,10 @@ impl Measurement {
                 why: "the camera does not see the line",
                 advice: "take a smaller height",
             })?;
-        let (deviations, invalid) = Simulator::new(&setup, line)?.deviations(random.next_u64())?;
-        let height = |deviation: f64| height_at(described, line.position + deviation);
+        let (deviations, invalid) = Simulator::new(&setup, &line)?.deviations(random.next_u64())?;
+        // Corrected by the shift of the set-up as it is described.
+        let (shift, _) = &self.shift;
+        let height = |deviation: f64| height_at(described, line.position + deviation - shift);
         let heights: Vec<f64> = deviations
             .into_iter()
             .filter_map(height)

@@ -3,6 +3,7 @@ use tem00_beam::GaussianBeam;
 use tem00_coherence::{LaserLight, Relief};
 use tem00_numerics::{Refusal, check};
 
+use super::Subsurface;
 use crate::{DetectorSettings, LaserPlane, SensorDescription, SetupQuantity, TriangulationError};
 
 /// Description of a triangulation set-up by its data sheets.
@@ -61,6 +62,7 @@ impl Default for SetupDescription {
                 patterns: 1,
                 polarisation: 1.0,
                 relief: Relief::default(),
+                subsurface: Subsurface::default(),
             },
             detector: DetectorSettings::default(),
             calibration_uncertainty: 0.0,
@@ -199,6 +201,8 @@ pub struct SetupSurface {
     /// The relief that is finer than the resolution of the camera; of height zero where it is not
     /// known.
     pub relief: Relief,
+    /// Light from below the surface.
+    pub subsurface: Subsurface,
 }
 
 /// Numbers of columns and frames that a height is averaged over.

@@ -1,14 +1,17 @@
-use core::f64::consts::{PI, SQRT_2};
+use core::f64::consts::{LN_2, PI, SQRT_2};
+use std::sync::Arc;
 
 use glam::DVec3;
 use tem00_camera::Camera;
 use tem00_coherence::{CellGeometry, PolychromaticSpeckle, ResolutionCell, Rows, SpectralLine};
 use tem00_decorrelation::ImagingGeometry;
 use tem00_statistics::laws::{defocused_line_centroid_deviation, imaged_line_power_contrast};
+use tem00_translucence::SpreadLine;
 
 use super::{
     SetupDescription,
     line_profile::{LensedLine, LineProfile},
+    subsurface::{PixelSpread, SpreadLight},
 };
 use crate::Sensor;
 
@@ -23,17 +26,21 @@ const STEP: f64 = 1e-5;
 /// light. The squares of the contributions to its width add:
 ///
 /// ```text
-/// W² = W_line² + W_lens² + b²
+/// W² = W_line² + W_lens² + b² + W_body²
 /// W_line   the projection of the line on the part, m · line_thickness √(1 + z²/z_R²) · cos θ to first order
 /// W_lens   = 4√2 h / π, the Gaussian of the same curvature as the peak of the lens's Airy disc
 /// b        = D s |1/Z_focus − 1/Z|, the diameter of the disc of defocus, whose 4σ across is b
+/// W_body   by light from below the surface: what the width of the Gaussian with the full width at half
+///          maximum of the whole profile has more
 /// ```
+///
+/// Light from below the surface spreads the line to one side; the profile has its whole shape.
 ///
 /// The line has its waist on the reference plane, with the Rayleigh range `z_R = π w₀²/λ`, w₀ being
 /// half its thickness. Z is the depth of the surface before the lens, `Z_focus` the depth in focus
 /// at this image point, s the depth of the sensor behind the lens, D the diameter of the pupil and
 /// h = λ s / D the speckle size. Across the disc of defocus 4σ = b.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ImagedLine {
     /// The position along the middle column, in pixels, y down.
     pub position: f64,
@@ -45,6 +52,8 @@ pub struct ImagedLine {
     pub diffraction_width: f64,
     /// The contribution of defocus to the width, in pixels.
     pub blur: f64,
+    /// The contribution of light from below the surface to the width, in pixels.
+    pub subsurface_width: f64,
     /// The speckle size along the rows and along the columns, in pixels: a sensor that is tilted
     /// stretches the speckle along its columns.
     pub speckle_size: [f64; 2],
@@ -58,6 +67,10 @@ pub struct ImagedLine {
     pub sensitive_height: f64,
     /// Effect of the linewidth and of the extent of the source on speckle.
     pub bandwidth: BandwidthEffect,
+    /// Light from below the surface, and the pixels in a metre across the line on the part.
+    spread: Option<(Arc<SpreadLine>, f64)>,
+    /// The place of the crest beside the line as it enters, in pixels.
+    crest: f64,
 }
 
 /// Effect of the linewidth and of the extent of the source on the speckle of a line, relative to a
@@ -86,6 +99,16 @@ impl BandwidthEffect {
         spot_noise_ratio: 1.0,
     };
 
+    /// Returns the effect together with another that leaves a contrast: both average over the same
+    /// wave numbers, so that together they leave no more than the smaller of the two.
+    fn at_most(self, contrast: f64) -> Self {
+        Self {
+            contrast: self.contrast.min(contrast),
+            line_noise_ratio: self.line_noise_ratio.min(contrast),
+            spot_noise_ratio: self.spot_noise_ratio.min(contrast),
+        }
+    }
+
     /// Returns the effect for a resolution cell and rows of a height in speckle sizes.
     fn new(line: &SpectralLine, cell: &ResolutionCell, rows: f64) -> Self {
         if line.is_monochromatic() && cell.source_extent().is_point() {
@@ -102,7 +125,12 @@ impl BandwidthEffect {
 
 impl ImagedLine {
     /// Returns the image at a height, or `None` if the camera does not see the line.
-    pub(super) fn at(description: &SetupDescription, camera: &Camera, height: f64) -> Option<Self> {
+    pub(super) fn at(
+        description: &SetupDescription,
+        camera: &Camera,
+        spread: Option<&SpreadLight>,
+        height: f64,
+    ) -> Option<Self> {
         let laser = &description.laser;
         let pitch = description.sensor.pixel_pitch;
         let row = |beside: f64, height: f64| {
@@ -111,7 +139,10 @@ impl ImagedLine {
         };
         let thickness = description.line_thickness_at(height)?;
         let half = 0.5 * thickness;
-        let projected_thickness = (row(half, height)? - row(-half, height)?).abs();
+        let across = row(-half, height)? - row(half, height)?;
+        let projected_thickness = across.abs();
+        let contrast = spread.map(|spread| spread.contrast);
+        let spread = spread.map(|spread| (Arc::clone(&spread.line), across / thickness));
         let step = STEP * description.camera.distance;
         let moved = row(0.0, height - step)? - row(0.0, height + step)?;
         let pixel = camera.project(description.laser_point_at(height))?;
@@ -140,6 +171,7 @@ impl ImagedLine {
             projected_thickness,
             diffraction_width,
             blur,
+            subsurface_width: 0.0,
             speckle_size: [speckle, speckle * stretch],
             height_per_pixel: 2.0 * step / moved,
             peak_irradiance: 0.0,
@@ -150,8 +182,14 @@ impl ImagedLine {
                 &resolution_cell(description, camera, height, &geometry)?,
                 f64::from(description.average.columns) / speckle,
             ),
+            spread,
+            crest: 0.0,
         };
-        line.peak_irradiance = column * line.profile_over(0.0, 0.0).at(0.0);
+        if let Some(contrast) = contrast {
+            line.bandwidth = line.bandwidth.at_most(contrast);
+            line.widen();
+        }
+        line.peak_irradiance = column * line.profile_over(0.0, 0.0).at(line.crest);
         (depth > 0.0 && line.height_per_pixel.is_finite()).then_some(line)
     }
 
@@ -202,13 +240,37 @@ impl ImagedLine {
             speckle_size: self.speckle_size[1],
             pixel,
         };
-        LineProfile::new(&line, reach)
+        LineProfile::new(&line, &self.pixel_spread(), reach)
+    }
+
+    /// Returns the spread of the line by light from below the surface.
+    pub(crate) fn pixel_spread(&self) -> PixelSpread {
+        let spread = self.spread.as_ref();
+        spread.map_or_else(PixelSpread::default, |(line, scale)| {
+            PixelSpread::new(line, *scale)
+        })
+    }
+
+    /// Returns whether light from below the surface is part of the line.
+    pub(crate) const fn is_spread(&self) -> bool {
+        self.spread.is_some()
+    }
+
+    /// Widens the line by light from below the surface.
+    fn widen(&mut self) {
+        let (profile, step) = (self.profile(0.0), 0.01 * self.width);
+        self.crest = profile.crest(step);
+        let half = profile.width_at_half(self.crest, step);
+        // Of a Gaussian the width at half maximum is √(ln 2/2) of the width at 1/e².
+        let width = (half / (0.5 * LN_2).sqrt()).max(self.width);
+        self.subsurface_width = ((width - self.width) * (width + self.width)).sqrt();
+        self.width = width;
     }
 
     /// Returns the mean number of electrons that light frees in the brightest pixel, for a line in
     /// the middle of it.
     pub(super) fn peak_electrons(&self) -> f64 {
-        self.pixel_electrons(-0.5, 0.0)
+        self.pixel_electrons(-0.5, -self.crest)
     }
 }
 

@@ -1,5 +1,6 @@
 use core::f64::consts::PI;
 
+use super::subsurface::PixelSpread;
 use tem00_numerics::{cast::to_usize, disc_overlap, quadrature::integrate, sinc};
 
 /// The period of the sum, in units of the range that is evaluated: copies of the line stay that far
@@ -28,6 +29,8 @@ pub(crate) struct LineProfile {
     speckle_size: f64,
     /// The spectrum at whole multiples of 1/period, the first halved.
     spectrum: Vec<f64>,
+    /// The sine transform of a line that light from below the surface spreads, or none.
+    odd: Vec<f64>,
 }
 
 /// A line that a lens images onto pixels. All lengths are along the column, in pixels.
@@ -44,14 +47,14 @@ pub(crate) struct LensedLine {
 
 impl LineProfile {
     /// Creates the profile for positions up to `reach` from the middle of the line, in pixels.
-    pub(crate) fn new(line: &LensedLine, reach: f64) -> Self {
+    pub(crate) fn new(line: &LensedLine, spread: &PixelSpread, reach: f64) -> Self {
         let LensedLine {
             width,
             blur,
             speckle_size,
             pixel,
         } = *line;
-        let period = PERIOD * reach.max(4.0 * (width + blur + speckle_size));
+        let period = PERIOD * reach.max(4.0 * (width + blur + speckle_size) + spread.range());
         // Beyond 5.5/W the Gaussian is 10⁻¹⁶.
         let end = speckle_size.recip().min(5.5 / width);
         let at = |index: usize| {
@@ -62,11 +65,49 @@ impl LineProfile {
             2.0 / period * half * gaussian * lens * sinc(PI * pixel * f)
         };
         let steps = to_usize((end * period).ceil());
-        Self {
+        let mut profile = Self {
             period,
             speckle_size,
             spectrum: (0..=steps).map(at).collect(),
+            odd: Vec::new(),
+        };
+        if !spread.is_none() {
+            profile.spread(spread);
         }
+        profile
+    }
+
+    /// Spreads the line by light from below the surface.
+    fn spread(&mut self, spread: &PixelSpread) {
+        let transforms = spread.transforms(self.period.recip(), self.spectrum.len());
+        for (even, [cos, sin]) in self.spectrum.iter_mut().zip(transforms) {
+            self.odd.push(sin * *even);
+            *even *= cos;
+        }
+    }
+
+    /// Returns the place of the crest, found in steps from the entry of the line.
+    pub(crate) fn crest(&self, step: f64) -> f64 {
+        let higher = |step: f64| {
+            let mut place = 0.0;
+            while self.at(place + step) > self.at(place) {
+                place += step;
+            }
+            place
+        };
+        higher(step) + higher(-step)
+    }
+
+    /// Returns the full width at half of the crest, in whole steps.
+    pub(crate) fn width_at_half(&self, crest: f64, step: f64) -> f64 {
+        let half = 0.5 * self.at(crest);
+        let mut ends = [crest; 2];
+        for (end, step) in ends.iter_mut().zip([-step, step]) {
+            while self.at(*end) > half {
+                *end += step;
+            }
+        }
+        ends[1] - ends[0]
     }
 
     /// Returns the fraction of the light per pixel, averaged over the sensitive part of a pixel
@@ -78,6 +119,11 @@ impl LineProfile {
         for amplitude in &self.spectrum {
             sum += amplitude * now;
             // cos((k + 1) a) = 2 cos a cos(k a) − cos((k − 1) a)
+            (before, now) = (now, double * now - before);
+        }
+        let (mut before, mut now) = (-angle.sin(), 0.0);
+        for amplitude in &self.odd {
+            sum += amplitude * now;
             (before, now) = (now, double * now - before);
         }
         (sum - self.copies(0.5 * angle)).max(0.0)
@@ -181,7 +227,7 @@ mod tests {
                 speckle_size,
                 pixel: 0.9,
             };
-            let profile = LineProfile::new(&line, 30.0);
+            let profile = LineProfile::new(&line, &PixelSpread::default(), 30.0);
             for distance in [0.0, 0.7, 3.1, 9.0, 29.5] {
                 let expected = if blur == 0.0 {
                     in_space(&line, distance, airy_line)
@@ -208,7 +254,7 @@ mod tests {
             speckle_size,
             pixel: 1.0,
         };
-        let profile = LineProfile::new(&line, 200.0);
+        let profile = LineProfile::new(&line, &PixelSpread::default(), 200.0);
         let inside: f64 = (-200..200).map(|y| profile.at(f64::from(y) + 0.2)).sum();
         let outside = 4.0 * speckle_size / (PI.powi(3) * 200.0);
         // The next order of the wings is 3σ²/Y² of them.

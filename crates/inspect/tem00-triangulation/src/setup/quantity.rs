@@ -8,7 +8,7 @@ use super::{
     unit::{
         DEGREES, ELECTRONS, ELECTRONS_PER_SECOND, GREY_PER_ELECTRON, GREY_VALUES, KELVINS,
         MICROMETRES, MILLIMETRES, MILLIRADIANS, MILLISECONDS, MILLIWATTS, NANOMETRES, PER_KELVIN,
-        PIXELS, PLAIN, RELIEF,
+        PER_METRE, PIXELS, PLAIN, RELIEF,
     },
     within,
 };
@@ -200,7 +200,7 @@ quantities! {
             .within(|_| (f64::MIN_POSITIVE, 1.0), "above 0 and at most 1").or("`1`")
             .written_if(|d| d.sensor.fill_factor < 1.0);
     }
-    surface [patterns] {
+    surface [patterns, material] {
         /// number above 0, at most 1: of a Lambertian surface, at the wavelength of the laser. For
         /// metal take the radiance towards the camera by that of white paper
         Reflectance: reflectance = Row::new(field!(surface.reflectance), &PLAIN)
@@ -224,6 +224,75 @@ quantities! {
             .within(|_| (0.0, 1.0), "from 0 to 1 m")
             .or("`0`: far below a resolution cell").read_with_others()
             .written_if(|d| d.surface.relief.correlation_length > 0.0);
+        /// length from 10 nm to 1 m: the transport length 1/µs′ of light below the surface of
+        /// a part that lets light in, such as plastic, marble or skin. The light leaves beside the
+        /// line, which is wider and reads too low
+        TransportLength: transport_length =
+            Row::new(field!(surface.subsurface.transport_length), &MILLIMETRES)
+            .within(
+                |d| match d.surface.subsurface.transport_length == 0.0 {
+                    true => (0.0, 0.0),
+                    false => (1e-8, 1.0),
+                },
+                "from 10 nm to 1 m (in metres)",
+            )
+            .or("that of the `material`; else no light enters")
+            .written_if(|d| d.surface.subsurface.transport_length > 0.0)
+            .note("of light below the surface");
+        /// number per metre, from 10⁻⁶ to 100 per transport length: absorption coefficient below
+        /// the surface
+        Absorption: absorption = Row::new(field!(surface.subsurface.absorption), &PER_METRE)
+            .within(
+                |d| {
+                    let body = &d.surface.subsurface;
+                    if body.absorption == 0.0 && body.material.is_some() {
+                        return (0.0, 0.0);
+                    }
+                    match body.transport_length > 0.0 {
+                        true => (1e-6 / body.transport_length, 1e2 / body.transport_length),
+                        false => body.range(body.absorption, [1e-6, 1e10]),
+                    }
+                },
+                "from 1e-6 to 100 per `transport_length` (in 1/m), and stated beside it or a `material`",
+            )
+            .or("that of the `material`; else required beside `transport_length`")
+            .written_if(|d| d.surface.subsurface.absorption > 0.0)
+            .note("per metre, below the surface");
+        /// number from 1 to 3, of a part that lets light in
+        RefractiveIndex: refractive_index =
+            Row::new(field!(surface.subsurface.refractive_index), &PLAIN)
+            .within(
+                |d| {
+                    let body = &d.surface.subsurface;
+                    body.range(body.refractive_index, [1.0, 3.0])
+                },
+                "from 1 to 3, and stated beside `transport_length` or `material`",
+            )
+            .or("that of the `material`, else `1.5`")
+            .written_if(|d| d.surface.subsurface.refractive_index > 0.0);
+        /// mean cosine of the scattering angle below the surface, from -0.95 to 0.95: at the same
+        /// transport length it hardly moves the line, but widens it
+        Anisotropy: anisotropy = Row::new(field!(surface.subsurface.anisotropy), &PLAIN)
+            .within(
+                |d| {
+                    let body = &d.surface.subsurface;
+                    body.range(body.anisotropy, [-0.95, 0.95])
+                },
+                "from -0.95 to 0.95, and stated beside `transport_length` or `material`",
+            )
+            .written_if(|d| d.surface.subsurface.anisotropy != 0.0);
+        /// number from 0 to 1: fraction of the light towards the camera that the boundary of a part
+        /// that lets light in reflects itself, where the line enters
+        SurfaceFraction: surface_fraction =
+            Row::new(field!(surface.subsurface.surface_fraction), &PLAIN)
+            .within(
+                |d| {
+                    let body = &d.surface.subsurface;
+                    body.range(body.surface_fraction, [0.0, 1.0])
+                },
+                "from 0 to 1, and stated beside `transport_length` or `material`",
+            )
+            .written_if(|d| d.surface.subsurface.surface_fraction > 0.0);
     }
     environment [] {
         /// number of kelvins from -200 to 200: the temperature less that at which the other values
@@ -266,6 +335,18 @@ impl SetupQuantity {
 
     fn row(self) -> &'static Row {
         &ROWS[self as usize]
+    }
+
+    /// Returns whether it describes light from below the surface.
+    pub const fn is_subsurface(self) -> bool {
+        matches!(
+            self,
+            Self::TransportLength
+                | Self::Absorption
+                | Self::RefractiveIndex
+                | Self::Anisotropy
+                | Self::SurfaceFraction
+        )
     }
 
     /// Returns the section of a set-up file and the key in it.

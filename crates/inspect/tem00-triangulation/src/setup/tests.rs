@@ -70,7 +70,7 @@ fn heights_come_back_from_the_positions_of_the_line() {
 
 #[test]
 fn light_through_the_pupil_frees_the_electrons_of_a_column() {
-    let (line, d) = (*setup().line(), description());
+    let (line, d) = (setup().line().clone(), description());
     // What a strip of one pixel along the line scatters into the solid angle of the pupil.
     let strip = d.sensor.pixel_pitch / setup().magnification();
     let scattered = d.laser.power / d.laser.line_length * strip * d.surface.reflectance;
@@ -92,7 +92,7 @@ fn light_through_the_pupil_frees_the_electrons_of_a_column() {
 
 #[test]
 fn the_line_is_as_wide_as_its_projection_the_lens_and_defocus_make_it() {
-    let line = *setup().line();
+    let line = setup().line().clone();
     let magnification = setup().magnification();
     let flat = magnification * 0.2e-3 * 0.75_f64.sqrt() / 3.45e-6;
     // To second order in W/L = 7e−4.
@@ -308,6 +308,7 @@ fn each_quantity_is_the_field_of_its_key_in_values_and_in_text() {
     for (quantity, number) in SetupQuantity::ALL.iter().zip(1_u32..) {
         quantity.set(&mut d, 1e-7 * f64::from(number));
     }
+    let below = d.surface.subsurface;
     let fields = [
         ("laser.wavelength", d.laser.light.wavelength),
         ("laser.linewidth", d.laser.light.linewidth),
@@ -340,6 +341,11 @@ fn each_quantity_is_the_field_of_its_key_in_values_and_in_text() {
             "surface.correlation_length",
             d.surface.relief.correlation_length,
         ),
+        ("surface.transport_length", below.transport_length),
+        ("surface.absorption", below.absorption),
+        ("surface.refractive_index", below.refractive_index),
+        ("surface.anisotropy", below.anisotropy),
+        ("surface.surface_fraction", below.surface_fraction),
         (
             "environment.temperature_change",
             d.environment.temperature_change,

@@ -96,4 +96,5 @@ pub(crate) const ELECTRONS_PER_SECOND: QuantityUnit = QuantityUnit {
     ..QuantityUnit::number("1", "\\second\\tothe{-1}")
 };
 pub(crate) const KELVINS: QuantityUnit = QuantityUnit::number("K", "\\kelvin");
+pub(crate) const PER_METRE: QuantityUnit = QuantityUnit::number("m⁻¹", "\\metre\\tothe{-1}");
 pub(crate) const PER_KELVIN: QuantityUnit = QuantityUnit::number("K⁻¹", "\\kelvin\\tothe{-1}");

@@ -83,7 +83,7 @@ fn an_expanded_uncertainty_by_trials_holds_as_much_as_it_says() {
         let case = format!("{thickness:e}, {calibration:e}");
         // Other frames; how much of the normal error of the calibration is small enough, is a
         // closed form.
-        let simulator = Simulator::new(&setup, *setup.line()).unwrap();
+        let simulator = Simulator::new(&setup, setup.line()).unwrap();
         let errors = (1000..1100).flat_map(|seed| simulator.deviations(seed).unwrap().0);
         let held = errors.map(|deviation| {
             let error = setup.line().height_per_pixel * deviation;

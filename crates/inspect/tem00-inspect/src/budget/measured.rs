@@ -129,6 +129,22 @@ impl Measured {
         sources.zip(self.measurement.inputs().as_slice())
     }
 
+    /// Returns the standard uncertainty of the height by the values of the light from below the
+    /// surface, in metres: of its correction.
+    pub(super) fn subsurface(&self) -> f64 {
+        let is_below = |input: MeasurementInput| match input {
+            MeasurementInput::Quantity(quantity) => quantity.is_subsurface(),
+            MeasurementInput::Term(_) => false,
+        };
+        let contributions = self.first_order.contributions().iter();
+        let sources = self.measurement.sources().iter();
+        let squares = contributions
+            .zip(sources)
+            .filter(|(_, source)| is_below(**source))
+            .map(|(contribution, _)| contribution.uncertainty.powi(2));
+        squares.sum::<f64>().sqrt()
+    }
+
     /// Returns the answer of a method; `None` for a virtual experiment that was left out, or whose
     /// lines cannot be trusted.
     pub(super) fn answer(&self, method: Quoted) -> Option<MethodAnswer> {

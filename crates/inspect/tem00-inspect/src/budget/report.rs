@@ -113,6 +113,9 @@ fn numbers(report: &mut Report, answer: Option<&Answer>) {
         None => "formulas",
     };
     report.data("quoted", answer.map(quoted));
+    let shift = answer.and_then(|answer| answer.budget.subsurface());
+    let shift = shift.map(|shift| json!({ "position": shift.position, "height": shift.height }));
+    report.data("subsurface", shift);
     report.data(
         "formulas",
         answer.map(|Answer { budget, .. }| json!({ "combined": budget.combined(), "expanded": budget.expanded() })),
@@ -236,6 +239,14 @@ fn combined(answer: &Answer) -> Vec<Cell> {
     cells
 }
 
+/// Returns the part of a width by light from below the surface, in words.
+fn below_surface(width: f64) -> String {
+    match width > 0.0 {
+        true => format!(", {} by light from below the surface", PIXELS.text(width)),
+        false => String::new(),
+    }
+}
+
 /// Adds what follows from the set-up.
 fn image(section: &mut Section, setup: &Setup) {
     let (description, line, range) = (setup.description(), setup.line(), setup.measuring_range());
@@ -247,8 +258,9 @@ fn image(section: &mut Section, setup: &Setup) {
             "imaged_width_pixels",
             "width of the line in the image (1/e²)",
             PIXELS.quantity(line.width).and(format!(
-                ", {} of the line itself and {} of the lens",
+                ", {} of the line itself{} and {} of the lens",
                 PIXELS.text(line.projected_thickness),
+                below_surface(line.subsurface_width),
                 PIXELS.text(line.diffraction_width)
             )),
         )

@@ -6,7 +6,7 @@ use tem00_triangulation::{LightLevel, MeasurementInput, Setup, Simulation};
 use super::{
     answers,
     findings::{Answer, Refusal},
-    measured::differs,
+    measured::{Measured, differs},
 };
 
 /// Returns the conclusions of the budget.
@@ -32,17 +32,44 @@ pub(super) fn verdicts(answer: &Answer, setup: &Setup) -> Vec<String> {
         Some(_) => [dominates, result(answer)],
         None => [result(answer), dominates],
     });
-    lines.push(format!(
-        "Speckle by closed forms: {} for the line that a lens images, {} for a spot after Dorsch, Häusler \
-         and Herrmann.",
-        MICROMETRES.text(budget.line_law()),
-        MICROMETRES.text(budget.dorsch())
-    ));
+    // The closed forms are those of a line that stays where it enters.
+    lines.push(subsurface(answer, setup).unwrap_or_else(|| {
+        format!(
+            "Speckle by closed forms: {} for the line that a lens images, {} for a spot after Dorsch, Häusler \
+             and Herrmann.",
+            MICROMETRES.text(budget.line_law()),
+            MICROMETRES.text(budget.dorsch())
+        )
+    }));
     if level != LightLevel::Good {
         lines.push(format!("The light is not right: {}.", level.advice()));
     }
     lines.extend(of_trials(answer));
     lines
+}
+
+/// Returns the correction of heights on a part that lets light in.
+fn subsurface(answer: &Answer, setup: &Setup) -> Option<String> {
+    let shift = answer.budget.subsurface()?;
+    let uncertain = answer.measured.as_ref().map(Measured::subsurface);
+    let height = shift.height.abs();
+    let height = match uncertain.filter(|uncertainty| *uncertainty > 0.0) {
+        Some(uncertainty) => format!(
+            "{} ± {}",
+            MICROMETRES
+                .with_digits_known(height, uncertainty)
+                .text(height),
+            MICROMETRES.with_digits(2).text(uncertainty)
+        ),
+        None => MICROMETRES.text(height),
+    };
+    let side = if shift.height < 0.0 { "low" } else { "high" };
+    Some(format!(
+        "Light from below the surface leaves the part beside the line: with this detector the part reads {height} \
+         {side}. Heights are corrected by that. The speckle has {} of the contrast of light of one wavelength; on a part \
+         that moves, light from below the surface has new speckle in every frame.",
+        NUMBER.with_digits(2).text(setup.line().bandwidth.contrast),
+    ))
 }
 
 /// Returns why there is no budget, and what to change.

@@ -95,6 +95,9 @@ fn write_csv(design: &Design<'_>, out: &mut impl Write) -> io::Result<()> {
     for figure in &figures {
         write!(out, ",{figure}{}", units::si_suffix(figure.unit()))?;
     }
+    if design.lets_light_in() {
+        write!(out, ",subsurface_height_m")?;
+    }
     writeln!(
         out,
         ",line_noise_ratio,contrast_ratio,dominant,allowed,why_not"
@@ -104,20 +107,23 @@ fn write_csv(design: &Design<'_>, out: &mut impl Write) -> io::Result<()> {
         for parameter in sweeps() {
             write!(out, ",{:e}", parameter.value_in(&candidate.description))?;
         }
-        write_figures(candidate, &figures, out)?;
+        write_figures(candidate, (&figures, design.lets_light_in()), out)?;
     }
     Ok(())
 }
 
 fn write_figures(
     candidate: &Candidate,
-    shown: &[DesignFigure],
+    (shown, lets_light_in): (&[DesignFigure], bool),
     out: &mut impl Write,
 ) -> io::Result<()> {
     match &candidate.figures {
         Ok(figures) => {
             for figure in shown {
                 write!(out, ",{:e}", figure.value_in(figures))?;
+            }
+            if let Some(shift) = figures.subsurface {
+                write!(out, ",{:e}", shift.height)?;
             }
             let effect = figures.bandwidth;
             write!(out, ",{:e},{:e}", effect.line_noise_ratio, effect.contrast)?;
@@ -131,7 +137,8 @@ fn write_figures(
         }
         Err(why) => {
             let why = why.to_string().replace('"', "\"\"");
-            writeln!(out, "{},,false,\"{why}\"", ",".repeat(shown.len() + 2))
+            let empty = shown.len() + 2 + usize::from(lets_light_in);
+            writeln!(out, "{},,false,\"{why}\"", ",".repeat(empty))
         }
     }
 }

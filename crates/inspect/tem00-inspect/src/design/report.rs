@@ -167,10 +167,15 @@ fn columns(design: &Design<'_>, figures: &[DesignFigure], listed: &[&Candidate])
         Column::data("speckle_size_pixels"),
         Column::data("broken"),
     ];
+    // Only parts that let light in have the column.
+    let subsurface = design
+        .lets_light_in()
+        .then(|| Column::new("subsurface_height", "read without correction (µm)"));
     [Column::new("number", "number")]
         .into_iter()
         .chain(varied)
         .chain(figures)
+        .chain(subsurface)
         .chain(last)
         .collect()
 }
@@ -194,6 +199,8 @@ fn cells(design: &Design<'_>, figures: &[DesignFigure], candidate: &Candidate) -
             .iter()
             .map(|figure| units::shown(figure.unit()).cell(figure.value_in(found))),
     );
+    let shift = found.subsurface.map(|shift| MICROMETRES.cell(shift.height));
+    cells.extend(shift);
     let contributions: Map<String, Value> = found
         .contributions
         .iter()

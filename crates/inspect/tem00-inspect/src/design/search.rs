@@ -23,6 +23,12 @@ pub(super) struct Design<'a> {
 }
 
 impl<'a> Design<'a> {
+    /// Returns whether the part lets light in.
+    pub(super) fn lets_light_in(&self) -> bool {
+        let base = &self.search.question().base;
+        base.surface.subsurface.lets_light_in()
+    }
+
     pub(super) fn search(
         args: &'a DesignArgs,
         search: DesignSearch,

@@ -31,6 +31,8 @@ cargo run --locked --release --example decorrelation_curves
 cp out/decorrelation_both.svg docs/figures/
 cargo run --locked --release --example will_a_broader_source_help
 cp out/broader_source_{noise,aperture}.svg docs/figures/
+cargo run --locked --release --example my_part_is_plastic
+cp out/plastic_shift.svg docs/figures/
 # What the tutorial shows.
 tem00-inspect() { cargo run --locked --release -p tem00-inspect -- "$@"; }
 tem00-inspect design examples/setups/design.toml -o "$work/design"

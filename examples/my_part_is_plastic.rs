@@ -15,7 +15,8 @@ use std::error::Error;
 
 use kuva::prelude::{LinePlot, Plot};
 use tem00::triangulation::{
-    Budget, LineMethod, Setup, SetupDescription, Subsurface, TriangulationError,
+    Budget, DetectorSettings, LineMethod, Setup, SetupDescription, SetupSurface, Subsurface,
+    TriangulationError,
 };
 
 /// Transport lengths, in metres: from dense white bodies to skin.
@@ -42,15 +43,24 @@ const DETECTORS: [(&str, LineMethod, usize, &str); 3] = [
 
 /// Returns the error of a height that is not corrected, in metres.
 fn height(length: f64, method: LineMethod, window: usize) -> Result<f64, TriangulationError> {
-    let mut setup = SetupDescription::default();
-    setup.auto_exposure = true;
-    setup.detector.method = method;
-    setup.detector.window = window;
-    setup.surface.subsurface = Subsurface {
-        transport_length: length,
-        // Of a thousand transport lengths of its path, light is left with a third.
-        absorption: 1e-3 / length,
-        ..Subsurface::default()
+    let like = SetupDescription::default();
+    let setup = SetupDescription {
+        auto_exposure: true,
+        detector: DetectorSettings {
+            method,
+            window,
+            ..like.detector
+        },
+        surface: SetupSurface {
+            subsurface: Subsurface {
+                transport_length: length,
+                // Of a thousand transport lengths of its path, light is left with a third.
+                absorption: 1e-3 / length,
+                ..Subsurface::default()
+            },
+            ..like.surface
+        },
+        ..like
     };
     let budget = Budget::new(&Setup::new(setup)?)?;
     Ok(budget.subsurface().map_or(0.0, |shift| shift.height))

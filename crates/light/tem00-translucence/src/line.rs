@@ -201,8 +201,9 @@ fn add(sum: &mut Vec<f64>, factor: f64, fractions: &[f64]) {
 /// The inputs of a table.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 struct Key {
-    /// The bits of refractive index, anisotropy and absorption over reduced scattering.
-    body: [u64; 3],
+    /// The bits of refractive index, anisotropy, slope of the boundary, and absorption over reduced
+    /// scattering.
+    body: [u64; 4],
     /// Incidence and exit, in steps.
     angles: [i64; 2],
 }
@@ -213,7 +214,12 @@ impl Key {
         // A power of two below it: paths may lose light by what is left, but not gain any.
         let power = libm::log2(relative).floor().min(MAX_ABSORPTION);
         let absorption = libm::exp2(power);
-        let body = [medium.refractive_index(), medium.anisotropy(), absorption];
+        let body = [
+            medium.refractive_index(),
+            medium.anisotropy(),
+            medium.slope(),
+            absorption,
+        ];
         Self {
             body: body.map(f64::to_bits),
             angles,
@@ -248,18 +254,21 @@ impl Table {
     }
 
     fn simulated(key: &Key) -> Result<Self, Refusal> {
-        let [index, anisotropy, absorption] = key.body.map(f64::from_bits);
+        let [index, anisotropy, slope, absorption] = key.body.map(f64::from_bits);
         let [incidence, exit] = key.angles.map(|steps| {
             (STEP * steps as f64)
                 .to_radians()
                 .clamp(-MAX_ANGLE, MAX_ANGLE)
         });
-        let medium = Medium::new(index, 1.0, absorption)?.with_anisotropy(anisotropy)?;
+        let medium = Medium::new(index, 1.0, absorption)?
+            .with_anisotropy(anisotropy)?
+            .with_matt_boundary(slope)?;
         let walk = Walk {
             incidence,
             exits: vec![exit],
-            // Forward scattering sends rare bright light to a camera.
-            photons: to_usize(PHOTONS / (1.0 - anisotropy.abs())) as u64,
+            // Forward scattering sends rare bright light to a camera, and so do steep facets.
+            photons: to_usize(PHOTONS * (1.0 + 16.0 * slope * slope) / (1.0 - anisotropy.abs()))
+                as u64,
             seed: 0,
         };
         let (light, mut samples) = LineSpread::binned(&medium, &walk);

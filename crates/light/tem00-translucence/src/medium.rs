@@ -1,12 +1,15 @@
+use core::array;
+
 use tem00_numerics::{Refusal, check};
 
-/// Homogeneous half space that scatters and absorbs light, with a smooth boundary.
+/// Homogeneous half space that scatters and absorbs light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Medium {
     refractive_index: f64,
     reduced_scattering: f64,
     absorption: f64,
     anisotropy: f64,
+    slope: f64,
 }
 
 impl Medium {
@@ -36,6 +39,7 @@ impl Medium {
             )?,
             absorption: check::range("absorption", absorption, relative, "1/m")?,
             anisotropy: 0.0,
+            slope: 0.0,
         })
     }
 
@@ -48,6 +52,23 @@ impl Medium {
     pub fn with_anisotropy(self, g: f64) -> Result<Self, Refusal> {
         let anisotropy = check::range("anisotropy", g, [-0.95, 0.95], "")?;
         Ok(Self { anisotropy, ..self })
+    }
+
+    /// Returns the medium with a matt boundary: facets of normally distributed slopes, which light
+    /// meets on its way in and out, without masking. The root mean square of the slopes along each
+    /// axis is `slope`.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error unless the slope is from 0 to 0.5: on steeper facets masking counts.
+    pub fn with_matt_boundary(self, slope: f64) -> Result<Self, Refusal> {
+        let slope = check::range("slope", slope, [0.0, 0.5], "")?;
+        Ok(Self { slope, ..self })
+    }
+
+    /// Returns the root mean square slope of the facets of the boundary.
+    pub(crate) const fn slope(&self) -> f64 {
+        self.slope
     }
 
     /// Returns the refractive index n.
@@ -92,12 +113,6 @@ impl Medium {
         self.transport_length() * sines / self.refractive_index
     }
 
-    /// Returns the sine and the cosine of the refracted angle below the surface.
-    pub(crate) fn refracted(&self, angle: f64) -> [f64; 2] {
-        let sine = libm::sin(angle) / self.refractive_index;
-        [sine, (1.0 - sine * sine).sqrt()]
-    }
-
     /// Returns the reflectance of the boundary from inside, for the cosine of the angle there; both
     /// polarisations averaged, 1 beyond the critical angle.
     ///
@@ -114,17 +129,29 @@ impl Medium {
         0.5 * (across * across + along * along)
     }
 
-    /// Returns the transmittance of the boundary for an angle outside.
-    pub(crate) fn transmittance(&self, angle: f64) -> f64 {
-        let [_, cosine] = self.refracted(angle);
-        1.0 - self.reflectance_from_inside(cosine)
-    }
-
-    /// Returns by how much refraction spreads a radiant intensity, over the cosine of the exit: the
-    /// solid angle below the surface over that outside is cos θo/(n² cos θo′).
-    pub(crate) fn transmitted_solid_angle(&self, exit: f64) -> f64 {
-        let [_, cosine] = self.refracted(exit);
-        1.0 / (self.refractive_index * self.refractive_index * cosine)
+    /// Returns the direction below a facet of light that meets it, and the fraction of the light
+    /// that takes it there, in units of what meets the boundary; `None` if none does.
+    ///
+    /// z is down, and the facet's normal is along (p, q, 1). A facet catches light in proportion
+    /// to its area across the direction of the light.
+    pub(crate) fn refracted(
+        &self,
+        direction: [f64; 3],
+        [p, q]: [f64; 2],
+    ) -> Option<([f64; 3], f64)> {
+        let length = (1.0 + p * p + q * q).sqrt();
+        let normal = [p / length, q / length, 1.0 / length];
+        let cosine = dot(direction, normal);
+        if cosine <= 0.0 {
+            return None;
+        }
+        let n = self.refractive_index;
+        let inside = (1.0 - (1.0 - cosine * cosine) / (n * n)).sqrt();
+        let along = inside - cosine / n;
+        let refracted = array::from_fn(|i| direction[i] / n + along * normal[i]);
+        let caught = cosine * length / direction[2];
+        let transmitted = 1.0 - self.reflectance_from_inside(inside);
+        (refracted[2] > 0.0).then_some((refracted, caught * transmitted))
     }
 
     /// Returns the density of scattered directions in 1/sr, for the cosine of the scattering angle:
@@ -144,4 +171,8 @@ impl Medium {
         let ratio = (1.0 - g * g) / (1.0 - g + 2.0 * g * uniform);
         ((1.0 + g * g - ratio * ratio) / (2.0 * g)).clamp(-1.0, 1.0)
     }
+}
+
+pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -41,15 +41,12 @@ impl LineSpread {
         let squares = sums().map(|[part, moment]| (moment - centroid * part).powi(2));
         let count = blocks.len() as f64;
         let variance = squares.sum::<f64>() * count / (count - 1.0) / weight.powi(2);
-        let escaped: u64 = blocks.iter().map(|block| block.escaped).sum();
+        let escaped: f64 = blocks.iter().map(|block| block.escaped).sum();
+        let entered: f64 = blocks.iter().map(|block| block.entered).sum();
         let photons = walk.photons.div_ceil(BLOCKS) as f64 * count;
-        let exit = walk.exits[camera];
         Self {
-            radiance_factor: PI * medium.scattered_fraction() * weight / photons
-                * medium.transmitted_solid_angle(exit)
-                * medium.transmittance(walk.incidence)
-                * medium.transmittance(exit),
-            albedo: escaped as f64 / photons,
+            radiance_factor: PI * medium.scattered_fraction() * weight / photons,
+            albedo: escaped / entered,
             centroid,
             standard_error: variance.sqrt(),
             samples: blocks

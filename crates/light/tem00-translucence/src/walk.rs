@@ -1,4 +1,4 @@
-use core::f64::consts::PI;
+use core::{array, f64::consts::PI};
 
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
@@ -9,7 +9,7 @@ use tem00_numerics::{
     seed::{Purpose, derived},
 };
 
-use crate::{LineSpread, Medium, PathSample, spread::Tally};
+use crate::{LineSpread, Medium, PathSample, medium::dot, spread::Tally};
 
 /// The largest angle of incidence or exit, in radians: 85°.
 pub(crate) const MAX_ANGLE: f64 = 85.0 * PI / 180.0;
@@ -78,27 +78,24 @@ fn blocks<T>(block: impl Fn(u64) -> T) -> Vec<T> {
 pub(crate) struct Block {
     /// What each camera sees.
     pub(crate) tallies: Vec<Tally>,
-    /// The number of photons that left the medium.
-    pub(crate) escaped: u64,
+    /// The light that entered the medium, and the light that left it again.
+    pub(crate) entered: f64,
+    pub(crate) escaped: f64,
 }
 
 /// Follows the photons of a block.
 fn block(medium: &Medium, walk: &Walk, number: u64, tally: fn() -> Tally) -> Block {
     let random = ChaCha8Rng::seed_from_u64(derived(walk.seed, Purpose::Pattern, number + 1));
-    let exits = walk.exits.iter().map(|&exit| {
-        let [sine, cosine] = medium.refracted(exit);
-        Exit { sine, cosine }
-    });
     let mut photon = Photon {
         medium,
         random,
-        exits: exits.collect(),
+        exits: Vec::new(),
         seen: Block {
             tallies: walk.exits.iter().map(|_| tally()).collect(),
-            escaped: 0,
+            entered: 0.0,
+            escaped: 0.0,
         },
     };
-    let [sine, cosine] = medium.refracted(walk.incidence);
     // First flights are stratified: they decide where the line is seen. In random order, so that
     // neighbours are independent pairs of paths.
     let count = walk.photons.div_ceil(BLOCKS);
@@ -109,15 +106,18 @@ fn block(medium: &Medium, walk: &Walk, number: u64, tally: fn() -> Tally) -> Blo
     }
     for stratum in strata {
         let first = (stratum as f64 + uniform(&mut photon.random)) / count as f64;
-        photon.follow([sine, 0.0, cosine], first);
+        photon.meet(walk, first);
     }
     photon.seen
 }
 
-/// Direction below the surface of the light that a camera sees.
+/// Way of light to a camera.
+#[derive(Clone, Copy, Default)]
 struct Exit {
-    sine: f64,
-    cosine: f64,
+    /// Direction below the surface, against the light.
+    direction: [f64; 3],
+    /// The radiance outside over the light that arrives below the facet from a collision.
+    radiance: f64,
 }
 
 struct Photon<'a> {
@@ -137,13 +137,52 @@ struct State {
     length: f64,
     /// The probability of the walk, given that it or its mirror image occurred.
     probability: f64,
+    /// The light of the photon.
+    weight: f64,
 }
 
 /// Optical depth from which no light is sent to a camera: 10⁻⁷ of it would arrive.
 const DARK: f64 = 16.0;
 
 impl Photon<'_> {
-    fn follow(&mut self, incident: [f64; 3], first: f64) {
+    /// Follows a photon through the facets that it meets.
+    fn meet(&mut self, walk: &Walk, first: f64) {
+        let outside = |angle: f64| {
+            let (sin, cos) = libm::sincos(angle);
+            [sin, 0.0, cos]
+        };
+        self.exits.clear();
+        for &exit in &walk.exits {
+            // As if the light came from the camera: paths can be reversed.
+            let facet = self.facet();
+            let way = self.medium.refracted(outside(-exit), facet);
+            let n = self.medium.refractive_index();
+            self.exits
+                .push(way.map_or_else(Exit::default, |(direction, light)| Exit {
+                    direction,
+                    radiance: light / (n * n * direction[2]),
+                }));
+        }
+        let facet = self.facet();
+        if let Some((direction, light)) = self.medium.refracted(outside(walk.incidence), facet) {
+            self.seen.entered += light;
+            self.follow(direction, light, first);
+        }
+    }
+
+    /// Draws the slopes of a facet.
+    fn facet(&mut self) -> [f64; 2] {
+        let slope = self.medium.slope();
+        if slope == 0.0 {
+            return [0.0; 2];
+        }
+        // Box and Muller 1958.
+        let radius = slope * (-2.0 * libm::log1p(-uniform(&mut self.random))).sqrt();
+        let (sin, cos) = libm::sincos(2.0 * PI * uniform(&mut self.random));
+        [radius * cos, radius * sin]
+    }
+
+    fn follow(&mut self, incident: [f64; 3], weight: f64, first: f64) {
         for tally in &mut self.seen.tallies {
             tally.begin(uniform(&mut self.random));
         }
@@ -154,6 +193,7 @@ impl Photon<'_> {
             direction: incident,
             length,
             probability: 1.0,
+            weight,
         };
         self.send(&state);
         if !self.survives() {
@@ -161,10 +201,7 @@ impl Photon<'_> {
         }
         state.direction = self.scattered(incident);
         let [x, y, z] = state.direction;
-        let [own, mirrored] = [x, -x].map(|x| {
-            let cosine = incident[0] * x + incident[1] * y + incident[2] * z;
-            self.medium.phase(cosine)
-        });
+        let [own, mirrored] = [x, -x].map(|x| self.medium.phase(dot(incident, [x, y, z])));
         state.probability = own / (own + mirrored);
         while self.advance(&mut state) {
             self.send(&state);
@@ -198,35 +235,53 @@ impl Photon<'_> {
             }
             state.place[1] = 0.0;
             rest -= step;
-            let reflectance = self.medium.reflectance_from_inside(-state.direction[2]);
-            if uniform(&mut self.random) >= reflectance {
-                self.seen.escaped += 1;
+            if !self.reflect(state) {
                 return false;
             }
-            state.direction[2] = -state.direction[2];
         }
+    }
+
+    /// Reflects a photon that meets the boundary from below, by chance; false if it leaves.
+    fn reflect(&mut self, state: &mut State) -> bool {
+        let [p, q] = self.facet();
+        let length = (1.0 + p * p + q * q).sqrt();
+        let normal = [p / length, q / length, 1.0 / length];
+        let cosine = -dot(state.direction, normal);
+        // Facets that look away are not met.
+        state.weight *= (-cosine * length / state.direction[2]).max(0.0);
+        if cosine <= 0.0 {
+            return false;
+        }
+        if uniform(&mut self.random) >= self.medium.reflectance_from_inside(cosine) {
+            self.seen.escaped += state.weight;
+            return false;
+        }
+        state.direction = array::from_fn(|i| state.direction[i] + 2.0 * cosine * normal[i]);
+        // What a facet sends upwards would meet another: without masking it is lost both ways.
+        state.direction[2] > 0.0
     }
 
     /// Sends light of a collision to the cameras.
     fn send(&mut self, state: &State) {
         let [beside, depth] = state.place;
-        let [x, _, z] = state.direction;
+        let [x, y, z] = state.direction;
         let extinction = self.medium.extinction();
         for (exit, tally) in self.exits.iter().zip(&mut self.seen.tallies) {
-            let flight = depth / exit.cosine;
-            if extinction * flight > DARK {
+            let [ex, ey, ez] = exit.direction;
+            let flight = depth / ez;
+            if exit.radiance == 0.0 || extinction * flight > DARK {
                 continue;
             }
-            let seen = libm::exp(-extinction * flight);
+            let seen = exit.radiance * state.weight * libm::exp(-extinction * flight);
             let length = state.length + flight;
-            let first = state.entry + flight * exit.sine;
+            let first = state.entry - flight * ex;
             let walks = [
                 (state.probability, x, beside),
                 (1.0 - state.probability, -x, -beside),
             ];
             for (probability, x, beside) in walks {
                 if probability > 0.0 {
-                    let phase = self.medium.phase(x * exit.sine - z * exit.cosine);
+                    let phase = self.medium.phase(-(x * ex + y * ey + z * ez));
                     let weight = probability * phase * seen;
                     tally.add(PathSample {
                         weight,
@@ -260,7 +315,7 @@ impl Photon<'_> {
         let along = [1.0 + sign * x * x * a, sign * b, -sign * x];
         let across = [b, sign + y * y * a, -y];
         let direction = [x, y, z];
-        core::array::from_fn(|i| u * along[i] + v * across[i] + cosine * direction[i])
+        array::from_fn(|i| u * along[i] + v * across[i] + cosine * direction[i])
     }
 }
 

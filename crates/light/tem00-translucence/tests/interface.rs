@@ -34,12 +34,14 @@ fn what_is_out_of_range_is_named() {
         Medium::new(1.5, 0.0, 1.0),
         Medium::new(1.5, 1e3, 0.0),
         medium.with_anisotropy(1.0),
+        medium.with_matt_boundary(0.6),
     ];
     for (refused, name) in wrong.iter().zip([
         "refractive_index",
         "reduced_scattering",
         "absorption",
         "anisotropy",
+        "slope",
     ]) {
         let refusal = refused.as_ref().expect_err(name);
         assert_eq!(refusal.parameter, name);

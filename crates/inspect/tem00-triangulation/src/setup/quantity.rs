@@ -281,6 +281,19 @@ quantities! {
                 "from -0.95 to 0.95, and stated beside `transport_length` or `material`",
             )
             .written_if(|d| d.surface.subsurface.anisotropy != 0.0);
+        /// number from 0 to 0.5: root mean square slope, along each axis, of the facets of a matt
+        /// boundary
+        BoundarySlope: boundary_slope =
+            Row::new(field!(surface.subsurface.boundary_slope), &PLAIN)
+            .within(
+                |d| {
+                    let body = &d.surface.subsurface;
+                    body.range(body.boundary_slope, [0.0, 0.5])
+                },
+                "from 0 to 0.5, and stated beside `transport_length` or `material`",
+            )
+            .or("`0`: smooth")
+            .written_if(|d| d.surface.subsurface.boundary_slope > 0.0);
         /// number from 0 to 1: fraction of the light towards the camera that the boundary of a part
         /// that lets light in reflects itself, where the line enters
         SurfaceFraction: surface_fraction =
@@ -345,6 +358,7 @@ impl SetupQuantity {
                 | Self::Absorption
                 | Self::RefractiveIndex
                 | Self::Anisotropy
+                | Self::BoundarySlope
                 | Self::SurfaceFraction
         )
     }

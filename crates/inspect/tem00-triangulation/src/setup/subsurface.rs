@@ -23,6 +23,8 @@ pub struct Subsurface {
     pub refractive_index: f64,
     /// The mean cosine of the scattering angle.
     pub anisotropy: f64,
+    /// The root mean square slope of the facets of a matt boundary along each axis.
+    pub boundary_slope: f64,
     /// The fraction of the light towards the camera that the boundary itself reflects.
     pub surface_fraction: f64,
 }
@@ -36,6 +38,7 @@ impl Default for Subsurface {
             absorption: 0.0,
             refractive_index: 0.0,
             anisotropy: 0.0,
+            boundary_slope: 0.0,
             surface_fraction: 0.0,
         }
     }
@@ -74,7 +77,10 @@ impl Subsurface {
         let length = or(self.transport_length, Medium::transport_length).unwrap_or_default();
         let absorption = or(self.absorption, Medium::absorption).unwrap_or_default();
         let medium = Medium::new(index, 1.0 / length, absorption)?;
-        medium.with_anisotropy(self.anisotropy).map(Some)
+        medium
+            .with_anisotropy(self.anisotropy)?
+            .with_matt_boundary(self.boundary_slope)
+            .map(Some)
     }
 }
 

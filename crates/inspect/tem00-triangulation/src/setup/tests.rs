@@ -345,6 +345,7 @@ fn each_quantity_is_the_field_of_its_key_in_values_and_in_text() {
         ("surface.absorption", below.absorption),
         ("surface.refractive_index", below.refractive_index),
         ("surface.anisotropy", below.anisotropy),
+        ("surface.boundary_slope", below.boundary_slope),
         ("surface.surface_fraction", below.surface_fraction),
         (
             "environment.temperature_change",

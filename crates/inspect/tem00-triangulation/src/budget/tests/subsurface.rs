@@ -12,6 +12,7 @@ const MARBLE: Subsurface = Subsurface {
     absorption: 2.1,
     refractive_index: 1.5,
     anisotropy: 0.0,
+    boundary_slope: 0.0,
     surface_fraction: 0.0,
 };
 

@@ -101,6 +101,7 @@ fn every_quantity_may_be_uncertain() {
         (SetupQuantity::Absorption, 10.0),
         (SetupQuantity::RefractiveIndex, 1.4),
         (SetupQuantity::Anisotropy, 0.25),
+        (SetupQuantity::BoundarySlope, 0.25),
         (SetupQuantity::SurfaceFraction, 0.125),
         (SetupQuantity::TemperatureChange, 2.0),
         (SetupQuantity::BaseExpansion, 1e-5),

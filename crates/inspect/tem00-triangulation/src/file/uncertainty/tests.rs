@@ -86,7 +86,7 @@ fn every_quantity_may_be_uncertain() {
         (SetupQuantity::Linewidth, 1e-9),
         (SetupQuantity::SourceHalfAngle, 2e-3),
         (SetupQuantity::LaserOffset, 1e-3),
-        (SetupQuantity::LaserTilt, 0.02),
+        (SetupQuantity::LaserTilt, 5_f64.to_radians()),
         (SetupQuantity::PrincipalRow, 240.0),
         (SetupQuantity::BlackLevel, 60.0),
         (SetupQuantity::Gain, 0.3),

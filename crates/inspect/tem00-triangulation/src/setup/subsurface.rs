@@ -101,7 +101,12 @@ impl SpreadLight {
         };
         // Both angles count towards the side of the camera, to which a laser that leans away from
         // it travels.
-        let line = SpreadLine::new(&medium, d.laser.tilt, d.camera.angle)?;
+        let line = SpreadLine::new(&medium, d.laser.tilt, d.camera.angle);
+        // The laser leans by less than the largest angle.
+        let line = line.map_err(|refusal| Refusal {
+            parameter: "angle",
+            ..refusal
+        })?;
         let line = Arc::new(line.with_boundary(body.surface_fraction)?);
         let spectrum = d.laser.light.line()?;
         let contrast = match spectrum.is_monochromatic() {

@@ -116,7 +116,7 @@ impl Budget {
             true => f64::from(d.average.frames),
             false => 1.0,
         };
-        let speckles = line.projected_thickness / line.speckle_size[1];
+        let speckles = line.projected_thickness.hypot(line.subsurface_width) / line.speckle_size[1];
         let bandwidth = line.bandwidth;
         let position = law / frames.sqrt();
         let shift = first_order::subsurface_shift(setup, line)?;

@@ -191,12 +191,7 @@ impl Setup {
 
     /// Returns the magnification on the axis, `m = f / (L − f)`.
     pub fn magnification(&self) -> f64 {
-        let SetupCamera {
-            focal_length,
-            distance,
-            ..
-        } = self.description.camera;
-        focal_length / (distance - focal_length)
+        self.description.camera.magnification()
     }
 
     /// Returns the width of the field, in metres: the length of the part of the reference line that
@@ -215,12 +210,11 @@ impl Setup {
         within("f_number", per_pixel[1], SPECKLE_SIZES, allowed)?;
         let allowed = "such that the line is from 0.1 pixel to a third of the image wide in it; its \
                        width there, in pixels, is the value";
-        within(
-            "line_thickness",
-            self.line.width,
-            (0.1, rows / 3.0),
-            allowed,
-        )?;
+        let widest = match self.line.subsurface_width > self.line.projected_thickness {
+            true => "transport_length",
+            false => "line_thickness",
+        };
+        within(widest, self.line.width, (0.1, rows / 3.0), allowed)?;
         let window = self.description.detector.window as f64;
         let allowed = "at most the number of rows of the image";
         within("window", window, (1.0, rows), allowed)?;
@@ -262,7 +256,7 @@ pub(crate) fn camera(description: &SetupDescription) -> Result<Camera, Triangula
         scheimpflug,
     } = description.camera;
     let (sin, cos) = angle.sin_cos();
-    let magnification = focal_length / (distance - focal_length);
+    let magnification = description.camera.magnification();
     let tilt = if scheimpflug {
         let (sin, cos) = (angle + description.laser.tilt).sin_cos();
         -libm::atan(magnification * cos / sin)

@@ -183,6 +183,11 @@ pub struct SetupCamera {
 }
 
 impl SetupCamera {
+    /// Returns the magnification on the axis, `m = f / (L − f)`.
+    pub(super) fn magnification(&self) -> f64 {
+        self.focal_length / (self.distance - self.focal_length)
+    }
+
     /// Returns the row in the middle of the image.
     pub(super) fn middle_row(&self) -> f64 {
         0.5 * self.resolution[1] as f64

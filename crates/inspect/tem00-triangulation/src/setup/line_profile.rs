@@ -98,16 +98,28 @@ impl LineProfile {
         higher(step) + higher(-step)
     }
 
-    /// Returns the full width at half of the crest, in whole steps.
+    /// Returns the full width at half of the crest, to a thousandth of it.
     pub(crate) fn width_at_half(&self, crest: f64, step: f64) -> f64 {
         let half = 0.5 * self.at(crest);
-        let mut ends = [crest; 2];
-        for (end, step) in ends.iter_mut().zip([-step, step]) {
-            while self.at(*end) > half {
-                *end += step;
+        let side = |sign: f64| {
+            let is_bright = |distance: f64| self.at(crest + sign * distance) > half;
+            let mut end = step;
+            while is_bright(end) {
+                end *= 2.0;
             }
-        }
-        ends[1] - ends[0]
+            // The flank is not farther than half of the way back.
+            let mut near = 0.5 * end;
+            while end - near > 1e-3 * end {
+                let middle = 0.5 * (near + end);
+                *(if is_bright(middle) {
+                    &mut near
+                } else {
+                    &mut end
+                }) = middle;
+            }
+            end
+        };
+        side(-1.0) + side(1.0)
     }
 
     /// Returns the fraction of the light per pixel, averaged over the sensitive part of a pixel

@@ -7,10 +7,11 @@ use tem00_numerics::Refusal;
 use tem00_speckle::Complex;
 use tem00_translucence::{Bin, Material, Medium, SpreadLine};
 
-use super::{SetupCamera, SetupDescription};
+use super::SetupDescription;
 
-/// Light that enters the part, is scattered below its surface and leaves it elsewhere.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Light that enters the part, is scattered below its surface and leaves it elsewhere; by default
+/// none does.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Subsurface {
     /// The material, whose values hold where no other is given.
     pub material: Option<&'static Material>,
@@ -29,28 +30,14 @@ pub struct Subsurface {
     pub surface_fraction: f64,
 }
 
-impl Default for Subsurface {
-    /// A part that lets no light in.
-    fn default() -> Self {
-        Self {
-            material: None,
-            transport_length: 0.0,
-            absorption: 0.0,
-            refractive_index: 0.0,
-            anisotropy: 0.0,
-            boundary_slope: 0.0,
-            surface_fraction: 0.0,
-        }
-    }
-}
-
 impl Subsurface {
     /// Returns whether light enters the part.
     pub fn lets_light_in(&self) -> bool {
         self.transport_length > 0.0 || self.material.is_some()
     }
 
-    /// Returns the range of a value: `range` if light enters the part and there is a value, else 0.
+    /// Returns the range of a value: the given one if light enters the part and there is a value,
+    /// else 0.
     pub(super) fn range(&self, value: f64, [min, max]: [f64; 2]) -> (f64, f64) {
         match self.lets_light_in() && value != 0.0 {
             true => (min, max),
@@ -121,14 +108,8 @@ impl SpreadLight {
 
     /// Returns the places across the line that the window of the detector sees, in metres.
     fn window(d: &SetupDescription) -> [f64; 2] {
-        let SetupCamera {
-            focal_length,
-            distance,
-            angle,
-            ..
-        } = d.camera;
-        let magnification = focal_length / (distance - focal_length);
-        let pixel = d.sensor.pixel_pitch / (magnification * angle.cos());
+        let across = d.camera.magnification() * d.camera.angle.cos();
+        let pixel = d.sensor.pixel_pitch / across;
         let half = 0.5 * d.detector.window as f64 * pixel;
         [-half, half]
     }

@@ -19,6 +19,24 @@ macro_rules! field {
     ($($field:ident).+) => { (|d| d.$($field).+, |d| &mut d.$($field).+) };
 }
 
+/// The row of a number that describes light below the surface, without a value 0.
+macro_rules! below {
+    ($field:ident, $min:literal, $max:literal, $allowed:literal) => {
+        Row::new(field!(surface.subsurface.$field), &PLAIN)
+            .within(
+                |d| {
+                    let body = &d.surface.subsurface;
+                    body.range(body.$field, [$min, $max])
+                },
+                concat!(
+                    $allowed,
+                    ", and stated beside `transport_length` or `material`"
+                ),
+            )
+            .written_if(|d| d.surface.subsurface.$field != 0.0)
+    };
+}
+
 /// Declares the sections of a set-up file, with the keys of no quantity in brackets, and their
 /// quantities.
 macro_rules! quantities {
@@ -259,53 +277,18 @@ quantities! {
             .written_if(|d| d.surface.subsurface.absorption > 0.0)
             .note("per metre, below the surface");
         /// number from 1 to 3, of a part that lets light in
-        RefractiveIndex: refractive_index =
-            Row::new(field!(surface.subsurface.refractive_index), &PLAIN)
-            .within(
-                |d| {
-                    let body = &d.surface.subsurface;
-                    body.range(body.refractive_index, [1.0, 3.0])
-                },
-                "from 1 to 3, and stated beside `transport_length` or `material`",
-            )
-            .or("that of the `material`, else `1.5`")
-            .written_if(|d| d.surface.subsurface.refractive_index > 0.0);
+        RefractiveIndex: refractive_index = below!(refractive_index, 1.0, 3.0, "from 1 to 3")
+            .or("that of the `material`, else `1.5`");
         /// mean cosine of the scattering angle below the surface, from -0.95 to 0.95: at the same
         /// transport length it hardly moves the line, but widens it
-        Anisotropy: anisotropy = Row::new(field!(surface.subsurface.anisotropy), &PLAIN)
-            .within(
-                |d| {
-                    let body = &d.surface.subsurface;
-                    body.range(body.anisotropy, [-0.95, 0.95])
-                },
-                "from -0.95 to 0.95, and stated beside `transport_length` or `material`",
-            )
-            .written_if(|d| d.surface.subsurface.anisotropy != 0.0);
+        Anisotropy: anisotropy = below!(anisotropy, -0.95, 0.95, "from -0.95 to 0.95");
         /// number from 0 to 0.5: root mean square slope, along each axis, of the facets of a matt
         /// boundary
-        BoundarySlope: boundary_slope =
-            Row::new(field!(surface.subsurface.boundary_slope), &PLAIN)
-            .within(
-                |d| {
-                    let body = &d.surface.subsurface;
-                    body.range(body.boundary_slope, [0.0, 0.5])
-                },
-                "from 0 to 0.5, and stated beside `transport_length` or `material`",
-            )
-            .or("`0`: smooth")
-            .written_if(|d| d.surface.subsurface.boundary_slope > 0.0);
+        BoundarySlope: boundary_slope = below!(boundary_slope, 0.0, 0.5, "from 0 to 0.5")
+            .or("`0`: smooth");
         /// number from 0 to 1: fraction of the light towards the camera that the boundary of a part
         /// that lets light in reflects itself, where the line enters
-        SurfaceFraction: surface_fraction =
-            Row::new(field!(surface.subsurface.surface_fraction), &PLAIN)
-            .within(
-                |d| {
-                    let body = &d.surface.subsurface;
-                    body.range(body.surface_fraction, [0.0, 1.0])
-                },
-                "from 0 to 1, and stated beside `transport_length` or `material`",
-            )
-            .written_if(|d| d.surface.subsurface.surface_fraction > 0.0);
+        SurfaceFraction: surface_fraction = below!(surface_fraction, 0.0, 1.0, "from 0 to 1");
     }
     environment [] {
         /// number of kelvins from -200 to 200: the temperature less that at which the other values

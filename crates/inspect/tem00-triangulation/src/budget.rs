@@ -120,15 +120,12 @@ impl Budget {
         let bandwidth = line.bandwidth;
         let position = law / frames.sqrt();
         let shift = first_order::subsurface_shift(setup, line)?;
-        let shifted = || Some(setup.height_at(line.position + shift)? - height);
+        let shift = SubsurfaceShift {
+            position: shift,
+            height: setup.height_at(line.position + shift)? - height,
+        };
         Some(Self {
-            subsurface: match line.is_spread() {
-                true => Some(SubsurfaceShift {
-                    position: shift,
-                    height: shifted()?,
-                }),
-                false => None,
-            },
+            subsurface: line.is_spread().then_some(shift),
             height,
             terms,
             speckles,

@@ -74,8 +74,6 @@ pub(super) struct ColumnProfile {
     /// The mean electrons that light frees in a column.
     electrons: f64,
     profile: LineProfile,
-    /// True if light from below the surface shifts the line.
-    is_spread: bool,
 }
 
 impl ColumnProfile {
@@ -85,7 +83,6 @@ impl ColumnProfile {
             rows,
             electrons: line.column_electrons,
             profile: line.profile(rows as f64),
-            is_spread: line.is_spread(),
         }
     }
 }
@@ -247,7 +244,7 @@ fn detector_bias(setup: &Setup, profile: &ColumnProfile) -> Option<[f64; 2]> {
     });
     let errors: Vec<f64> = errors.collect::<Option<_>>()?;
     let count = f64::from(BIAS_PHASES);
-    let shift = match profile.is_spread {
+    let shift = match setup.line().is_spread() {
         true => errors.iter().sum::<f64>() / count,
         false => 0.0,
     };

@@ -173,6 +173,12 @@ pub(crate) fn in_parallel<T: Send>(
     (0..options.trials).into_par_iter().map(trial).collect()
 }
 
+const NO_LINE: TriangulationError = TriangulationError::TooFew {
+    what: "lines that the detector finds without noise",
+    got: 0,
+    needed: 1,
+};
+
 /// Trials of a set-up with a line on a flat surface.
 pub(crate) struct Simulator<'a> {
     setup: &'a Setup,
@@ -199,7 +205,7 @@ impl<'a> Simulator<'a> {
             })?,
             image: LineImage::of_line(setup, line, [columns, rows])?,
             group,
-            shift: first_order::subsurface_shift(setup, line).unwrap_or(0.0),
+            shift: first_order::subsurface_shift(setup, line).ok_or(NO_LINE)?,
         };
         simulator.noise_free_position(0.0).map(|_| simulator)
     }
@@ -208,11 +214,7 @@ impl<'a> Simulator<'a> {
     fn noise_free_position(&self, phase: f64) -> Result<f64, TriangulationError> {
         let column = NoiseFreeColumn::new(self.setup, &self.line, phase);
         let found = column.found(self.setup).map(|point| point.position);
-        found.ok_or(TriangulationError::TooFew {
-            what: "lines that the detector finds without noise",
-            got: 0,
-            needed: 1,
-        })
+        found.ok_or(NO_LINE)
     }
 
     fn trial(&self, seed: u64, index: u32) -> Result<Trial, TriangulationError> {

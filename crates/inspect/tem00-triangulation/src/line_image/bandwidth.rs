@@ -82,7 +82,7 @@ impl PolychromaticLight {
         let (modes, even) = enough(
             fractions,
             noise(&speckle) / in_mode,
-            f64::from(description.surface.patterns),
+            PATTERNS / f64::from(description.surface.patterns),
         );
         Some(Self {
             modes,
@@ -98,7 +98,7 @@ impl PolychromaticLight {
     fn of_contrast(setup: &Setup) -> Self {
         let squared = setup.line().bandwidth.line_noise_ratio.powi(2);
         let patterns = f64::from(setup.description().surface.patterns);
-        let (modes, even) = enough(fewest(squared), squared, patterns * PATTERNS / FEW);
+        let (modes, even) = enough(fewest(squared), squared, FEW / patterns);
         Self {
             modes,
             even,
@@ -121,8 +121,8 @@ fn fewest(variance: f64) -> Vec<f64> {
 ///
 /// If the variance v is below the variance of n equal patterns, these patterns have the fraction
 /// √(v n) of the light, and the rest is even: more patterns would have the same covariance.
-fn enough(modes: Vec<f64>, variance: f64, patterns: f64) -> (Vec<f64>, f64) {
-    let count = (PATTERNS / patterns).max(1.0).floor();
+fn enough(modes: Vec<f64>, variance: f64, most: f64) -> (Vec<f64>, f64) {
+    let count = most.max(1.0).floor();
     if variance * count >= 1.0 {
         return (modes, 0.0);
     }

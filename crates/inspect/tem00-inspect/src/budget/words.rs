@@ -64,11 +64,18 @@ fn subsurface(answer: &Answer, setup: &Setup) -> Option<String> {
         None => MICROMETRES.text(height),
     };
     let side = if shift.height < 0.0 { "low" } else { "high" };
+    let contrast = setup.line().bandwidth.contrast;
+    let contrast = match contrast < 1.0 {
+        true => format!(
+            " The speckle has {} of the contrast of light of one wavelength.",
+            NUMBER.with_digits(2).text(contrast)
+        ),
+        false => String::new(),
+    };
     Some(format!(
         "Light from below the surface leaves the part beside the line: with this detector the part reads {height} \
-         {side}. Heights are corrected by that. The speckle has {} of the contrast of light of one wavelength; on a part \
-         that moves, light from below the surface has new speckle in every frame.",
-        NUMBER.with_digits(2).text(setup.line().bandwidth.contrast),
+         {side}. Heights are corrected by that.{contrast} On a part that moves, light from below the surface has new \
+         speckle in every frame."
     ))
 }
 

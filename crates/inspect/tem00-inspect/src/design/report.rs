@@ -170,7 +170,7 @@ fn columns(design: &Design<'_>, figures: &[DesignFigure], listed: &[&Candidate])
     // Only parts that let light in have the column.
     let subsurface = design
         .lets_light_in()
-        .then(|| Column::new("subsurface_height", "read without correction (µm)"));
+        .then(|| Column::new("subsurface_height", "height without correction (µm)"));
     [Column::new("number", "number")]
         .into_iter()
         .chain(varied)

@@ -18,8 +18,9 @@
 //!
 //! # Validity
 //!
-//! The body is homogeneous, its surface plane, and it is thick against the transport length. Light that the boundary itself reflects is not part of the results. The wavelength is
-//! one at a time, and polarisation is averaged.
+//! The body is homogeneous, its surface plane, and it is thick against the transport length. Light
+//! that the boundary itself reflects is not part of the results, except for a [`SpreadLine`] that
+//! is given its fraction. The wavelength is one at a time, and polarisation is averaged.
 
 mod bins;
 mod line;

@@ -3,7 +3,8 @@
 //!
 //! Light that enters plastic, ceramic, marble or skin is scattered below the surface and leaves it
 //! elsewhere. A triangulation sensor then reports a height that is too low, and the speckle of the
-//! line has less contrast, because its paths differ in length.
+//! line has less contrast, because its paths differ in length. A renderer draws the place where the
+//! light of a point entered with [`Medium::entry`].
 //!
 //! ```
 //! use tem00_translucence::{LineSpread, Medium, Walk};
@@ -23,15 +24,18 @@
 //! is given its fraction. The wavelength is one at a time, and polarisation is averaged.
 
 mod bins;
+mod entry;
 mod line;
 mod material;
 mod medium;
+mod photon;
 mod spread;
 mod walk;
 
 pub use bins::Bin;
+pub use entry::Entry;
 pub use line::SpreadLine;
-pub use material::Material;
+pub use material::{Material, MediumDescription};
 pub use medium::Medium;
 pub use spread::{LineSpread, PathSample};
 pub use tem00_coherence::{LineShape, SpectralLine};

@@ -65,6 +65,12 @@ impl Material {
         }
     }
 
+    /// Returns all materials with their names.
+    pub fn named() -> [(&'static str, &'static Self); 11] {
+        let all = const { &Self::ALL };
+        all.each_ref().map(|material| (material.name, material))
+    }
+
     /// Returns the medium in light of a wavelength, in metres.
     ///
     /// # Errors
@@ -84,5 +90,39 @@ impl Material {
             self.reduced_scattering[band],
             self.absorption[band],
         )
+    }
+}
+
+/// Description of a medium: values of its own, and for the others a material.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MediumDescription {
+    /// The material, whose values hold where no other is given.
+    pub material: Option<&'static Material>,
+    /// The transport length ℓ* = 1/µs′, in metres.
+    pub transport_length: Option<f64>,
+    /// The absorption coefficient µa, in 1/m.
+    pub absorption: Option<f64>,
+    /// The refractive index; 1.5 without a material.
+    pub refractive_index: Option<f64>,
+    /// The mean cosine g of the scattering angle.
+    pub anisotropy: f64,
+}
+
+impl MediumDescription {
+    /// Returns the medium in light of a wavelength, in metres.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if a value is out of range or missing, or if the material was not measured
+    /// at the wavelength.
+    pub fn medium(&self, wavelength: f64) -> Result<Medium, Refusal> {
+        let known = self.material.map(|material| material.medium(wavelength));
+        let known = known.transpose()?;
+        let or = |value: Option<f64>, of: fn(&Medium) -> f64| value.or(known.as_ref().map(of));
+        let index = or(self.refractive_index, Medium::refractive_index).unwrap_or(1.5);
+        let length = or(self.transport_length, Medium::transport_length).unwrap_or_default();
+        let length = check::range("transport_length", length, [1e-8, 1.0], "m")?;
+        let absorption = or(self.absorption, Medium::absorption).unwrap_or_default();
+        Medium::new(index, 1.0 / length, absorption)?.with_anisotropy(self.anisotropy)
     }
 }

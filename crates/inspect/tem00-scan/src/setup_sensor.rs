@@ -154,6 +154,7 @@ impl<'a> SetupSensor<'a> {
         let light = light
             .electrons
             .map(|&electrons| electrons / to_f32((parts * parts) as f64));
+        let light = image.spread(light);
         let seed = scene.render.seed.wrapping_add(u64::from(frame));
         let without_speckle = sums(&light, parts);
         Ok(Exposure {

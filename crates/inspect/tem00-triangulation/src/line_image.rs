@@ -214,6 +214,18 @@ impl LineImage {
         })
     }
 
+    /// Returns light where it leaves a part that lets light in, from where it enters: below each
+    /// column as on a plate. The image is one without blur, in several parts of each pixel.
+    #[must_use]
+    pub fn spread(&self, light: Grid<f32>) -> Grid<f32> {
+        match self.spread.is_none() {
+            true => light,
+            false => self
+                .spread
+                .of_light(&light, light.height() / self.data.size[1]),
+        }
+    }
+
     /// Returns the mean numbers of electrons that a surface of any shape frees behind the lens,
     /// with the speckle of a seed.
     ///

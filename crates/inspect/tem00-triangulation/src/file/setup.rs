@@ -157,7 +157,9 @@ fn setup(document: &Document<'_>) -> Result<Setup, Problem> {
     d.surface.patterns = surface.or("patterns", 1, |value| count(value, 64))?;
     d.surface.relief = read_relief(&surface, None)?;
     let body = &mut d.surface.subsurface;
-    body.material = surface.optional("material").map(material).transpose()?;
+    let material = surface.optional("material");
+    let named = material.map(|value| value.one_of(&Material::named()));
+    body.material = named.transpose()?;
     if body.transport_length != 0.0 && body.material.is_none() {
         surface.required("absorption", "5")?;
     }
@@ -211,11 +213,6 @@ fn needed<'a>(
 fn pixels(value: &Value<'_>) -> Result<usize, Problem> {
     let pixels = value.integer(1..=1 << 20)?;
     usize::try_from(pixels).map_err(|_| value.must_be("a number of pixels that can be counted"))
-}
-
-fn material(value: Value<'_>) -> Result<&'static Material, Problem> {
-    let all = const { &Material::ALL };
-    value.one_of(&all.each_ref().map(|material| (material.name, material)))
 }
 
 fn read_average(section: &Section<'_>) -> Result<Averages, Problem> {

@@ -6,6 +6,7 @@ use tem00_statistics::{
 use tem00_testkit::{assert_absolute, assert_relative, refuses};
 
 use super::*;
+use crate::SetupDescription;
 
 /// A line of 12 pixels on speckle of 1.6 pixels.
 const DATA: LineImageData = LineImageData {
@@ -239,6 +240,33 @@ fn light_that_does_not_fit_the_image_is_refused_by_name() {
         let light = Grid::filled(size[0], size[1], 1.0);
         let error = lines.speckled_light(1, &light).unwrap_err();
         assert_eq!(error.parameter(), Some("light"), "{error}");
+    }
+}
+
+/// Light of any surface is spread as the light of the plate of the set-up.
+#[test]
+fn light_from_below_a_surface_leaves_it_where_the_line_of_the_plate_does() {
+    let mut description = SetupDescription::default();
+    description.surface.subsurface.transport_length = 0.2e-3;
+    description.surface.subsurface.absorption = 5.0;
+    description.surface.subsurface.surface_fraction = 0.1;
+    let setup = Setup::new(description).unwrap();
+    let lines = LineImage::of_setup(&setup, [4, 200]).unwrap();
+    let data = LineImageData {
+        blur: 0.0,
+        ..lines.data
+    };
+    let parts = 8;
+    let mut sharp_line = lines.clone();
+    sharp_line.data = data;
+    let light = lines.spread(sharp(&data, parts, 100.0));
+    let expected = sharp_line.mean(|_| 100.0);
+    // Diffraction takes light from the core to the wings, some hundredths of theirs.
+    for rows in [0..50, 50..90, 90..110, 110..150, 150..200] {
+        let expected: f32 = rows.clone().map(|y| expected[(0, y)]).sum();
+        let parts_of_rows = parts * rows.start..parts * rows.end;
+        let found: f32 = parts_of_rows.flat_map(|row| &light.row(row)[..parts]).sum();
+        assert_relative(f64::from(found), f64::from(expected), 0.05);
     }
 }
 

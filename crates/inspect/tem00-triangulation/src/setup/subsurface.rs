@@ -3,9 +3,12 @@
 use core::f64::consts::PI;
 use std::sync::Arc;
 
-use tem00_numerics::Refusal;
+use tem00_numerics::{
+    Grid, Refusal,
+    cast::{to_f32, to_i64, to_signed},
+};
 use tem00_speckle::Complex;
-use tem00_translucence::{Bin, Material, Medium, SpreadLine};
+use tem00_translucence::{Bin, Material, Medium, MediumDescription, SpreadLine};
 
 use super::SetupDescription;
 
@@ -56,18 +59,16 @@ impl Subsurface {
         if !self.lets_light_in() {
             return Ok(None);
         }
-        let known = self.material.map(|material| material.medium(wavelength));
-        let known = known.transpose()?;
         let given = |value: f64| (value != 0.0).then_some(value);
-        let or = |value: f64, of: fn(&Medium) -> f64| given(value).or(known.as_ref().map(of));
-        let index = or(self.refractive_index, Medium::refractive_index).unwrap_or(1.5);
-        let length = or(self.transport_length, Medium::transport_length).unwrap_or_default();
-        let absorption = or(self.absorption, Medium::absorption).unwrap_or_default();
-        let medium = Medium::new(index, 1.0 / length, absorption)?;
-        medium
-            .with_anisotropy(self.anisotropy)?
-            .with_matt_boundary(self.boundary_slope)
-            .map(Some)
+        let description = MediumDescription {
+            material: self.material,
+            transport_length: given(self.transport_length),
+            absorption: given(self.absorption),
+            refractive_index: given(self.refractive_index),
+            anisotropy: self.anisotropy,
+        };
+        let medium = description.medium(wavelength)?;
+        medium.with_matt_boundary(self.boundary_slope).map(Some)
     }
 }
 
@@ -186,6 +187,35 @@ impl PixelSpread {
             }
         }
         sums
+    }
+
+    /// Returns the light of an image, in parts of a pixel, where it leaves the part.
+    pub(crate) fn of_light(&self, light: &Grid<f32>, parts: usize) -> Grid<f32> {
+        let rows = light.height() as f64;
+        let part = 1.0 / parts as f64;
+        let ends = self.ends().map(|end| (end / part).round());
+        let [first, last] = ends.map(|end| to_i64(end.clamp(-rows, rows)));
+        let fraction = |shift: i64| {
+            let [from, to] = [-0.5, 0.5].map(|half| (shift as f64 + half) * part);
+            let within = |bin: &Bin| (bin.to.min(to) - bin.from.max(from)).max(0.0);
+            let of_bin = |bin: &Bin| bin.fraction * within(bin) / (bin.to - bin.from);
+            self.bins.iter().map(of_bin).sum::<f64>()
+        };
+        let kernel: Vec<_> = (first..=last)
+            .map(|shift| (shift, fraction(shift)))
+            .collect();
+        let mut spread = Grid::filled(light.width(), light.height(), 0.0_f32);
+        spread.for_each_row_mut(|row, sums| {
+            for &(shift, fraction) in &kernel {
+                let source = usize::try_from(to_signed(row) - shift);
+                if let Some(source) = source.ok().filter(|&source| source < light.height()) {
+                    let fraction = to_f32(fraction);
+                    let sums = sums.iter_mut().zip(light.row(source));
+                    sums.for_each(|(sum, light)| *sum += fraction * light);
+                }
+            }
+        });
+        spread
     }
 
     /// Returns the irradiance at a place of a Gaussian line of the light 1 and the radius at 1/e²,

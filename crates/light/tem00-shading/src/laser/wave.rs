@@ -199,6 +199,31 @@ impl Laser {
         }
     }
 
+    /// Returns the radius of the beam at the distance of `point`, in metres, where 1/e² of the
+    /// irradiance is left: across a line, and across an elliptic spot where it is narrower.
+    pub fn narrow_radius_at(&self, point: DVec3) -> f64 {
+        let [x, _, z] = self.local(point);
+        match &self.source {
+            Source::Spot { beam, .. } => {
+                let [first, second] = beam.radii_at(z);
+                first.min(second)
+            }
+            Source::Line { line, .. } => {
+                let angle = libm::atan2(x, z + line.fan().apex_offset);
+                line.half_thickness_at_angle(z, angle)
+            }
+        }
+    }
+
+    /// Returns the distance of `point` from the axis of a spot or the plane of a line, in metres.
+    pub fn distance_to(&self, point: DVec3) -> f64 {
+        let [x, y, _] = self.local(point);
+        match &self.source {
+            Source::Spot { .. } => x.hypot(y),
+            Source::Line { .. } => y.abs(),
+        }
+    }
+
     /// The coordinates of a point along the axes of the beam, from the middle of the aperture.
     fn local(&self, point: DVec3) -> [f64; 3] {
         let offset = point - self.description.position;

@@ -107,6 +107,29 @@ impl TriangleMesh {
         &self.triangles
     }
 
+    /// Returns the radius of curvature in metres below which a twentieth of the area curves, by the
+    /// normals of the vertices; infinite without normals.
+    pub(crate) fn radius_of_curvature(&self) -> f64 {
+        let curved = self.triangles.iter().filter_map(|triangle| {
+            let corners = triangle.map(|corner| self.vertices[corner as usize]);
+            let edges = [0, 1, 2].map(|i| corners[(i + 1) % 3] - corners[i]);
+            let normal = |i: usize| self.normals.get(triangle[i % 3] as usize);
+            let curvature =
+                |i: usize| Some((*normal(i + 1)? - *normal(i)?).length() / edges[i].length());
+            let curvature = curvature(0)?.max(curvature(1)?).max(curvature(2)?);
+            Some((curvature, 0.5 * edges[0].cross(edges[1]).length()))
+        });
+        let mut curved: Vec<_> = curved.collect();
+        curved.sort_by(|(one, _), (other, _)| other.total_cmp(one));
+        let mut left = 0.05 * curved.iter().map(|(_, area)| area).sum::<f64>();
+        let sharper = |(_, area): &&(f64, f64)| {
+            left -= area;
+            left < 0.0
+        };
+        let found = curved.iter().find(sharper);
+        found.map_or(f64::INFINITY, |(curvature, _)| 1.0 / curvature)
+    }
+
     /// Returns the number of triangles that were left out because they have no area.
     pub const fn dropped_triangles(&self) -> usize {
         self.dropped
@@ -223,6 +246,37 @@ fn bounds(vertices: &[DVec3], triangles: &[[u32; 3]]) -> (DVec3, DVec3) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Half a tube of flat triangles with the normals of its cylinder, and flat wings at its edges that
+    /// are twenty times as large.
+    #[test]
+    fn a_mesh_curves_as_a_twentieth_of_its_area_does() {
+        let tube = |radius: f64, wing: f64| {
+            let edge = |angle: f64| DVec3::new(radius * angle.cos(), radius * angle.sin(), 0.0);
+            let angles: Vec<_> = (0..=64)
+                .map(|i| f64::from(i) / 64.0 * core::f64::consts::PI)
+                .collect();
+            let mut rim: Vec<_> = angles
+                .iter()
+                .map(|&a| (edge(a), edge(a) / radius))
+                .collect();
+            rim.push((edge(angles[64]) - wing * DVec3::Y, -DVec3::X));
+            let vertices = rim
+                .iter()
+                .flat_map(|(at, _)| [*at, *at + DVec3::Z])
+                .collect();
+            let normals = rim.iter().flat_map(|(_, normal)| [*normal; 2]).collect();
+            let strips = (0..65)
+                .map(|i| 2 * i)
+                .flat_map(|i| [[i, i + 1, i + 2], [i + 1, i + 2, i + 3]]);
+            TriangleMesh::with_normals(vertices, normals, strips.collect()).unwrap()
+        };
+        let radius = tube(0.3, 0.1).radius_of_curvature();
+        assert!((radius / 0.3 - 1.0).abs() < 1e-3, "{radius}");
+        assert!(tube(0.3, 50.0).radius_of_curvature() > 1e9);
+        let flat = TriangleMesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]]);
+        assert!(flat.unwrap().radius_of_curvature().is_infinite());
+    }
 
     #[test]
     fn impossible_meshes_are_refused() {

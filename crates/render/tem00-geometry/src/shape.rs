@@ -48,6 +48,17 @@ impl Shape {
         shape
     }
 
+    /// Returns the radius of curvature in metres below which a twentieth of the area curves; infinite
+    /// for flat faces. A mesh curves by its vertex normals, and has no sharper edges than they say.
+    pub fn radius_of_curvature(&self) -> f64 {
+        match self {
+            Self::Rectangle(_) => f64::INFINITY,
+            Self::Sphere(sphere) => sphere.radius(),
+            Self::Cylinder(cylinder) => cylinder.radius(),
+            Self::Mesh(instance) => instance.scale() * instance.mesh().radius_of_curvature(),
+        }
+    }
+
     /// Returns the lowest and the highest corner of an axis-parallel box around the shape, in
     /// metres.
     ///

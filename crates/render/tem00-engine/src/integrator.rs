@@ -41,6 +41,8 @@ pub(crate) struct Integrator<'a> {
     /// Points that each laser lights, if surfaces are connected to them.
     lit_points: Vec<LitPoints<'a>>,
     intersector: &'a Intersector,
+    /// True if a surface is translucent.
+    has_bodies: bool,
     speckle: Option<&'a SpeckleFrame<'a>>,
     rules: PathRules,
     roulette: Roulette,
@@ -107,6 +109,7 @@ impl<'a> Integrator<'a> {
             lasers,
             lit_points,
             intersector,
+            has_bodies: (scene.surfaces.iter()).any(|surface| surface.material.below().is_some()),
             speckle: None,
             rules,
             roulette,

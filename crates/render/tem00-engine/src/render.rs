@@ -4,7 +4,9 @@ mod pilot;
 use core::sync::atomic::AtomicBool;
 
 use tem00_geometry::Intersector;
-use tem00_tracer::{FilterSampler, Frame, Method, RenderError, RenderOptions, Scene, TracerError};
+use tem00_tracer::{
+    FilterSampler, Frame, Method, RenderError, RenderOptions, Scene, SpeckleBelow, TracerError,
+};
 
 use self::pass::PathPass;
 use crate::{
@@ -67,6 +69,7 @@ pub fn render_frame(
         "the speckle model belongs to another scene"
     );
     let area = options.area(&scene.camera)?;
+    scene.check_bodies(options)?;
     let intersector = Intersector::build(&scene.shapes_at(frame))?;
     let speckle = speckle.map(|model| {
         let speckle = model.in_frame(scene, frame)?;
@@ -75,6 +78,8 @@ pub fn render_frame(
             let survey = Survey::new(scene, change, &intersector, frame, SURVEY_CELLS);
             survey.with(options.seed, options.max_depth).map()
         });
+        let below = SpeckleBelow::in_frame(scene, frame, &intersector)?;
+        let speckle = speckle.with_light_below(below);
         Ok::<_, TracerError>(speckle.with_multiple_light(map.flatten()))
     });
     let speckle = speckle.transpose()?;

@@ -1,7 +1,7 @@
 use glam::DVec3;
 use tem00_camera::Ray;
 use tem00_geometry::{Hit, Intersector, Segment};
-use tem00_tracer::{BsdfSample, LocalFrame, Material};
+use tem00_tracer::{BsdfSample, Laser, LocalFrame, Material, Medium};
 
 /// A point where a path meets a surface.
 #[derive(Clone, Copy, Debug)]
@@ -63,6 +63,54 @@ impl<'a> Vertex<'a> {
     /// Returns the BSDF times |cos θ| for light from the local direction `wi`.
     pub(crate) fn reflected(&self, wi: DVec3, wavelength: f64) -> f64 {
         self.material.evaluate(self.back, wi, wavelength) * wi.z.abs()
+    }
+
+    /// Returns the body below the boundary of a translucent material.
+    pub(crate) const fn below(&self) -> Option<&Medium> {
+        self.material.below()
+    }
+
+    /// Returns the BSDF times |cos θ| for light from the local direction `wi`, without light from
+    /// below the boundary.
+    pub(crate) fn reflected_by_boundary(&self, wi: DVec3, wavelength: f64) -> f64 {
+        self.material.evaluate_boundary(self.back, wi, wavelength) * wi.z.abs()
+    }
+
+    /// Draws the point of a body where light of a laser entered that leaves it at the vertex: the
+    /// segment from there to the laser, and the radiance at the vertex.
+    pub(crate) fn entry(
+        &self,
+        laser: &Laser,
+        seed: u64,
+        intersector: &Intersector,
+    ) -> Option<(Segment, f64)> {
+        let place = |offset: DVec3| self.hit.position + self.axes.to_world(offset);
+        let irradiance = |offset| {
+            laser
+                .next_event(place(offset))
+                .map_or(0.0, |event| event.e_perp)
+        };
+        let wi = self.towards(laser.wave_direction_at(self.hit.position))?;
+        let position = self.hit.position;
+        let distance = laser.distance_to(position) - laser.narrow_radius_at(position);
+        let directions = [self.back, wi];
+        let (offset, radiance) = self
+            .material
+            .entry(directions, distance, seed, irradiance)?;
+        // The tangent plane is left for the surface itself, unless this ends before.
+        let height = 0.5 * offset.length();
+        let normal = self.seen_normal();
+        let below = intersector.intersect(&Ray {
+            origin: intersector.leave(place(offset) + height * normal, normal),
+            direction: -normal,
+        })?;
+        let is_same = below.surface == self.hit.surface && below.distance < 2.0 * height;
+        let segment = Segment {
+            from: below.position,
+            from_normal: below.normal,
+            to: laser.next_event(place(offset))?.point,
+        };
+        is_same.then_some((segment, radiance))
     }
 
     /// Returns the BSDF times |cos θ| for light from a unit direction in space.

@@ -30,6 +30,18 @@ pub enum TracerError {
     Speckle(SpeckleError),
     /// The light of a laser or its speckle is not possible.
     Shading(ShadingError),
+    /// A translucent surface curves too strongly for its light to spread as on a plane.
+    Curvature {
+        /// The radius of curvature, in metres.
+        radius: f64,
+        /// The smallest radius that is allowed.
+        min: f64,
+    },
+    /// A translucent surface cannot be rendered like this.
+    Translucent {
+        /// What it needs.
+        needs: &'static str,
+    },
     /// The speckle patterns do not fit the memory that the scene allows.
     PatternMemory {
         /// The bytes that one laser's patterns need at least.
@@ -84,6 +96,14 @@ impl fmt::Display for TracerError {
             Self::Refused(source) => source.fmt(f),
             Self::Speckle(source) => source.fmt(f),
             Self::Shading(source) => source.fmt(f),
+            Self::Curvature { radius, min } => write!(
+                f,
+                "a translucent surface must curve with a radius of at least ten transport lengths, \
+                 {:.3} mm, got {:.3} mm",
+                1e3 * min,
+                1e3 * radius
+            ),
+            Self::Translucent { needs } => write!(f, "a translucent surface needs {needs}"),
             Self::PatternMemory { needed, allowed } => write!(
                 f,
                 "the speckle patterns of a laser need at least {needed} bytes and may take {allowed}"

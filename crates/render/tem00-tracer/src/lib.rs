@@ -16,12 +16,13 @@
 //!
 //! # Scope and non-goals
 //!
-//! Rectangles, spheres, tubes and meshes; diffuse surfaces, metals, plastic, mirrors and clear
-//! glass; moving objects, lasers and cameras. Each laser is traced at its own wavelength, and other
-//! lights are white. There is no polarisation, no dispersion, and nothing scatters between
-//! surfaces. Laser light that meets mirrors or glass both before and after a rough surface is not
+//! Rectangles, spheres, tubes and meshes; diffuse surfaces, metals, plastic, translucent bodies,
+//! mirrors and clear glass; moving objects, lasers and cameras. Each laser is traced at its own
+//! wavelength, and other lights are white. There is no polarisation, no dispersion, and nothing
+//! scatters between surfaces. Laser light that meets mirrors or glass both before and after a rough surface is not
 //! found unless lasers are [sampled](LaserEvents::Sampled). The crate reads no files.
 
+mod below;
 mod environment;
 mod error;
 pub mod film;
@@ -36,6 +37,7 @@ mod reference;
 mod render_error;
 mod scene;
 
+pub use below::SpeckleBelow;
 pub use environment::Environment;
 pub use error::TracerError;
 pub use film::{Frame, LaserLayers};
@@ -61,6 +63,9 @@ pub use tem00_beam::{FanGeometry, LineProfile};
 
 /// The spectrum of a laser and the relief of a surface.
 pub use tem00_coherence::{LineShape, Relief, SpectralLine};
+
+/// Bodies that let light in.
+pub use tem00_translucence::{Material as NamedMedium, Medium, MediumDescription};
 
 /// Motion of rigid bodies.
 pub use tem00_decorrelation::RigidMotion;

@@ -12,6 +12,7 @@ mod sample;
 use core::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
+use tem00_translucence::Medium;
 
 pub use self::optical_roughness::{OpticalRoughness, OpticalRoughnessQuery};
 pub use self::sample::BsdfSample;
@@ -126,6 +127,50 @@ impl Material {
                 0.0
             }
         }
+    }
+
+    /// Returns the body below the boundary of a [translucent](Self::translucent) material.
+    pub const fn below(&self) -> Option<&Medium> {
+        match &self.scattering {
+            Scattering::Plastic(plastic) => plastic.below(),
+            _ => None,
+        }
+    }
+
+    /// Returns the [BSDF](Self::evaluate) without light that comes from [below](Self::below) the
+    /// boundary.
+    pub fn evaluate_boundary(&self, wo: DVec3, wi: DVec3, wavelength: f64) -> f64 {
+        match &self.scattering {
+            Scattering::Plastic(plastic) if plastic.below().is_some() => self
+                .same_side(wo, wi)
+                .map_or(0.0, |(wo, wi)| plastic.evaluate_coat(wo, wi)),
+            _ => self.evaluate(wo, wi, wavelength),
+        }
+    }
+
+    /// Draws the place where light from [below](Self::below) the boundary entered it, in local axes,
+    /// and returns its radiance; see [`Medium::entry`].
+    ///
+    /// The light comes from a distant source in the direction `wi`, and reaches the surface from a
+    /// `distance` on, in metres; `irradiance` is its irradiance at an offset from the point, on a
+    /// plane that faces it.
+    pub fn entry(
+        &self,
+        [wo, wi]: [DVec3; 2],
+        distance: f64,
+        seed: u64,
+        mut irradiance: impl FnMut(DVec3) -> f64,
+    ) -> Option<(DVec3, f64)> {
+        // As seen from above, where x and y are reversed, too.
+        let side = wo.z.signum();
+        let on_surface = |[x, y]: [f64; 2]| DVec3::new(side * x, side * y, 0.0);
+        let (wo, wi) = self.same_side(wo, wi)?;
+        let directions = [wo, wi].map(|direction| direction.to_array());
+        let medium = self.below()?;
+        let entry = medium.entry(directions, distance, seed, |offset| {
+            irradiance(on_surface(offset))
+        })?;
+        Some((on_surface(entry.offset), entry.radiance))
     }
 
     /// Draws a direction from two uniform numbers in [0, 1).

@@ -5,6 +5,7 @@
 //! lights a point, and the speckle multiplies that light by a factor that has moved with the
 //! surface.
 
+mod below;
 mod from_laser;
 mod lights;
 mod point;
@@ -22,7 +23,7 @@ use tem00_shading::{Laser, LaserEvent, SpeckleFrame};
 pub use self::speckle::ReferenceSpeckle;
 use self::{point::Point, random::Random};
 use crate::{
-    FilterSampler, Frame, LaserEvents, Method, RenderError, RenderOptions, Scene,
+    FilterSampler, Frame, LaserEvents, Method, RenderError, RenderOptions, Scene, SpeckleBelow,
     film::{Film, FilmLayout, LaserSample, PixelSums, Sample, Seen},
 };
 
@@ -59,6 +60,7 @@ pub fn render_reference(
     assert!(frame < scene.frames, "frame {frame} of {}", scene.frames);
     let reference = Reference::new(scene, speckle, frame, options)?;
     let area = options.area(&scene.camera)?;
+    scene.check_bodies(options)?;
     let is_light_traced =
         scene.has_specular_surfaces() && !options.samples_beams() || !reference.finds_lasers();
     let wavelengths: Vec<f64> = reference.lasers.iter().map(Laser::wavelength).collect();
@@ -104,6 +106,7 @@ struct Reference<'a> {
     lasers: Vec<Laser>,
     /// The speckle of each laser on each surface; `None` on a surface that the camera never sees.
     speckle: Vec<Vec<Option<SpeckleFrame>>>,
+    below: Vec<Vec<Option<SpeckleBelow>>>,
     intersector: Intersector,
     filter: FilterSampler,
 }
@@ -133,6 +136,7 @@ impl<'a> Reference<'a> {
         options: &'a RenderOptions,
     ) -> Result<Self, RenderError> {
         let lasers = (0..scene.lasers.len()).map(|laser| scene.laser_at(laser, frame));
+        let intersector = Intersector::build(&scene.shapes_at(frame))?;
         Ok(Self {
             scene,
             options,
@@ -143,7 +147,8 @@ impl<'a> Reference<'a> {
                 Some(speckle) => speckle.in_frame(scene, frame)?,
                 None => vec![vec![None; scene.surfaces.len()]; scene.lasers.len()],
             },
-            intersector: Intersector::build(&scene.shapes_at(frame))?,
+            below: SpeckleBelow::in_frame(scene, frame, &intersector)?,
+            intersector,
             filter: FilterSampler::new(options.filter)?,
         })
     }
@@ -211,6 +216,7 @@ impl<'a> Reference<'a> {
                 // Light that comes straight from a laser or a light.
                 let solid_angle = through_lens.solid_angle;
                 self.connect_to_lasers(&mut path, &point, solid_angle, random, &mut lasers);
+                self.connect_below(&mut path, &point, random, &mut lasers);
                 sample.lights += self.light_connected(&mut path, &point, random);
             }
             // Light that comes from elsewhere.
@@ -225,6 +231,10 @@ impl<'a> Reference<'a> {
                 self.factor(laser, surface, pixel, position, normal)
             });
             found.settle(factor);
+            if let (Some((surface, position, normal)), true) = (first_rough, found.below > 0.0) {
+                let point = (pixel, position, normal);
+                found.settle_below(self.factor_below(laser, surface, point));
+            }
         }
         sums.add(&sample, &lasers);
         path.rays
@@ -293,7 +303,10 @@ impl<'a> Reference<'a> {
             }
             // A drawn direction could have been drawn by the material, too.
             let weight = pdf.map_or(1.0, |pdf| power_heuristic(pdf, point.pdf(wi)));
-            let reflected = point.reflected(wi, laser.wavelength());
+            let reflected = match path.rough {
+                0 => point.reflected_by_boundary(wi, laser.wavelength()),
+                _ => point.reflected(wi, laser.wavelength()),
+            };
             let radiance = weight * path.throughput[index] * event.e_perp * reflected;
             lasers[index].add(radiance, path.rough == 0);
             if path.depth == 1 && wi.z * point.back.z > 0.0 {

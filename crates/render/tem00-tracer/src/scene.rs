@@ -2,7 +2,7 @@ use tem00_camera::Camera;
 use tem00_coherence::Relief;
 use tem00_geometry::Shape;
 
-use crate::{Laser, Light, Material, RenderOptions, Trajectory};
+use crate::{Laser, Light, Material, Method, RenderOptions, TracerError, Trajectory};
 
 /// An object: a shape made of a material, perhaps moving from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +32,29 @@ impl Surface {
             trajectory: Trajectory::default(),
             speckle: SurfaceSpeckle::default(),
             relief: Relief::default(),
+        }
+    }
+}
+
+/// The smallest radius of curvature of a translucent surface, in transport lengths.
+const MIN_CURVATURE: f64 = 10.0;
+
+impl Surface {
+    /// Checks that light from below a translucent surface is spread as on a plane.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if more than a twentieth of the surface curves with a smaller radius than ten
+    /// transport lengths.
+    pub fn check_curvature(&self) -> Result<(), TracerError> {
+        let radius = self.shape.radius_of_curvature();
+        let min = self
+            .material
+            .below()
+            .map_or(0.0, |medium| MIN_CURVATURE * medium.transport_length());
+        match radius >= min {
+            true => Ok(()),
+            false => Err(TracerError::Curvature { radius, min }),
         }
     }
 }
@@ -154,6 +177,31 @@ impl Scene {
     pub fn has_specular_surfaces(&self) -> bool {
         let mut surfaces = self.surfaces.iter();
         surfaces.any(|surface| surface.material.is_specular())
+    }
+
+    /// Checks that its translucent surfaces can be rendered with these options.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if a translucent surface [curves](Surface::check_curvature) strongly, or
+    /// unless paths from the camera connect to the beams of lasers.
+    pub fn check_bodies(&self, options: &RenderOptions) -> Result<(), TracerError> {
+        let mut bodies = self.surfaces.iter();
+        let bodies = bodies
+            .by_ref()
+            .filter(|body| body.material.below().is_some());
+        for body in bodies {
+            body.check_curvature()?;
+            if options.method == Method::Light {
+                let needs = "the method \"path\"";
+                return Err(TracerError::Translucent { needs });
+            }
+            if options.samples_beams() {
+                let needs = "laser_events \"beam\"";
+                return Err(TracerError::Translucent { needs });
+            }
+        }
+        Ok(())
     }
 
     /// Returns whether the speckle of laser `laser` on surface `surface` may differ between two

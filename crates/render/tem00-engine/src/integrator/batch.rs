@@ -1,8 +1,13 @@
+use core::mem::take;
+
 use glam::DVec2;
 use tem00_camera::Ray;
 use tem00_geometry::{Hit, Intersector, Segment};
 use tem00_shading::LaserEventBatch;
-use tem00_tracer::film::{LaserSample, Sample};
+use tem00_tracer::{
+    SpeckleBelow,
+    film::{LaserSample, Sample},
+};
 
 use super::PathRules;
 use crate::{
@@ -136,6 +141,8 @@ pub(super) enum Arrival {
         /// True if the light has met one rough surface.
         is_single: bool,
     },
+    /// Light of a laser from below the first rough surface.
+    Below { slot: usize, radiance: f64 },
     /// Radiance of a light that is no laser.
     Light { sample: usize, radiance: f64 },
 }
@@ -152,6 +159,7 @@ impl Arrival {
                 lasers[slot].add(radiance, is_single);
                 lasers[slot].power += power;
             }
+            Self::Below { slot, radiance } => lasers[slot].add_below(radiance),
             Self::Light { sample, radiance } => samples[sample].found.lights += radiance,
         }
     }
@@ -209,6 +217,8 @@ struct LaserLookUps {
     points: Vec<SpecklePoint>,
     /// The radiance of the light that has met only the surface of each point.
     singles: Vec<f64>,
+    /// The speckle of each light from below the surface.
+    below: Vec<SpeckleBelow>,
     factors: Vec<f64>,
 }
 
@@ -229,6 +239,7 @@ impl LaserLookUps {
         self.slots.clear();
         self.points.clear();
         self.singles.clear();
+        self.below.clear();
     }
 
     /// Returns the factors of a laser at the points, each with its slot; 1 without a model.
@@ -278,6 +289,27 @@ impl Batch<'_> {
             for (slot, factor) in look_ups.look_up(speckle, laser) {
                 self.laser_samples[slot].settle(factor);
             }
+            look_ups.clear();
+            for (sample, point) in samples.iter().zip(&*points) {
+                let slot = sample * lasers + laser;
+                let light = self.laser_samples[slot].below;
+                let below = speckle.and_then(|speckle| speckle.below(laser, point.surface));
+                if let (true, Some(below)) = (light > 0.0, below) {
+                    look_ups.slots.push(slot);
+                    look_ups.points.push(SpecklePoint {
+                        pixel: below.pixel(point.pixel),
+                        wave: 0.5,
+                        ..*point
+                    });
+                    look_ups.singles.push(light);
+                    look_ups.below.push(*below);
+                }
+            }
+            let below = take(&mut look_ups.below);
+            for ((slot, factor), below) in look_ups.look_up(speckle, laser).zip(&below) {
+                self.laser_samples[slot].settle_below(below.factor(factor));
+            }
+            look_ups.below = below;
         }
     }
 }

@@ -36,6 +36,9 @@ impl<'a> Integrator<'a> {
                 if let Some(light) = light {
                     self.connect_to_laser(laser, index, light, batch);
                 }
+                if self.has_bodies && batch.paths[index].rough == 0 {
+                    self.connect_below(laser, index, batch);
+                }
                 if batch.connections.is_full() {
                     batch.resolve_connections(self.intersector);
                 }
@@ -61,7 +64,12 @@ impl<'a> Integrator<'a> {
             || self.weight_beside_lit_points(laser, &path, vertex, &light),
             |pdf| power_heuristic(pdf, vertex.pdf(wi)),
         );
-        let reflected = vertex.reflected(wi, self.lasers[laser].wavelength());
+        let wavelength = self.lasers[laser].wavelength();
+        let reflected = if self.has_bodies && path.rough == 0 {
+            vertex.reflected_by_boundary(wi, wavelength)
+        } else {
+            vertex.reflected(wi, wavelength)
+        };
         let throughput = self.laser_throughput(laser, &path, batch);
         let radiance = weight * throughput * light.e_perp * reflected;
         let power = if path.depth == 1 && vertex.is_seen_side(wi) {
@@ -80,6 +88,26 @@ impl<'a> Integrator<'a> {
             };
             let segment = vertex.segment_to(light.point);
             batch.connect(segment, arrival);
+        }
+    }
+
+    /// Connects the first rough surface point of a path to a laser through the body below it.
+    #[inline(never)] // It is rare beside what surrounds it.
+    fn connect_below(&self, laser: usize, index: usize, batch: &mut Batch<'a>) {
+        let path = batch.paths[index];
+        if batch.vertices[index].below().is_none() {
+            return;
+        }
+        let stream = batch.samples[path.sample].stream;
+        let purpose = Use::Laser(path.depth, random_number(laser));
+        let [first, second] = self.sequence(stream).pair(stream, purpose);
+        let seed = first.to_bits().rotate_left(32) ^ second.to_bits();
+        let entry = batch.vertices[index].entry(&self.lasers[laser], seed, self.intersector);
+        batch.rays_followed += 1;
+        if let Some((segment, radiance)) = entry {
+            let radiance = self.laser_throughput(laser, &path, batch) * radiance;
+            let slot = path.sample * self.lasers.len() + laser;
+            batch.connect(segment, Arrival::Below { slot, radiance });
         }
     }
 

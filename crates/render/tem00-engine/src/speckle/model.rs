@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use tem00_shading::{BLOCK, LightPath, SpeckleShift};
 use tem00_speckle::SpeckleStack;
-use tem00_tracer::{Scene, TracerError};
+use tem00_tracer::{Scene, SpeckleBelow, TracerError};
 
 use self::patterns::{LaserPatterns, Pattern, Window};
 use super::{
@@ -34,6 +34,8 @@ pub(crate) struct SpeckleFrame<'a> {
     /// The light that has met several rough surfaces, where its speckle differs from the speckle of
     /// the single light.
     multiple: Option<MultipleMap>,
+    /// The speckle of the light from below translucent surfaces, by laser and surface.
+    below: Vec<Vec<Option<SpeckleBelow>>>,
 }
 
 /// The mixture of multiple and single light at a point.
@@ -103,6 +105,7 @@ impl SpeckleModel {
             windows: windows.collect::<Result<_, _>>()?,
             change,
             multiple: None,
+            below: Vec::new(),
         })
     }
 }
@@ -117,6 +120,17 @@ impl SpeckleFrame<'_> {
     pub(crate) fn with_multiple_light(mut self, map: Option<MultipleMap>) -> Self {
         self.multiple = map;
         self
+    }
+
+    /// Gives the light from below translucent surfaces its speckle, by laser and surface.
+    pub(crate) fn with_light_below(mut self, below: Vec<Vec<Option<SpeckleBelow>>>) -> Self {
+        self.below = below;
+        self
+    }
+
+    /// Returns the speckle of the light of a laser from below a surface.
+    pub(crate) fn below(&self, laser: usize, surface: usize) -> Option<&SpeckleBelow> {
+        self.below.get(laser)?.get(surface)?.as_ref()
     }
 
     /// Returns the speckle factor of laser `laser` at a surface point, for the local ratio of

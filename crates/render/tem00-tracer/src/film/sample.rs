@@ -25,6 +25,8 @@ pub struct Seen {
 pub struct LaserSample {
     /// Radiance of light that has met one rough surface, before speckle.
     pub single: f64,
+    /// The part of it that comes from below the surface.
+    pub below: f64,
     /// Radiance of light that has met more than one, before speckle.
     pub multiple: f64,
     /// The speckle factor.
@@ -39,6 +41,7 @@ impl LaserSample {
     /// No light.
     pub const DARK: Self = Self {
         single: 0.0,
+        below: 0.0,
         multiple: 0.0,
         speckle: 1.0,
         radiance: 0.0,
@@ -54,6 +57,12 @@ impl LaserSample {
         }
     }
 
+    /// Adds light that has met one rough surface, from below it.
+    pub const fn add_below(&mut self, radiance: f64) {
+        self.single += radiance;
+        self.below += radiance;
+    }
+
     /// Returns whether the sample finds no light of the laser.
     pub fn is_dark(&self) -> bool {
         self.single == 0.0 && self.multiple == 0.0
@@ -63,5 +72,10 @@ impl LaserSample {
     pub const fn settle(&mut self, speckle: f64) {
         self.speckle = speckle;
         self.radiance = self.single * speckle + self.multiple * speckle;
+    }
+
+    /// Gives the light from below the surface a factor of its own, once the light has its speckle.
+    pub const fn settle_below(&mut self, factor: f64) {
+        self.radiance += self.below * (factor - self.speckle);
     }
 }

@@ -1,4 +1,9 @@
-use core::{f64::consts::FRAC_PI_2, ops::RangeInclusive};
+use core::{
+    f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2},
+    ops::RangeInclusive,
+};
+
+use tem00_translucence::Medium;
 
 use super::{
     Material, Scattering, conductor::Conductor, dielectric::Dielectric, ggx::Ggx,
@@ -131,6 +136,30 @@ impl Material {
             index,
             facets,
         ))))
+    }
+
+    /// Creates a body that lets light in, such as plastic, ceramic, marble or skin: light of a laser
+    /// that enters it leaves it beside the place of entry.
+    ///
+    /// `roughness` is the parameter α of the facets of its boundary, which reflect light as the coat
+    /// of [`plastic`](Self::plastic) does, and refract it on its way in and out with normal slopes of
+    /// the root mean square α/√2 along each axis.
+    ///
+    /// # Validity
+    ///
+    /// Light that a laser sends straight to the first rough surface before the camera is spread
+    /// exactly, as on a plane: radii of curvature must be large against the transport length, and
+    /// walls thick. All other light leaves where it entered, diffusely and in the same amount.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the roughness is not between 0.01 and 0.7.
+    pub fn translucent(medium: Medium, roughness: f64) -> Result<Self, TracerError> {
+        check("roughness", roughness, 0.01..=0.7, "between 0.01 and 0.7")?;
+        let medium = medium.with_matt_boundary(roughness * FRAC_1_SQRT_2)?;
+        let facets = Ggx { alpha: roughness };
+        let plastic = Plastic::over(medium, facets)?;
+        Ok(Self::new(Scattering::Plastic(plastic)))
     }
 
     /// Creates a mirror that reflects the same fraction of power at every angle and wavelength.

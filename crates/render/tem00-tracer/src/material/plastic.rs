@@ -1,6 +1,8 @@
-use core::f64::consts::FRAC_1_PI;
+use core::f64::consts::{FRAC_1_PI, FRAC_PI_4};
 
 use glam::DVec3;
+use tem00_numerics::Refusal;
+use tem00_translucence::{LineSpread, Medium, Walk};
 
 use super::{
     BsdfSample,
@@ -32,21 +34,58 @@ pub(super) struct Plastic {
     returned: f64,
     /// κ / (π (1 − Ē)).
     base: f64,
+    /// The body below the coat, where light leaves beside the place of its entry.
+    below: Option<Medium>,
 }
 
 impl Plastic {
     pub(super) fn new(reflectance: f64, index: f64, facets: Ggx) -> Self {
-        let albedo = Albedo::new(facets, |cosine| refraction(cosine, index).reflectance);
-        let entering = 1.0 - albedo.mean();
-        let leaving = entering / (index * index);
-        let returned = reflectance * leaving / (1.0 - reflectance * (1.0 - leaving));
+        let coat = Self::coat(index, facets);
+        let leaving = (1.0 - coat.albedo.mean()) / (index * index);
+        coat.returning(reflectance * leaving / (1.0 - reflectance * (1.0 - leaving)))
+    }
+
+    /// The boundary of a body that lets light in.
+    pub(super) fn over(medium: Medium, facets: Ggx) -> Result<Self, Refusal> {
+        // The albedo depends little on the anisotropy and on the angle.
+        let n = medium.refractive_index();
+        let isotropic = Medium::new(n, 1.0 / medium.transport_length(), medium.absorption())?;
+        let walk = Walk {
+            incidence: FRAC_PI_4,
+            exits: vec![0.0],
+            photons: 20_000,
+            seed: 0,
+        };
+        let returned = LineSpread::simulate(&isotropic, &walk)?[0].albedo();
+        Ok(Self {
+            below: Some(medium),
+            ..Self::coat(n, facets).returning(returned)
+        })
+    }
+
+    fn coat(index: f64, facets: Ggx) -> Self {
         Self {
             facets,
             index,
-            albedo,
-            returned,
-            base: returned * FRAC_1_PI / entering,
+            albedo: Albedo::new(facets, |cosine| refraction(cosine, index).reflectance),
+            returned: 0.0,
+            base: 0.0,
+            below: None,
         }
+    }
+
+    /// Returns a fraction of the light that enters the coat.
+    fn returning(self, returned: f64) -> Self {
+        let base = returned * FRAC_1_PI / (1.0 - self.albedo.mean());
+        Self {
+            returned,
+            base,
+            ..self
+        }
+    }
+
+    pub(super) const fn below(&self) -> Option<&Medium> {
+        self.below.as_ref()
     }
 
     /// Returns the roughness α of the coat.
@@ -55,12 +94,16 @@ impl Plastic {
     }
 
     pub(super) fn evaluate(&self, wo: DVec3, wi: DVec3) -> f64 {
+        self.evaluate_coat(wo, wi)
+            + self.base * (1.0 - self.albedo.at_cosine(wo.z)) * (1.0 - self.albedo.at_cosine(wi.z))
+    }
+
+    pub(super) fn evaluate_coat(&self, wo: DVec3, wi: DVec3) -> f64 {
         let facet = half_vector(wo, wi);
         let cosine = wi.dot(facet).clamp(0.0, 1.0);
-        let coat = refraction(cosine, self.index).reflectance
+        refraction(cosine, self.index).reflectance
             * self.facets.density(facet)
-            * self.facets.visibility(wo, wi);
-        coat + self.base * (1.0 - self.albedo.at_cosine(wo.z)) * (1.0 - self.albedo.at_cosine(wi.z))
+            * self.facets.visibility(wo, wi)
     }
 
     pub(super) fn sample(&self, wo: DVec3, [u, v]: [f64; 2]) -> Option<BsdfSample> {

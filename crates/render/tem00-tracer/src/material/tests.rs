@@ -31,6 +31,11 @@ fn lacquer(roughness: f64) -> Material {
     Material::plastic(0.6, 1.5, roughness).unwrap()
 }
 
+fn jade(roughness: f64) -> Material {
+    let medium = Medium::new(1.6, 2e3, 100.0).unwrap();
+    Material::translucent(medium, roughness).unwrap()
+}
+
 fn direction(cosine: f64, azimuth: f64) -> DVec3 {
     let radius = ((1.0 - cosine) * (1.0 + cosine)).sqrt();
     DVec3::new(radius * azimuth.cos(), radius * azimuth.sin(), cosine)

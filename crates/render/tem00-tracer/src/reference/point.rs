@@ -43,6 +43,11 @@ impl<'a> Point<'a> {
         (wi.z * self.hit.normal.dot(direction) > 0.0).then_some(wi)
     }
 
+    /// Returns the BSDF times |cos θ|, without the light from below a boundary.
+    pub(super) fn reflected_by_boundary(&self, wi: DVec3, wavelength: f64) -> f64 {
+        self.material.evaluate_boundary(self.back, wi, wavelength) * wi.z.abs()
+    }
+
     /// Returns the BSDF times |cos θ|.
     pub(super) fn reflected(&self, wi: DVec3, wavelength: f64) -> f64 {
         self.material.evaluate(self.back, wi, wavelength) * wi.z.abs()

@@ -30,6 +30,8 @@ fn no_direction_gives_nan() {
         lacquer(1.0),
         Material::mirror(1.0).unwrap(),
         Material::polished(Metal::Custom { n: 1.0, k: 0.0 }).unwrap(),
+        jade(0.01),
+        jade(0.7),
         Material::dielectric(1.0).unwrap(),
         Material::dielectric(1.5).unwrap(),
         Material::dielectric(1.5).unwrap().one_sided(),
@@ -48,6 +50,13 @@ fn no_direction_gives_nan() {
             assert!(
                 is_proper(f) && is_proper(pdf),
                 "{material:?}, {wo}, {wi}: {f}, {pdf}"
+            );
+            let entry = material.entry([wo, wi], 0.0, round as u64, |_| 1.0);
+            let is_place =
+                |(offset, radiance): (DVec3, f64)| offset.is_finite() && is_proper(radiance);
+            assert!(
+                entry.is_none_or(is_place),
+                "{material:?}, {wo}, {wi}: {entry:?}"
             );
             let u = numbers.units();
             let Some(s) = material.sample(wo, u, RED) else {

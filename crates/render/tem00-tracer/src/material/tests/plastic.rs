@@ -110,3 +110,26 @@ fn a_white_table_is_that_of_a_perfect_metal() {
     let lost = 2.0 / 3.0 * (2.0 * 2.0_f64.ln() - 0.5);
     assert_absolute(table.mean(), 1.0 - lost, 3e-4);
 }
+
+/// In even light, light from below is as bright as the diffuse base that stands for it elsewhere.
+#[test]
+fn light_from_below_is_as_bright_as_the_base_of_the_coat() {
+    for roughness in [0.01, 0.3] {
+        let jade = jade(roughness);
+        for [from, to] in [
+            [0.0, 0.0],
+            [0.0, 45.0],
+            [45.0, 20.0],
+            [60.0, 60.0],
+            [75.0, 0.0],
+        ] {
+            let [wi, wo] = [from, to].map(|angle: f64| direction(angle.to_radians().cos(), 0.5));
+            let seeds = 0..20_000;
+            let count = seeds.end as f64;
+            let entries = seeds.map(|seed| jade.entry([wo, wi], 0.0, seed, |_| 1.0));
+            let radiance = entries.flatten().map(|(_, radiance)| radiance).sum::<f64>() / count;
+            let base = jade.evaluate(wo, wi, RED) - jade.evaluate_boundary(wo, wi, RED);
+            assert_relative(radiance, base * wi.z, 0.1);
+        }
+    }
+}

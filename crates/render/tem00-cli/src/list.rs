@@ -63,6 +63,7 @@ fn what_it_is(material: &str) -> &'static str {
         "oren_nayar" => "rough and diffuse, as plaster, clay or a sandblasted casting",
         "conductor" => "rough metal",
         "plastic" => "a diffuse base under a clear coat, as plastic, lacquer or glaze",
+        "translucent" => "a body that lets light in, as plastic, ceramic, marble or skin",
         "mirror" => "a mirror, or polished metal; makes no speckle",
         "dielectric" => "clear glass; makes no speckle",
         _ => "",

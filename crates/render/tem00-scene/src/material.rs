@@ -1,5 +1,7 @@
-use tem00_config::{ANGLE, Choice, NUMBER, Problem, Section, Value, nearest, rejected};
-use tem00_tracer::{FinishingProcess, Laser, Material, Metal, TracerError};
+use tem00_config::{ANGLE, Choice, LENGTH, NUMBER, Problem, Section, Value, nearest, rejected};
+use tem00_tracer::{
+    FinishingProcess, Laser, Material, MediumDescription, Metal, NamedMedium, TracerError,
+};
 
 /// The materials of a surface, and the keys that each may have.
 pub const MATERIALS: &[Choice] = &[
@@ -10,6 +12,17 @@ pub const MATERIALS: &[Choice] = &[
         &["metal", "refractive_index", "finish", "roughness"],
     ),
     ("plastic", &["reflectance", "index", "roughness"]),
+    (
+        "translucent",
+        &[
+            "material",
+            "transport_length",
+            "absorption",
+            "refractive_index",
+            "anisotropy",
+            "roughness",
+        ],
+    ),
     ("mirror", &["reflectance", "metal", "refractive_index"]),
     ("dielectric", &["index"]),
 ];
@@ -22,6 +35,9 @@ const SLOPE: f64 = core::f64::consts::PI / 9.0;
 const INDEX: f64 = 1.5;
 /// The roughness of a satin coat.
 const COAT_ROUGHNESS: f64 = 0.1;
+
+/// The wavelength in a scene without lasers, in metres.
+const WHITE: f64 = 550e-9;
 
 /// A material, and the rms height in metres that its finish usually has.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +53,7 @@ pub(crate) fn read(surface: &Section<'_>, lasers: &[Laser]) -> Result<Finished, 
     let kind = given.as_ref().map(|(kind, _)| *kind);
     let material = match kind {
         None => Ok(Material::lambertian(REFLECTANCE)),
+        Some("translucent") => translucent(section, lasers),
         Some(kind) => of_kind(kind, section),
     }?
     .map_err(|error| rejected(&error, error.parameter(), &[section]))?;
@@ -73,6 +90,46 @@ fn of_kind(kind: &str, section: &Section<'_>) -> Result<Result<Material, TracerE
         "mirror" => mirror(section)?,
         _ => Material::dielectric(index(section)?),
     })
+}
+
+/// Reads a body that lets light in, in the light of the lasers.
+fn translucent(
+    section: &Section<'_>,
+    lasers: &[Laser],
+) -> Result<Result<Material, TracerError>, Problem> {
+    let number = |value: &Value<'_>| value.quantity(&NUMBER).map(Some);
+    let names = NamedMedium::named();
+    let description = MediumDescription {
+        material: section.or("material", None, |value| value.one_of(&names).map(Some))?,
+        transport_length: section.or("transport_length", None, |value| {
+            value.positive(&LENGTH).map(Some)
+        })?,
+        absorption: section.or("absorption", None, number)?,
+        refractive_index: section.or("refractive_index", None, number)?,
+        anisotropy: section.or("anisotropy", 0.0, |value| value.quantity(&NUMBER))?,
+    };
+    if description.material.is_none() {
+        section.required("transport_length", "\"0.5 mm\"")?;
+        section.required("absorption", "5")?;
+    }
+    let roughness = roughness(section, COAT_ROUGHNESS)?;
+    let mut wavelengths: Vec<_> = lasers.iter().map(Laser::wavelength).collect();
+    if wavelengths.is_empty() {
+        wavelengths.push(WHITE);
+    }
+    let media = wavelengths.into_iter();
+    let media = media.map(|wavelength| description.medium(wavelength));
+    let media = match media.collect::<Result<Vec<_>, _>>() {
+        Ok(media) => media,
+        Err(refusal) => return Ok(Err(refusal.into())),
+    };
+    if media.iter().any(|medium| *medium != media[0]) {
+        return Err(section.problem_with(
+            "material",
+            "`material` differs between the wavelengths of the lasers: render their light one by one",
+        ));
+    }
+    Ok(Material::translucent(media[0], roughness))
 }
 
 /// Reads a mirror: perfect, of a given reflectance, or of smooth metal.

@@ -23,6 +23,7 @@ const KEYS: &[&str] = &[
     "oren_nayar",
     "conductor",
     "plastic",
+    "translucent",
     "mirror",
     "dielectric",
     "one_sided",
@@ -80,6 +81,8 @@ fn surface(
         speckle: speckle(section)?,
         relief: read_relief(section, rms_height)?,
     };
+    let curved = surface.check_curvature();
+    curved.map_err(|error| section.problem_with("translucent", error))?;
     Ok(PlacedSurface { surface, pivot })
 }
 

@@ -8,7 +8,7 @@ use tem00_beam::{AngularProfile, FanGeometry, LineProfile};
 use tem00_geometry::{MeshInstance, Shape};
 use tem00_scene::SceneFile;
 use tem00_tracer::{
-    BeamShape, Environment, Light, LineShape, Material, RenderOptions, Rotation, Scene,
+    BeamShape, Environment, Light, LineShape, Material, Medium, RenderOptions, Rotation, Scene,
     SpeckleSettings, SpectralLine, Surface, Trajectory,
 };
 use tempfile::TempDir;
@@ -81,6 +81,19 @@ fn materials_and_spectra_are_those_of_their_constructors() {
             Material::oren_nayar(0.5, degrees(30.0)),
         ),
         ("plastic = {}", Material::plastic(0.8, 1.5, 0.1)),
+        (
+            "translucent = { transport_length = \"0.5 mm\", absorption = 20, anisotropy = 0.3 }",
+            Material::translucent(
+                Medium::new(1.5, 2e3, 20.0)
+                    .and_then(|medium| medium.with_anisotropy(0.3))
+                    .unwrap(),
+                0.1,
+            ),
+        ),
+        (
+            "translucent = { material = \"marble\", refractive_index = 1.6, roughness = 0.2 }",
+            Material::translucent(Medium::new(1.6, 2.19e3, 2.1).unwrap(), 0.2),
+        ),
         (
             "plastic = { reflectance = 0.3, index = 1.6, roughness = 0.2 }",
             Material::plastic(0.3, 1.6, 0.2),

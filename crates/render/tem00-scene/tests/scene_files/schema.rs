@@ -46,6 +46,7 @@ const TABLES: &str = "
     oren_nayar => [[surface]] oren_nayar = { ? }
     conductor => [[surface]] conductor = { ? }
     plastic => [[surface]] plastic = { ? }
+    translucent => [[surface]] translucent = { ? }
     mirror => [[surface]] mirror = { ? }
     dielectric => [[surface]] dielectric = { ? }
     instance => [[surface]] rectangle.size = [1, 1]\\ninstance = [{ ? }]

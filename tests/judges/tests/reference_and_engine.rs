@@ -13,7 +13,7 @@ use tem00::{
     scene::read_scene,
     statistics::{pearson_correlation, t_test_mean},
     tracer::{
-        Frame, LaserEvents, LightEvents, Material, Method, ReferenceSpeckle, RenderOptions,
+        Frame, LaserEvents, LightEvents, Material, Medium, Method, ReferenceSpeckle, RenderOptions,
         Sampling, Scene, render_reference,
     },
 };
@@ -262,6 +262,18 @@ fn reference_and_engine_agree_on_light_through_glass_and_off_mirrors() {
             assert_agree(&format!("{name}, by {method:?}"), &scene, 0, 4);
         }
     }
+}
+
+#[test]
+fn reference_and_engine_agree_on_light_from_below_a_surface() {
+    let medium = Medium::new(1.4, 5e2, 20.0).expect("a medium");
+    let body = Material::translucent(medium, 0.2).expect("a body");
+    let mut scene = corner(LAMPS);
+    scene.surfaces[0].material = body;
+    assert_agree("a translucent plate", &scene, 0, 4);
+    let mut scene = corner(BALL);
+    scene.surfaces[0].material = body.one_sided();
+    assert_agree("a translucent plate under glass", &scene, 0, 4);
 }
 
 /// The speckle of the corner: what both draw differs, and its laws are the same.

@@ -1,9 +1,15 @@
 //! Light below a surface against the exact integral equation, reciprocity, the balance of energy,
 //! and photons that another program counted.
 
-use tem00::translucence::{
-    Bin, LineShape, LineSpread, Material, Medium, SpectralLine, SpreadLine, Walk,
+use std::sync::atomic::AtomicBool;
+
+use tem00::{
+    DVec2, DVec3,
+    tracer::{Frame, ReferenceSpeckle, Scene, render_reference},
+    translucence::{Bin, LineShape, LineSpread, Material, Medium, SpectralLine, SpreadLine, Walk},
 };
+
+use crate::renders;
 
 /// Chance, up to a constant, that a collision at each of some depths is seen from outside.
 ///
@@ -422,6 +428,181 @@ fn detectors_find_the_line_where_they_find_counted_photons() {
     }
 }
 
+/// A line on marble as a render shows it, beside the line of the half space: its light, and its
+/// centre in windows.
+#[test]
+fn a_rendered_line_is_that_of_the_half_space() {
+    let angle = 45_f64.to_radians();
+    let mut scene = renders::scene(&format!(
+        r#"
+        [camera]
+        position = [{0}, 0, {0}]
+        focal_length = "100 mm"
+        pixel_pitch = "2 um"
+        resolution = [640, 16]
+        [[laser]]
+        wavelength = "660 nm"
+        power = "5 mW"
+        position = [0, 0, 1]
+        line_direction = [0, 1, 0]
+        line = {{ fan_angle = "10 deg", thickness = "0.2 mm" }}
+        [[surface]]
+        rectangle.size = [0.2, 0.2]
+        translucent = {{ material = "marble", roughness = 0.01 }}
+        "#,
+        angle.sin()
+    ));
+    scene.render.samples_per_pixel = 512;
+    let frame = renders::frame(&scene, None, 0, &scene.render);
+    let image = &frame.lasers[0].single;
+    // The place and the light of each column, with the length that it covers.
+    let columns = (0..image.width()).map(|column| {
+        let place = |column: f64| {
+            let ray = scene.camera.ray(DVec2::new(column, 8.0));
+            ray.origin.x - ray.direction.x * ray.origin.z / ray.direction.z
+        };
+        let column_f64 = column as f64;
+        let length = (place(column_f64 + 1.0) - place(column_f64)).abs();
+        let light: f64 = (0..image.height())
+            .map(|row| f64::from(image[(column, row)]))
+            .sum();
+        [
+            place(column_f64 + 0.5),
+            light * length / image.height() as f64,
+        ]
+    });
+    let columns: Vec<_> = columns.collect();
+    let marble = Material::ALL
+        .iter()
+        .find(|material| material.name == "marble");
+    let medium = marble.expect("marble").medium(660e-9).expect("a medium");
+    let line = SpreadLine::new(&medium, 0.0, angle).expect("a line");
+    let profile = Profile::new(&line, 0.2e-3);
+    // The same columns of the line.
+    let light_at = |place: f64| {
+        let after = profile.places.partition_point(|&x| x < place);
+        profile.light.get(after).copied().unwrap_or_default()
+    };
+    for window in [0.2e-3, 0.5e-3, 1.5e-3] {
+        let centre = |light: &dyn Fn(f64, f64) -> f64| {
+            let seen = columns.iter().filter(|[place, _]| place.abs() <= window);
+            let sums = seen.fold([0.0; 2], |[sum, moment], &[place, l]| {
+                let light = light(place, l);
+                [sum + light, moment + light * place]
+            });
+            sums[1] / sums[0]
+        };
+        let [found, expected] = [centre(&|_, l| l), centre(&|place, _| light_at(place))];
+        assert!(
+            (found - expected).abs() < 0.05 * expected,
+            "±{window}: {found} for {expected}"
+        );
+    }
+    let view = Walk {
+        incidence: 0.0,
+        exits: vec![angle],
+        photons: 100_000,
+        seed: 1,
+    };
+    let spread = &LineSpread::simulate(&medium, &view).expect("a spread")[0];
+    let laser = scene.laser_at(0, 0);
+    let irradiance = |step: i32| {
+        let event = laser.next_event(DVec3::new(1e-6 * f64::from(step), 0.0, 0.0));
+        event.map_or(0.0, |event| event.e_perp)
+    };
+    let lit: f64 = (-500..=500).map(|step| 1e-6 * irradiance(step)).sum();
+    let ends = [columns[0][0], columns[columns.len() - 1][0]];
+    let [from, to] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+    let within = |bin: &Bin| bin.from > from && bin.to < to;
+    let seen: f64 = line.bins().filter(within).map(|bin| bin.fraction).sum();
+    let expected = seen * lit * spread.radiance_factor() / core::f64::consts::PI;
+    let found: f64 = columns.iter().map(|[_, light]| light).sum();
+    assert!(
+        (found / expected - 1.0).abs() < 0.03,
+        "{found} for {expected}"
+    );
+}
+
+/// Light from below a surface, in renders: its contrast is that of the paths, and its pattern is new
+/// once the surface has moved.
+#[test]
+fn speckle_of_light_from_below_is_that_of_its_paths() {
+    let scene = |linewidth: &str| {
+        renders::scene(&format!(
+            r#"
+            [camera]
+            position = [0, -0.1, 0.28]
+            focal_length = "25 mm"
+            f_number = 16
+            pixel_pitch = "3 um"
+            resolution = [192, 160]
+            [[laser]]
+            wavelength = "660 nm"
+            linewidth = {linewidth}
+            power = "2 mW"
+            position = [0, 0, 0.2]
+            spot.waist_radius = "0.3 mm"
+            [[surface]]
+            displacement_per_frame = ["1 um", 0, 0]
+            rectangle.size = [0.05, 0.05]
+            translucent = {{ material = "marble", roughness = 0.01 }}
+            [render]
+            samples_per_pixel = 8
+            frames = 2
+            "#
+        ))
+    };
+    let factors = |frame: &Frame| -> Vec<f64> {
+        let [light, speckled] = [&frame.lasers[0].single, &frame.lasers[0].radiance];
+        let pairs = light.values().iter().zip(speckled.values());
+        pairs
+            .filter(|(light, _)| **light > 0.0)
+            .map(|(light, speckled)| f64::from(speckled / light))
+            .collect()
+    };
+    // One pattern serves both spectra: the deviation compares what is left of it.
+    let covariance = |one: &[f64], other: &[f64]| {
+        let mean = |factors: &[f64]| factors.iter().sum::<f64>() / factors.len() as f64;
+        let [first, second] = [mean(one), mean(other)];
+        let pairs = one.iter().zip(other);
+        let products: Vec<_> = pairs.map(|(a, b)| (a - first) * (b - second)).collect();
+        mean(&products)
+    };
+    let renders = |scene: &Scene, number: u32| {
+        let model = renders::speckle(scene, 1);
+        let prepared = ReferenceSpeckle::prepare(scene, 1).expect("patterns");
+        let go_on = AtomicBool::new(false);
+        let options = &scene.render;
+        let reference = render_reference(scene, Some(&prepared), number, options, |_| (), &go_on);
+        [
+            renders::frame(scene, Some(&model), number, options),
+            reference.expect("a render"),
+        ]
+    };
+    let [sharp, wide] = ["0", "\"0.1 nm\""].map(scene);
+    let medium = *sharp.surfaces[0].material.below().expect("marble");
+    let [incidence, exit] = [0.0, 0.1_f64.atan2(0.28)];
+    let line = SpreadLine::new(&medium, incidence, exit).expect("a line");
+    let spectrum = wide.lasers[0].spectral_line();
+    let expected = line.contrast(spectrum, [-0.3e-3, 0.3e-3]).expect("paths");
+    let [first, moved, wide] =
+        [(&sharp, 0), (&sharp, 1), (&wide, 0)].map(|(scene, n)| renders(scene, n));
+    for renderer in 0..2 {
+        let [first, moved, wide] = [&first, &moved, &wide].map(|of| factors(&of[renderer]));
+        let variance = covariance(&first, &first);
+        let left = (covariance(&wide, &wide) / variance).sqrt();
+        assert!(
+            (left / expected - 1.0).abs() < 0.05,
+            "{renderer}: {left} of {expected}"
+        );
+        let shared = covariance(&first, &moved) / variance;
+        assert!(
+            shared.abs() < 0.2,
+            "{renderer}: {shared} is left after a motion"
+        );
+    }
+}
+
 #[test]
 fn materials_have_the_diffuse_reflectance_that_was_published_with_them() {
     // Jensen et al. 2001, table 1: in red, green and blue light, to two digits.
@@ -455,6 +636,52 @@ fn materials_have_the_diffuse_reflectance_that_was_published_with_them() {
             );
         }
     }
+}
+
+/// Chandrasekhar's function H of isotropic scattering at the cosine `mu`, for an albedo c of a
+/// collision: 1/H(µ) = √(1 − c) + c/2 ∫ H(µ′) µ′/(µ + µ′) dµ′ (Radiative Transfer, 1960, § 40).
+fn h_function(c: f64, mu: f64) -> f64 {
+    let nodes: Vec<_> = (0..400).map(|i| (f64::from(i) + 0.5) / 400.0).collect();
+    let inverse = |h: &[f64], mu: f64| {
+        let part = |(node, h): (&f64, &f64)| h * node / (mu + node) / nodes.len() as f64;
+        (1.0 - c).sqrt() + 0.5 * c * nodes.iter().zip(h).map(part).sum::<f64>()
+    };
+    let mut h = vec![1.0; nodes.len()];
+    for _ in 0..200 {
+        h = nodes.iter().map(|&mu| 1.0 / inverse(&h, mu)).collect();
+    }
+    1.0 / inverse(&h, mu)
+}
+
+/// Without a step of the refractive index the reflectance has a closed form, 1 − √(1 − c) H(µ); with
+/// n = 1.5 and c = 0.9 Giovanelli (Opt. Acta 2, 153, 1955) computed 0.2600, with what the boundary
+/// reflects.
+#[test]
+fn a_half_space_reflects_what_theory_says() {
+    let albedo = |n: f64, c: f64, incidence: f64| {
+        let medium = Medium::new(n, 1e3, 1e3 * (1.0 / c - 1.0)).expect("a medium");
+        let view = Walk {
+            incidence,
+            exits: vec![0.0],
+            photons: 400_000,
+            seed: 3,
+        };
+        LineSpread::simulate(&medium, &view).expect("a spread")[0].albedo()
+    };
+    for c in [0.5_f64, 0.9, 0.99] {
+        for incidence in [0.0_f64, 60_f64.to_radians()] {
+            let expected = 1.0 - (1.0 - c).sqrt() * h_function(c, incidence.cos());
+            let found = albedo(1.0, c, incidence);
+            // Four standard errors of 400,000 photons.
+            assert!(
+                (found - expected).abs() < 0.003,
+                "{c}, {incidence}: {found} for {expected}"
+            );
+        }
+    }
+    let boundary = 0.04;
+    let found = boundary + (1.0 - boundary) * albedo(1.5, 0.9, 0.0);
+    assert!((found - 0.26).abs() < 0.002, "{found}");
 }
 
 #[test]

@@ -1,3 +1,5 @@
+use core::fmt;
+
 use tem00_speckle::PupilField;
 use wgpu::Buffer;
 
@@ -26,11 +28,21 @@ use crate::{
 /// assert_eq!(values.len(), 1024 * 1024);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct GpuPattern {
     gpu: Gpu,
     buffer: Buffer,
     size: [usize; 2],
+    transform: Transform,
+}
+
+impl fmt::Debug for GpuPattern {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("GpuPattern")
+            .field("gpu", &self.gpu.name())
+            .field("size", &self.size)
+            .finish_non_exhaustive()
+    }
 }
 
 impl GpuPattern {
@@ -51,18 +63,48 @@ impl GpuPattern {
         offset: [f64; 2],
         defocus: f64,
     ) -> Result<Self, GpuError> {
-        let aperture = field.aperture(offset, defocus);
         let size = field.size();
-        let buffer = gpu.guarded(|| {
+        gpu.guarded(|| {
             let buffer = storage(gpu, "the pattern", 4 * (size[0] * size[1]) as u64)?;
+            let aperture = field.aperture(offset, defocus);
             let transform = Transform::new(gpu, field, &aperture)?;
-            transform.run(gpu, &aperture, Finish::Intensity, &buffer);
-            Ok(buffer)
-        })?;
-        Ok(Self {
-            gpu: gpu.clone(),
-            buffer,
-            size,
+            transform.run(gpu, [(aperture, Finish::Intensity)], &buffer);
+            Ok(Self {
+                gpu: gpu.clone(),
+                buffer,
+                size,
+                transform,
+            })
+        })
+    }
+
+    /// Generates another pattern in the same buffer and, where the pupil fills the same box, with the
+    /// same memory for the transform. A field of another size gets a buffer of its own.
+    ///
+    /// # Errors
+    ///
+    /// As [`generate`](Self::generate).
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `offset` and `defocus` are finite.
+    pub fn refill(
+        &mut self,
+        field: &PupilField,
+        offset: [f64; 2],
+        defocus: f64,
+    ) -> Result<(), GpuError> {
+        if field.size() != self.size {
+            *self = Self::generate(&self.gpu, field, offset, defocus)?;
+            return Ok(());
+        }
+        let gpu = &self.gpu;
+        gpu.guarded(|| {
+            let aperture = field.aperture(offset, defocus);
+            self.transform.renew(gpu, field, &aperture)?;
+            let last = [(aperture, Finish::Intensity)];
+            self.transform.run(gpu, last, &self.buffer);
+            Ok(())
         })
     }
 

@@ -1,7 +1,7 @@
 use core::fmt;
 
 use tem00_speckle::{
-    PupilField, SliceLaw, SlicePath, SpeckleStack, StackOptions, StackSource, closed_form,
+    Aperture, PupilField, SliceLaw, SlicePath, SpeckleStack, StackOptions, StackSource, closed_form,
 };
 use wgpu::{
     BindGroup, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType,
@@ -54,8 +54,12 @@ pub struct GpuStack {
     gpu: Gpu,
     size: [usize; 2],
     slices: usize,
+    coefficients: Buffer,
+    laws: Buffer,
     group: BindGroup,
     look_up: ComputePipeline,
+    /// What has generated the slices here.
+    transform: Option<Transform>,
 }
 
 impl fmt::Debug for GpuStack {
@@ -95,13 +99,42 @@ impl GpuStack {
         let field = source.field();
         gpu.guarded(|| {
             let coefficients = storage(gpu, "the stack", path.memory_bytes(field.size()))?;
-            let first = source.slice(0);
-            let transform = Transform::new(gpu, field, &first)?;
-            for slice in 0..path.slice_count() {
-                let finish = Finish::Amplitude { slice };
-                transform.run(gpu, &source.slice(slice), finish, &coefficients);
-            }
-            Self::assemble(gpu, &coefficients, field.size(), &source.laws())
+            let transform = Transform::new(gpu, field, &source.slice(0))?;
+            transform.run(gpu, slices(&source, path), &coefficients);
+            let mut stack = Self::assemble(gpu, coefficients, field.size(), &source.laws())?;
+            stack.transform = Some(transform);
+            Ok(stack)
+        })
+    }
+
+    /// Generates other slices in the same buffers, which [`bind_group`](Self::bind_group) keeps, and
+    /// where the pupil fills the same box with the same memory for the transform. A stack of another
+    /// size, and one that was uploaded, gets buffers of its own.
+    ///
+    /// # Errors
+    ///
+    /// As [`generate_with`](Self::generate_with).
+    pub fn refill(
+        &mut self,
+        field: &PupilField,
+        path: SlicePath,
+        options: StackOptions,
+    ) -> Result<(), GpuError> {
+        let source = StackSource::new(field, path, options)?;
+        let closed = source.field();
+        let is_same = [closed.size(), [path.slice_count(); 2]] == [self.size, [self.slices; 2]];
+        let Some(transform) = self.transform.as_mut().filter(|_| is_same) else {
+            *self = Self::generate_with(&self.gpu, field, path, options)?;
+            return Ok(());
+        };
+        let gpu = &self.gpu;
+        gpu.guarded(|| {
+            transform.renew(gpu, closed, &source.slice(0))?;
+            transform.run(gpu, slices(&source, path), &self.coefficients);
+            let rows = rows(&source.laws(), self.size);
+            let bytes = bytemuck::cast_slice(rows.as_flattened());
+            gpu.queue().write_buffer(&self.laws, 0, bytes);
+            Ok(())
         })
     }
 
@@ -122,28 +155,31 @@ impl GpuStack {
                     .write_buffer(&coefficients, first, bytemuck::cast_slice(values));
             }
             let laws = (0..stack.slice_count()).map(|slice| stack.slice_law(slice));
-            Self::assemble(gpu, &coefficients, stack.size(), &laws.collect::<Vec<_>>())
+            Self::assemble(gpu, coefficients, stack.size(), &laws.collect::<Vec<_>>())
         })
     }
 
     fn assemble(
         gpu: &Gpu,
-        coefficients: &Buffer,
+        coefficients: Buffer,
         size: [usize; 2],
         laws: &[SliceLaw],
     ) -> Result<Self, GpuError> {
-        let rows: Vec<_> = laws.iter().map(|law| law.rows(size)).collect();
-        let rows = uploaded(gpu, "the laws of the slices", rows.as_flattened())?;
-        let [width, height, slices] = [size[0], size[1], laws.len()].map(to_u32);
-        let stack = uniform(gpu, &[width, height, slices, 0]);
+        let slices = laws.len();
+        let laws = rows(laws, size);
+        let laws = uploaded(gpu, "the laws of the slices", laws.as_flattened())?;
+        let sides = [size[0], size[1], slices, 0].map(to_u32);
         let layout = Self::bind_group_layout(gpu);
-        let group = bind(gpu, &layout, &[&stack, coefficients, &rows]);
+        let group = bind(gpu, &layout, &[&uniform(gpu, &sides), &coefficients, &laws]);
         Ok(Self {
             gpu: gpu.clone(),
             size,
-            slices: laws.len(),
+            slices,
+            coefficients,
+            laws,
             group,
             look_up: gpu.pipeline("look-up", || look_up_source(gpu)),
+            transform: None,
         })
     }
 
@@ -216,6 +252,17 @@ impl GpuStack {
         gpu.queue().submit([encoder.finish()]);
         download(gpu, &intensities, bytes)
     }
+}
+
+/// Returns the slices of a stack, each with its finish.
+fn slices(source: &StackSource, path: SlicePath) -> impl Iterator<Item = (Aperture<'_>, Finish)> {
+    let slices = 0..path.slice_count();
+    slices.map(|slice| (source.slice(slice), Finish::Amplitude { slice }))
+}
+
+/// Returns the rows of the laws of slices, as the shader reads them.
+fn rows(laws: &[SliceLaw], size: [usize; 2]) -> Vec<[[f32; 4]; 14]> {
+    laws.iter().map(|law| law.rows(size)).collect()
 }
 
 /// The kernel of batches.

@@ -1,7 +1,9 @@
-//! The pruned two-dimensional Fourier transform: Stockham's, a stage of all lines at a time.
+//! The pruned two-dimensional Fourier transform: rows, then columns, in the memory of workgroups.
+
+use core::fmt::Write;
 
 use tem00_speckle::{Aperture, PupilField, closed_form};
-use wgpu::{BindGroup, Buffer, ComputePipeline};
+use wgpu::{BindGroup, Buffer, CommandEncoder, ComputePipeline, Limits};
 
 use crate::{
     Gpu, GpuError,
@@ -14,10 +16,20 @@ const KERNEL: &str = include_str!("../shaders/transform.wgsl");
 /// The radices, in the order in which they are tried.
 const RADICES: [usize; 6] = [16, 8, 4, 2, 3, 5];
 
-/// Threads of a workgroup.
-const GROUP: usize = 64;
+/// Points that a thread holds.
+const HELD: usize = 16;
 
-/// Output of a stage.
+/// The largest number of threads in a workgroup, and the points below which it has more sequences.
+const MAX_THREADS: usize = 256;
+const MIN_POINTS: usize = 512;
+
+/// Neighbouring sequences that fill the lines of a cache.
+const NEIGHBOURS: usize = 8;
+
+/// Workgroups along the first axis of an order.
+const WIDE: usize = 1 << 15;
+
+/// Output of the last pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Finish {
     /// The values themselves.
@@ -29,31 +41,35 @@ pub(crate) enum Finish {
 }
 
 /// A transform with its memory.
+#[derive(Clone)]
 pub(crate) struct Transform {
     size: [usize; 2],
     values: Values,
-    /// Stages before the last.
-    stages: Vec<Order>,
-    last: Stage,
-    /// Input of the last stage.
+    /// Passes before the last.
+    passes: Vec<Order>,
+    last: Pass,
+    /// Input of the last pass.
     before: Buffer,
 }
 
-/// A stage with what it reads and writes.
+/// A pass with what it reads and writes.
+#[derive(Clone)]
 struct Order {
     pipeline: ComputePipeline,
     group: BindGroup,
     groups: [usize; 2],
 }
 
-/// A stage of the transform of all lines along one axis.
+/// A pass over all lines along one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Stage {
-    radix: usize,
+struct Pass {
+    /// Points of the sequences that a pass transforms, and sequences of a workgroup.
+    points: usize,
+    batch: usize,
     /// Points of a line, and how many of them are not zero.
     length: usize,
     filled: usize,
-    /// The product of the radices before.
+    /// The product of the points of the passes before.
     done: usize,
     lines: usize,
     /// Strides of points and lines in the input and in the output.
@@ -69,62 +85,91 @@ impl Transform {
         aperture: &Aperture<'_>,
     ) -> Result<Self, GpuError> {
         let size = field.size();
-        let (plan, last) = stages(size, aperture.extent())?;
+        let mut plan = passes(size, aperture.extent(), memory(&gpu.device().limits()))?;
+        let last = plan.pop().ok_or(GpuError::Size(size[1]))?;
         let values = Values::new(gpu, field, aperture)?;
-        let bytes = 8 * (size[0] * size[1]) as u64;
-        // Each is read while the other is written.
-        let (mut before, mut after) = (values.buffer.clone(), None);
+        let mut before = values.buffer.clone();
         let mut orders = Vec::new();
-        for stage in plan {
-            let output = match after.take() {
-                Some(array) => array,
-                None => storage(gpu, "the transform", bytes)?,
-            };
-            orders.push(stage.order(gpu, &before, &output));
-            let read = core::mem::replace(&mut before, output);
-            after = (orders.len() > 1).then_some(read);
+        for pass in plan {
+            let output = storage(gpu, "the transform", 8 * (pass.lines * pass.length) as u64)?;
+            orders.push(pass.order(gpu, &before, &output));
+            before = output;
         }
         Ok(Self {
             size,
             values,
-            stages: orders,
+            passes: orders,
             last,
             before,
         })
     }
 
-    /// Transforms `aperture` into `output`.
-    pub(crate) fn run(&self, gpu: &Gpu, aperture: &Aperture<'_>, finish: Finish, output: &Buffer) {
-        let mut encoder = gpu.device().create_command_encoder(&<_>::default());
+    /// Plans the transform of other apertures: in the same memory, if they have the same shape.
+    pub(crate) fn renew(
+        &mut self,
+        gpu: &Gpu,
+        field: &PupilField,
+        aperture: &Aperture<'_>,
+    ) -> Result<(), GpuError> {
+        if self.size != field.size() || !self.values.take(gpu, field, aperture) {
+            *self = Self::new(gpu, field, aperture)?;
+        }
+        Ok(())
+    }
+
+    /// Transforms apertures into `output`, in as few submissions as their values allow.
+    pub(crate) fn run<'a>(
+        &self,
+        gpu: &Gpu,
+        apertures: impl IntoIterator<Item = (Aperture<'a>, Finish)>,
+        output: &Buffer,
+    ) {
+        let start = || gpu.device().create_command_encoder(&<_>::default());
+        let mut encoder = start();
+        for (aperture, finish) in apertures {
+            self.record(gpu, &mut encoder, (&aperture, finish), output);
+            if !self.values.are_seeded() {
+                let full = core::mem::replace(&mut encoder, start());
+                gpu.queue().submit([full.finish()]);
+            }
+        }
+        gpu.queue().submit([encoder.finish()]);
+    }
+
+    fn record(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut CommandEncoder,
+        (aperture, finish): (&Aperture<'_>, Finish),
+        output: &Buffer,
+    ) {
         let mut pass = encoder.begin_compute_pass(&<_>::default());
         self.values.fill(gpu, &mut pass, aperture);
-        for order in &self.stages {
+        for order in &self.passes {
             pass.set_pipeline(&order.pipeline);
             pass.set_bind_group(0, &order.group, &[]);
             let [x, y] = order.groups.map(to_u32);
             pass.dispatch_workgroups(x, y, 1);
         }
-        let stage = uniform(gpu, &self.last.finishing(self.size, aperture, finish));
+        let plan = uniform(gpu, &self.last.finishing(self.size, aperture, finish));
         dispatch(
             gpu,
             &mut pass,
-            &pipeline(gpu, self.last.radix, finish),
-            &[&stage, &self.before, output],
+            &self.last.pipeline(gpu, finish),
+            &[&plan, &self.before, output],
             self.last.groups(),
         );
-        drop(pass);
-        gpu.queue().submit([encoder.finish()]);
     }
 }
 
-impl Stage {
+impl Pass {
     fn order(&self, gpu: &Gpu, before: &Buffer, after: &Buffer) -> Order {
-        let pipeline = pipeline(gpu, self.radix, Finish::Nothing);
-        let stage = uniform(gpu, &self.numbers(0, 0.0, [0; 2], [1; 2]));
+        let pipeline = self.pipeline(gpu, Finish::Nothing);
+        let plan = uniform(gpu, &self.numbers(0, 0.0, [0; 2], [1; 2]));
         let group = bind(
             gpu,
             &pipeline.get_bind_group_layout(0),
-            &[&stage, before, after],
+            &[&plan, before, after],
         );
         Order {
             pipeline,
@@ -133,7 +178,7 @@ impl Stage {
         }
     }
 
-    /// The uniform of the last stage of all.
+    /// The uniform of the last pass of all.
     fn finishing(&self, size: [usize; 2], aperture: &Aperture<'_>, finish: Finish) -> [u32; 16] {
         let power = aperture.power();
         let (first, scale) = match finish {
@@ -179,33 +224,65 @@ impl Stage {
         ]
     }
 
-    /// Returns whether neighbouring points belong to neighbouring lines.
+    /// Returns whether neighbouring sequences belong to neighbouring lines.
     const fn is_across(&self) -> bool {
         self.output[1] == 1
     }
 
     fn groups(&self) -> [usize; 2] {
-        let threads = self.length / self.radix;
-        if self.is_across() {
-            [self.lines.div_ceil(GROUP), threads]
-        } else {
-            [threads.div_ceil(GROUP), self.lines]
-        }
+        let sequences = self.lines * self.length / self.points;
+        let groups = sequences.div_ceil(self.batch);
+        let wide = groups.min(WIDE);
+        [wide, groups.div_ceil(wide)]
+    }
+
+    fn pipeline(&self, gpu: &Gpu, finish: Finish) -> ComputePipeline {
+        let (name, output, finished) = match finish {
+            Finish::Nothing => ("values", "vec2<f32>", "return v;"),
+            Finish::Amplitude { .. } => (
+                "amplitude",
+                "vec2<f32>",
+                "let centring = tem00_centring(plan.corner, vec2<u32>(line, point), plan.size);
+                return plan.scale * tem00_complex_product(v, centring);",
+            ),
+            Finish::Intensity => ("intensity", "f32", "return plan.scale * dot(v, v);"),
+        };
+        let Self { points, batch, .. } = *self;
+        let along = !self.is_across() && self.length == points;
+        let source = || {
+            let text = format!(
+                "{functions}{NO_STACK}{KERNEL}
+                const POINTS = {points}u;
+                const BATCH = {batch}u;
+                const MEMORY = {memory}u;
+                const ALONG = {along};
+                @group(0) @binding(2) var<storage, read_write> after: array<{output}>;
+                fn finished(v: vec2<f32>, line: u32, point: u32) -> {output} {{ {finished} }}
+                {stages}",
+                functions = closed_form::WGSL,
+                memory = (points * batch).next_multiple_of(16),
+                stages = stages(points, batch),
+            );
+            (text, None)
+        };
+        gpu.pipeline(&format!("{name}, {batch} times {points}, {along}"), source)
     }
 }
 
-/// The stages of the transform of a box of `extent` in an array of `size`: the rows of the box,
-/// then all columns. The last stands apart.
-fn stages(
+/// The passes of the transform of a box of `extent` in an array of `size`: the rows of the box,
+/// then all columns. `memory` is what a workgroup holds, in points.
+fn passes(
     [width, height]: [usize; 2],
     [columns, rows]: [usize; 2],
-) -> Result<(Vec<Stage>, Stage), GpuError> {
-    let mut stages = Vec::new();
+    memory: usize,
+) -> Result<Vec<Pass>, GpuError> {
+    let mut passes = Vec::new();
     let mut done = 1;
-    for radix in radices(width)? {
+    for points in split(width, memory)? {
         let first = done == 1;
-        stages.push(Stage {
-            radix,
+        passes.push(Pass {
+            points,
+            batch: batch(points, memory, points < width),
             length: width,
             filled: if first { columns } else { width },
             done,
@@ -213,12 +290,13 @@ fn stages(
             input: [1, if first { columns } else { width }],
             output: [1, width],
         });
-        done *= radix;
+        done *= points;
     }
     done = 1;
-    for radix in radices(height)? {
-        stages.push(Stage {
-            radix,
+    for points in split(height, memory.min(1 << 11))? {
+        passes.push(Pass {
+            points,
+            batch: batch(points, memory, true),
             length: height,
             filled: if done == 1 { rows } else { height },
             done,
@@ -226,10 +304,44 @@ fn stages(
             input: [width, 1],
             output: [width, 1],
         });
-        done *= radix;
+        done *= points;
     }
-    let last = stages.pop().ok_or(GpuError::Size(height))?;
-    Ok((stages, last))
+    Ok(passes)
+}
+
+/// The points that a workgroup of a device holds, at least 2048.
+fn memory(limits: &Limits) -> usize {
+    let threads = limits
+        .max_compute_invocations_per_workgroup
+        .min(limits.max_compute_workgroup_size_x);
+    let threads = (threads as usize).min(MAX_THREADS);
+    (limits.max_compute_workgroup_storage_size as usize / 8).min(HELD * threads)
+}
+
+/// The sequences of a workgroup: enough for its threads and, where `neighbours` lie side by side, for
+/// the lines of a cache.
+fn batch(points: usize, memory: usize, neighbours: bool) -> usize {
+    let wanted = MIN_POINTS.div_ceil(points);
+    let wanted = wanted.max(if neighbours { NEIGHBOURS } else { 1 });
+    wanted.min(memory / points).max(1)
+}
+
+/// The factors of a length, one or two, of which each fits the memory.
+fn split(length: usize, memory: usize) -> Result<Vec<usize>, GpuError> {
+    radices(length)?;
+    if length <= memory {
+        return Ok(vec![length]);
+    }
+    let side = length.isqrt();
+    let factor = (1..=side)
+        .rev()
+        .find(|&factor| length.is_multiple_of(factor));
+    let factor = factor.unwrap_or(1);
+    let factors = vec![length / factor, factor];
+    if factors[0] > memory {
+        return Err(GpuError::Size(length));
+    }
+    Ok(factors)
 }
 
 /// The radices whose product is `length`.
@@ -248,29 +360,63 @@ fn radices(length: usize) -> Result<Vec<usize>, GpuError> {
     }
 }
 
-fn pipeline(gpu: &Gpu, radix: usize, finish: Finish) -> ComputePipeline {
-    let (name, output, finished) = match finish {
-        Finish::Nothing => ("values", "vec2<f32>", "return v;"),
-        Finish::Amplitude { .. } => (
-            "amplitude",
-            "vec2<f32>",
-            "let centring = tem00_centring(stage.corner, vec2<u32>(line, point), stage.size);
-            return stage.scale * tem00_complex_product(v, centring);",
-        ),
-        Finish::Intensity => ("intensity", "f32", "return stage.scale * dot(v, v);"),
-    };
-    let source = || {
-        let text = format!(
-        "{functions}{NO_STACK}{KERNEL}
-        const RADIX = {radix}u;
-        fn butterfly(v: array<vec2<f32>, RADIX>) -> array<vec2<f32>, RADIX> {{ return tem00_dft{radix}(v); }}
-        @group(0) @binding(2) var<storage, read_write> after: array<{output}>;
-        fn finished(v: vec2<f32>, line: u32, point: u32) -> {output} {{ {finished} }}",
-        functions = closed_form::WGSL,
+/// The kernel: the stages of `batch` sequences of `points`, each thread with butterflies of its own.
+fn stages(points: usize, batch: usize) -> String {
+    let radices = radices(points).unwrap_or_default();
+    let threads = (points * batch).div_ceil(HELD);
+    let mut text = format!(
+        "@compute @workgroup_size({threads})
+        fn transform(
+            @builtin(workgroup_id) group: vec3<u32>,
+            @builtin(num_workgroups) groups: vec3<u32>,
+            @builtin(local_invocation_index) thread: u32,
+        ) {{
+            let first = (group.y * groups.x + group.x) * BATCH;\n"
+    );
+    let mut done = 1;
+    for (stage, radix) in radices.iter().enumerate() {
+        let is_last = stage + 1 == radices.len();
+        let butterflies = points / radix;
+        let turns = (butterflies * batch).div_ceil(threads);
+        let point = format!("own.y + r * {butterflies}u");
+        let read = match stage {
+            0 => format!("loaded(sequence, {point})"),
+            _ => format!(
+                "tem00_complex_product(memory[cell(own.x, {point})], tem00_twiddle(own.y, r, {done}u, {radix}u))"
+            ),
+        };
+        let to = format!("tem00_stockham(own.y, r, {done}u, {radix}u)");
+        let write = match is_last {
+            true => format!("store(sequence, {to}, v[k][r]);"),
+            false => format!("memory[cell(own.x, {to})] = v[k][r];"),
+        };
+        let each = format!(
+            "for (var k = 0u; k < {turns}u; k += 1u) {{
+                let at = thread + k * {threads}u;
+                let own = work(at, {butterflies}u);
+                let sequence = sequence(first + own.x);
+                if at < {all}u",
+            all = butterflies * batch,
         );
-        (text, None)
-    };
-    gpu.pipeline(&format!("{name}, radix {radix}"), source)
+        let of_each = format!("for (var r = 0u; r < {radix}u; r += 1u)");
+        // What others read is read before it is overwritten, and written before it is read.
+        let barrier = |is_needed: bool| if is_needed { "workgroupBarrier();" } else { "" };
+        let written = write!(
+            text,
+            "{{
+                var v: array<array<vec2<f32>, {radix}>, {turns}>;
+                {each} {{ {of_each} {{ v[k][r] = {read}; }} v[k] = tem00_dft{radix}(v[k]); }} }}
+                {before}
+                {each} {{ {of_each} {{ {write} }} }} }}
+                {after}
+            }}\n",
+            before = barrier(stage > 0 && !is_last),
+            after = barrier(!is_last),
+        );
+        debug_assert!(written.is_ok(), "text takes whatever is written");
+        done *= radix;
+    }
+    text + "}\n"
 }
 
 #[cfg(test)]

@@ -50,6 +50,51 @@ fn patterns_of_the_planners_sizes_agree() {
     }
 }
 
+/// Memory that is filled again holds the bits of memory that is new: of another seed, place, pupil and
+/// size, made on the card or by the library.
+#[test]
+fn patterns_and_stacks_are_refilled() {
+    let gpu = Gpu::new().expect("an adapter");
+    let field =
+        |size: [usize; 2], seed| PupilField::from_speckle_size(size, 2.4, seed).expect("a field");
+    let annulus = field([180, 128], 3)
+        .with_pupil(Pupil::Annulus { inner: 0.4 })
+        .expect("a pupil");
+    let sampled = field([180, 128], 3)
+        .with_pupil(aberrated())
+        .expect("a pupil");
+    let fields = [
+        field([180, 128], 4),
+        annulus,
+        sampled,
+        field([64, 64], 3),
+        field([64, 64], 5),
+    ];
+    let mut pattern =
+        GpuPattern::generate(&gpu, &field([180, 128], 3), [0.0; 2], 0.0).expect("a pattern");
+    let path = SlicePath::Straight {
+        half_period: 2,
+        length: 2,
+    };
+    let mut stack = GpuStack::generate(&gpu, &field([180, 128], 3), path).expect("a stack");
+    let points = [[3.5, 60.25, 0.0], [17.0, 8.75, 2.5]];
+    for field in fields {
+        let before = pattern.buffer().clone();
+        let is_kept = pattern.size() == field.size();
+        pattern.refill(&field, [0.3, 0.1], 0.5).expect("a pattern");
+        assert_eq!(*pattern.buffer() == before, is_kept);
+        let new = GpuPattern::generate(&gpu, &field, [0.3, 0.1], 0.5).expect("a pattern");
+        assert_eq!(pattern.values(), new.values());
+        let group = stack.bind_group().clone();
+        stack
+            .refill(&field, path, StackOptions::default())
+            .expect("a stack");
+        assert_eq!(*stack.bind_group() == group, is_kept);
+        let new = GpuStack::generate(&gpu, &field, path).expect("a stack");
+        assert_eq!(stack.intensities(&points), new.intensities(&points));
+    }
+}
+
 /// A pupil without symmetry, with aberrations.
 fn aberrated() -> Pupil {
     let grid = Grid::from_fn(37, 53, |x, y| {

@@ -1,6 +1,6 @@
 //! Patterns from one seed, of the library and of the card, and what is refused.
 
-use tem00_gpu::{Gpu, GpuError, GpuPattern, GpuStack};
+use tem00_gpu::{Gpu, GpuError, GpuPattern, GpuStack, wgpu};
 use tem00_numerics::Grid;
 use tem00_speckle::{
     Complex, Phasors, Pupil, PupilField, SlicePath, SpeckleError, StackOptions, Transmission,
@@ -47,6 +47,26 @@ fn patterns_of_the_planners_sizes_agree() {
     ] {
         let field = PupilField::from_speckle_size(size, speckle_size, 11).expect("a field");
         assert_agree(&gpu, &format!("{size:?}"), &field, [0.0; 2], 0.0);
+    }
+}
+
+/// A device with no more than browsers promise: 16 KiB of memory in a workgroup.
+fn modest() -> Gpu {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapter =
+        pollster::block_on(instance.request_adapter(&<_>::default())).expect("an adapter");
+    let device = pollster::block_on(adapter.request_device(&<_>::default()));
+    let (device, queue) = device.expect("a device");
+    assert_eq!(device.limits().max_compute_workgroup_storage_size, 16 << 10);
+    Gpu::of(device, queue, "modest".to_owned())
+}
+
+#[test]
+fn patterns_agree_on_a_device_with_no_more_than_browsers_promise() {
+    let gpu = modest();
+    for size in [[2_048, 486], [4_096, 2_048], [64, 24_000]] {
+        let field = PupilField::from_speckle_size(size, 2.4, 11).expect("a field");
+        assert_agree(&gpu, &format!("{size:?}"), &field, [0.1, 0.0], 0.0);
     }
 }
 

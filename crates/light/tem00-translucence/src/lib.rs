@@ -40,4 +40,4 @@ pub use medium::Medium;
 pub use spread::{LineSpread, PathSample};
 pub use tem00_coherence::{LineShape, SpectralLine};
 pub use tem00_numerics::Refusal;
-pub use walk::Walk;
+pub use walk::{MAX_ANGLE, Walk};

@@ -15,7 +15,7 @@ use crate::{
 };
 
 /// The largest angle of incidence or exit, in radians: 85°.
-pub(crate) const MAX_ANGLE: f64 = 85.0 * PI / 180.0;
+pub const MAX_ANGLE: f64 = 85.0 * PI / 180.0;
 
 /// Simulation of a laser line on a half space, seen by one camera or more.
 ///

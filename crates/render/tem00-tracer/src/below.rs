@@ -2,7 +2,7 @@ use glam::{DVec2, DVec3};
 use tem00_geometry::{Hit, Intersector};
 use tem00_numerics::seed::{Purpose, derived, scattered};
 use tem00_shading::Laser;
-use tem00_translucence::{Medium, Refusal, SpreadLine};
+use tem00_translucence::{MAX_ANGLE, Medium, Refusal, SpreadLine};
 
 use crate::Scene;
 
@@ -136,6 +136,3 @@ fn contrast(medium: &Medium, laser: &Laser, lit: Option<Lit>) -> Result<f64, Ref
     let contrast = spread.contrast(laser.spectral_line(), [-window, window]);
     Ok(contrast.unwrap_or(1.0))
 }
-
-/// The largest angle to the normal: 85°.
-const MAX_ANGLE: f64 = 85.0 * core::f64::consts::PI / 180.0;

@@ -57,7 +57,8 @@ fn modest() -> Gpu {
         pollster::block_on(instance.request_adapter(&<_>::default())).expect("an adapter");
     let device = pollster::block_on(adapter.request_device(&<_>::default()));
     let (device, queue) = device.expect("a device");
-    assert_eq!(device.limits().max_compute_workgroup_storage_size, 16 << 10);
+    let promised = device.limits().max_compute_workgroup_storage_size;
+    assert_eq!(promised, 16 << 10, "bytes of a workgroup");
     Gpu::of(device, queue, "modest".to_owned())
 }
 

@@ -1,7 +1,5 @@
 //! The pruned two-dimensional Fourier transform: rows, then columns, in the memory of workgroups.
 
-use core::fmt::Write;
-
 use tem00_speckle::{Aperture, PupilField, closed_form};
 use wgpu::{BindGroup, Buffer, CommandEncoder, ComputePipeline, Limits};
 
@@ -361,62 +359,67 @@ fn radices(length: usize) -> Result<Vec<usize>, GpuError> {
 }
 
 /// The kernel: the stages of `batch` sequences of `points`, each thread with butterflies of its own.
+///
+/// Every index of a value is a constant, so that values stay in registers.
 fn stages(points: usize, batch: usize) -> String {
-    let radices = radices(points).unwrap_or_default();
     let threads = (points * batch).div_ceil(HELD);
-    let mut text = format!(
+    let mut text = vec![format!(
         "@compute @workgroup_size({threads})
         fn transform(
             @builtin(workgroup_id) group: vec3<u32>,
             @builtin(num_workgroups) groups: vec3<u32>,
             @builtin(local_invocation_index) thread: u32,
         ) {{
-            let first = (group.y * groups.x + group.x) * BATCH;\n"
-    );
+            let first = (group.y * groups.x + group.x) * BATCH;"
+    )];
     let mut done = 1;
-    for (stage, radix) in radices.iter().enumerate() {
-        let is_last = stage + 1 == radices.len();
+    for radix in radices(points).unwrap_or_default() {
+        let (is_first, is_last) = (done == 1, done * radix == points);
         let butterflies = points / radix;
-        let turns = (butterflies * batch).div_ceil(threads);
-        let point = format!("own.y + r * {butterflies}u");
-        let read = match stage {
-            0 => format!("loaded(sequence, {point})"),
-            _ => format!(
-                "tem00_complex_product(memory[cell(own.x, {point})], tem00_twiddle(own.y, r, {done}u, {radix}u))"
-            ),
-        };
-        let to = format!("tem00_stockham(own.y, r, {done}u, {radix}u)");
-        let write = match is_last {
-            true => format!("store(sequence, {to}, v[k][r]);"),
-            false => format!("memory[cell(own.x, {to})] = v[k][r];"),
-        };
-        let each = format!(
-            "for (var k = 0u; k < {turns}u; k += 1u) {{
-                let at = thread + k * {threads}u;
-                let own = work(at, {butterflies}u);
-                let sequence = sequence(first + own.x);
-                if at < {all}u",
-            all = butterflies * batch,
-        );
-        let of_each = format!("for (var r = 0u; r < {radix}u; r += 1u)");
+        let all = butterflies * batch;
+        let turns = 0..all.div_ceil(threads);
+        text.push("{".to_owned());
+        for k in turns.clone() {
+            let values = (0..radix).map(|r| {
+                let point = format!("own{k}.y + {}u", r * butterflies);
+                match is_first {
+                    true => format!("loaded(sequence{k}, {point})"),
+                    false => format!("stored(own{k}, {point}, {r}u, {done}u, {radix}u)"),
+                }
+            });
+            let values = values.collect::<Vec<_>>().join(", ");
+            text.push(format!(
+                "let at{k} = thread + {}u;
+                let own{k} = work(at{k}, {butterflies}u);
+                let sequence{k} = sequence(first + own{k}.x);
+                var v{k}: array<vec2<f32>, {radix}>;
+                if at{k} < {all}u {{ v{k} = tem00_dft{radix}(array<vec2<f32>, {radix}>({values})); }}",
+                k * threads
+            ));
+        }
         // What others read is read before it is overwritten, and written before it is read.
-        let barrier = |is_needed: bool| if is_needed { "workgroupBarrier();" } else { "" };
-        let written = write!(
-            text,
-            "{{
-                var v: array<array<vec2<f32>, {radix}>, {turns}>;
-                {each} {{ {of_each} {{ v[k][r] = {read}; }} v[k] = tem00_dft{radix}(v[k]); }} }}
-                {before}
-                {each} {{ {of_each} {{ {write} }} }} }}
-                {after}
-            }}\n",
-            before = barrier(stage > 0 && !is_last),
-            after = barrier(!is_last),
-        );
-        debug_assert!(written.is_ok(), "text takes whatever is written");
+        if !is_first && !is_last {
+            text.push("workgroupBarrier();".to_owned());
+        }
+        for k in turns {
+            text.push(format!("if at{k} < {all}u {{"));
+            text.extend((0..radix).map(|r| {
+                let to = format!("tem00_stockham(own{k}.y, {r}u, {done}u, {radix}u)");
+                match is_last {
+                    true => format!("store(sequence{k}, {to}, v{k}[{r}]);"),
+                    false => format!("memory[cell(own{k}.x, {to})] = v{k}[{r}];"),
+                }
+            }));
+            text.push("}".to_owned());
+        }
+        if !is_last {
+            text.push("workgroupBarrier();".to_owned());
+        }
+        text.push("}".to_owned());
         done *= radix;
     }
-    text + "}\n"
+    text.push("}".to_owned());
+    text.join("\n")
 }
 
 #[cfg(test)]

@@ -222,15 +222,22 @@ fn tem00_dft8(v: array<vec2<f32>, 8>) -> array<vec2<f32>, 8> {
 }
 
 fn tem00_dft16(v: array<vec2<f32>, 16>) -> array<vec2<f32>, 16> {
-    var even = tem00_dft8(array<vec2<f32>, 8>(v[0], v[2], v[4], v[6], v[8], v[10], v[12], v[14]));
-    var odd = tem00_dft8(array<vec2<f32>, 8>(v[1], v[3], v[5], v[7], v[9], v[11], v[13], v[15]));
-    var out: array<vec2<f32>, 16>;
-    for (var k = 0u; k < 8u; k += 1u) {
-        let side = tem00_complex_product(odd[k], tem00_unit_phasor(0u - (k << 28u)));
-        out[k] = even[k] + side;
-        out[k + 8u] = even[k] - side;
-    }
-    return out;
+    let c = 0.9238795325112867;
+    let s = 0.3826834323650898;
+    let half = 0.7071067811865476;
+    let even = tem00_dft8(array<vec2<f32>, 8>(v[0], v[2], v[4], v[6], v[8], v[10], v[12], v[14]));
+    let odd = tem00_dft8(array<vec2<f32>, 8>(v[1], v[3], v[5], v[7], v[9], v[11], v[13], v[15]));
+    let a = tem00_complex_product(odd[1], vec2<f32>(c, -s));
+    let b = half * (odd[2] + tem00_turned_back_(odd[2]));
+    let d = tem00_complex_product(odd[3], vec2<f32>(s, -c));
+    let e = tem00_turned_back_(odd[4]);
+    let f = tem00_complex_product(odd[5], vec2<f32>(-s, -c));
+    let g = half * (tem00_turned_back_(odd[6]) - odd[6]);
+    let h = tem00_complex_product(odd[7], vec2<f32>(-c, -s));
+    return array<vec2<f32>, 16>(
+        even[0] + odd[0], even[1] + a, even[2] + b, even[3] + d, even[4] + e, even[5] + f, even[6] + g, even[7] + h,
+        even[0] - odd[0], even[1] - a, even[2] - b, even[3] - d, even[4] - e, even[5] - f, even[6] - g, even[7] - h,
+    );
 }
 
 /// Returns the product of two complex numbers.

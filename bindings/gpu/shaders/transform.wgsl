@@ -82,8 +82,3 @@ fn cell(sequence: u32, point: u32) -> u32 {
     let at = sequence * POINTS + point;
     return at ^ ((at >> 4u) & 15u);
 }
-
-/// Returns a value that the stage before has left, times its factor.
-fn stored(own: vec2<u32>, point: u32, r: u32, done: u32, radix: u32) -> vec2<f32> {
-    return tem00_complex_product(memory[cell(own.x, point)], tem00_twiddle(own.y, r, done, radix));
-}

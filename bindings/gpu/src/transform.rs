@@ -21,6 +21,9 @@ const HELD: usize = 16;
 const MAX_THREADS: usize = 256;
 const MIN_POINTS: usize = 512;
 
+/// Sequences of a workgroup that are one butterfly each.
+const SINGLE: usize = 64;
+
 /// Neighbouring sequences that fill the lines of a cache.
 const NEIGHBOURS: usize = 8;
 
@@ -307,8 +310,14 @@ fn passes(
     Ok(passes)
 }
 
-/// The points that a workgroup of a device holds, at least 2048.
+/// The points that a workgroup of a device holds: 2048 at least, except in browsers.
+///
+/// Without a card, a browser takes four seconds to compile the kernels of long sequences, and then runs
+/// them more slowly than those of one butterfly each.
 fn memory(limits: &Limits) -> usize {
+    if cfg!(target_arch = "wasm32") {
+        return HELD;
+    }
     let threads = limits
         .max_compute_invocations_per_workgroup
         .min(limits.max_compute_workgroup_size_x);
@@ -319,14 +328,21 @@ fn memory(limits: &Limits) -> usize {
 /// The sequences of a workgroup: enough for its threads and, where `neighbours` lie side by side, for
 /// the lines of a cache.
 fn batch(points: usize, memory: usize, neighbours: bool) -> usize {
+    if RADICES.contains(&points) {
+        // One butterfly needs no memory of the workgroup.
+        return SINGLE;
+    }
     let wanted = MIN_POINTS.div_ceil(points);
     let wanted = wanted.max(if neighbours { NEIGHBOURS } else { 1 });
     wanted.min(memory / points).max(1)
 }
 
-/// The factors of a length, one or two, of which each fits the memory.
+/// The factors of a length, as few as fit the memory.
 fn split(length: usize, memory: usize) -> Result<Vec<usize>, GpuError> {
-    radices(length)?;
+    let radices = radices(length)?;
+    if memory <= HELD {
+        return Ok(radices);
+    }
     if length <= memory {
         return Ok(vec![length]);
     }
@@ -362,7 +378,10 @@ fn radices(length: usize) -> Result<Vec<usize>, GpuError> {
 ///
 /// Every index of a value is a constant, so that values stay in registers.
 fn stages(points: usize, batch: usize) -> String {
-    let threads = (points * batch).div_ceil(HELD);
+    let threads = match RADICES.contains(&points) {
+        true => batch,
+        false => (points * batch).div_ceil(HELD),
+    };
     let mut text = vec![format!(
         "@compute @workgroup_size({threads})
         fn transform(
@@ -382,9 +401,10 @@ fn stages(points: usize, batch: usize) -> String {
         for k in turns.clone() {
             let values = (0..radix).map(|r| {
                 let point = format!("own{k}.y + {}u", r * butterflies);
-                match is_first {
-                    true => format!("loaded(sequence{k}, {point})"),
-                    false => format!("stored(own{k}, {point}, {r}u, {done}u, {radix}u)"),
+                match (is_first, r) {
+                    (true, _) => format!("loaded(sequence{k}, {point})"),
+                    (_, 0) => format!("memory[cell(own{k}.x, {point})]"),
+                    _ => format!("tem00_complex_product(memory[cell(own{k}.x, {point})], w{r})"),
                 }
             });
             let values = values.collect::<Vec<_>>().join(", ");
@@ -393,8 +413,16 @@ fn stages(points: usize, batch: usize) -> String {
                 let own{k} = work(at{k}, {butterflies}u);
                 let sequence{k} = sequence(first + own{k}.x);
                 var v{k}: array<vec2<f32>, {radix}>;
-                if at{k} < {all}u {{ v{k} = tem00_dft{radix}(array<vec2<f32>, {radix}>({values})); }}",
-                k * threads
+                if at{k} < {all}u {{
+                    {factors}
+                    v{k} = tem00_dft{radix}(array<vec2<f32>, {radix}>({values}));
+                }}",
+                k * threads,
+                factors = if is_first {
+                    String::new()
+                } else {
+                    factors(&format!("own{k}.y"), done, radix)
+                },
             ));
         }
         // What others read is read before it is overwritten, and written before it is read.
@@ -402,9 +430,11 @@ fn stages(points: usize, batch: usize) -> String {
             text.push("workgroupBarrier();".to_owned());
         }
         for k in turns {
-            text.push(format!("if at{k} < {all}u {{"));
+            text.push(format!(
+                "if at{k} < {all}u {{ let to = tem00_stockham(own{k}.y, 0u, {done}u, {radix}u);"
+            ));
             text.extend((0..radix).map(|r| {
-                let to = format!("tem00_stockham(own{k}.y, {r}u, {done}u, {radix}u)");
+                let to = format!("to + {}u", r * done);
                 match is_last {
                     true => format!("store(sequence{k}, {to}, v{k}[{r}]);"),
                     false => format!("memory[cell(own{k}.x, {to})] = v{k}[{r}];"),
@@ -420,6 +450,17 @@ fn stages(points: usize, batch: usize) -> String {
     }
     text.push("}".to_owned());
     text.join("\n")
+}
+
+/// The factors `w1`, `w2` … of the values of a butterfly: powers of the first, each of two that are half as
+/// high.
+fn factors(own: &str, done: usize, radix: usize) -> String {
+    let powers = (2..radix).map(|r| {
+        let [low, high] = [r / 2, r - r / 2];
+        format!("let w{r} = tem00_complex_product(w{low}, w{high});")
+    });
+    let first = format!("let w1 = tem00_twiddle({own}, 1u, {done}u, {radix}u);");
+    [first].into_iter().chain(powers).collect()
 }
 
 #[cfg(test)]

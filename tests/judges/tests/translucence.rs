@@ -552,21 +552,21 @@ fn speckle_of_light_from_below_is_that_of_its_paths() {
             "#
         ))
     };
-    let factors = |frame: &Frame| -> Vec<f64> {
+    // The factor of each pixel that light reaches.
+    let factors = |frame: &Frame| -> Vec<Option<f64>> {
         let [light, speckled] = [&frame.lasers[0].single, &frame.lasers[0].radiance];
         let pairs = light.values().iter().zip(speckled.values());
         pairs
-            .filter(|(light, _)| **light > 0.0)
-            .map(|(light, speckled)| f64::from(speckled / light))
+            .map(|(light, speckled)| (*light > 0.0).then(|| f64::from(speckled / light)))
             .collect()
     };
-    // One pattern serves both spectra: the deviation compares what is left of it.
-    let covariance = |one: &[f64], other: &[f64]| {
-        let mean = |factors: &[f64]| factors.iter().sum::<f64>() / factors.len() as f64;
-        let [first, second] = [mean(one), mean(other)];
+    let covariance = |one: &[Option<f64>], other: &[Option<f64>]| {
         let pairs = one.iter().zip(other);
-        let products: Vec<_> = pairs.map(|(a, b)| (a - first) * (b - second)).collect();
-        mean(&products)
+        let pairs: Vec<_> = pairs.filter_map(|(a, b)| a.zip(*b)).collect();
+        let mean = |value: &dyn Fn(&(f64, f64)) -> f64| {
+            pairs.iter().map(value).sum::<f64>() / pairs.len() as f64
+        };
+        mean(&|(a, b)| a * b) - mean(&|(a, _)| *a) * mean(&|(_, b)| *b)
     };
     let renders = |scene: &Scene, number: u32| {
         let model = renders::speckle(scene, 1);

@@ -4,10 +4,11 @@ use crate::{
     Medium,
     medium::dot,
     photon::{Meets, Photon},
+    reservoir::Reservoir,
 };
 
 /// Light that entered a medium beside the point where a camera sees it leave.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry {
     /// The place of entry along the surface, from where the light leaves, in metres.
     pub offset: [f64; 2],
@@ -23,8 +24,8 @@ const OFTEN: f64 = 2.0;
 /// it by themselves. So they stay rare and never weigh much.
 const CERTAIN: u32 = 8;
 
-/// The distance from the light, in transport lengths, from which paths are followed by chance: as its
-/// inverse.
+/// The distance from the light, in transport lengths, from which paths are followed by chance: as
+/// its inverse.
 const NEAR: f64 = 4.0;
 
 /// The cosine of directions along the surface, which light does not take.
@@ -38,10 +39,10 @@ impl Medium {
     /// `camera` and `source` are the unit directions from the surface to the camera and to a
     /// distant source; their third component is along the normal. `irradiance` returns the
     /// irradiance of the source at an offset along the surface, in W/m², on a plane that faces the
-    /// source. The lit part of the surface begins at a `distance` of some metres; where that is many
-    /// transport lengths, few paths are followed. Returns `None` if no light was found. The mean
-    /// radiance over all seeds is the radiance of the light from below the surface. Facets of a matt
-    /// boundary mask each other.
+    /// source. The lit part of the surface begins at a `distance` of some metres; where that is
+    /// many transport lengths, few paths are followed. Returns `None` if no light was found. The
+    /// mean radiance over all seeds is the radiance of the light from below the surface. Facets of
+    /// a matt boundary mask each other.
     pub fn entry(
         &self,
         [camera, source]: [[f64; 3]; 2],
@@ -66,10 +67,7 @@ impl Medium {
         let irradiance_below = lit * source[2] / (incident[2] * followed);
         let first = photon.uniform();
         photon.enter(back, irradiance_below * seen / (n * n), first);
-        let mut found = Found {
-            entry: Entry::default(),
-            uniform: photon.uniform(),
-        };
+        let mut drawn = Reservoir::new(photon.uniform());
         let mut collisions = 0;
         while survives(&mut photon, collisions) {
             let [x, y, depth] = photon.place;
@@ -80,7 +78,7 @@ impl Medium {
                 let offset = [x - flight * incident[0], y - flight * incident[1]];
                 let phase = self.phase(-dot(photon.direction, incident));
                 let seen = photon.weight * phase * attenuation / chance;
-                found.add(offset, seen * irradiance(offset));
+                drawn.add(offset, seen * irradiance(offset));
             }
             photon.scatter();
             if photon.advance() != Meets::Collision {
@@ -88,13 +86,16 @@ impl Medium {
             }
             collisions += 1;
         }
-        (found.entry.radiance > 0.0).then_some(found.entry)
+        (drawn.weight > 0.0).then_some(Entry {
+            offset: drawn.item,
+            radiance: drawn.weight,
+        })
     }
 }
 
 impl Medium {
-    /// Returns the mean of the facets that light meets which arrives with a cosine to the normal, over
-    /// the light: 1/G₁ of the masking of Gaussian slopes (Smith 1967).
+    /// Returns the light that meets facets over the light that meets the plane, for its cosine to the
+    /// normal, without masking: 1/G₁ of Gaussian slopes (Smith 1967).
     fn facets_met(&self, cosine: f64) -> f64 {
         let tangent = (1.0 - cosine * cosine).max(0.0).sqrt() / cosine;
         let steepness = SQRT_2 * self.slope() * tangent;
@@ -106,7 +107,8 @@ impl Medium {
     }
 }
 
-/// Returns whether a collision leaves a photon, which then weighs as much as all that it stands for.
+/// Returns whether a collision leaves a photon, which then weighs as much as all that it stands
+/// for.
 fn survives(photon: &mut Photon<'_>, collisions: u32) -> bool {
     if collisions >= CERTAIN && collisions.is_power_of_two() {
         photon.weight /= FRAC_1_SQRT_2;
@@ -115,29 +117,6 @@ fn survives(photon: &mut Photon<'_>, collisions: u32) -> bool {
         }
     }
     photon.survives()
-}
-
-/// Places of entry, of which one is drawn in proportion to their light.
-struct Found {
-    entry: Entry,
-    uniform: f64,
-}
-
-impl Found {
-    fn add(&mut self, offset: [f64; 2], light: f64) {
-        if light <= 0.0 {
-            return;
-        }
-        self.entry.radiance += light;
-        // One number serves all choices: the remainder is uniform again.
-        let chance = light / self.entry.radiance;
-        if self.uniform < chance {
-            self.uniform /= chance;
-            self.entry.offset = offset;
-        } else {
-            self.uniform = (self.uniform - chance) / (1.0 - chance);
-        }
-    }
 }
 
 #[cfg(test)]

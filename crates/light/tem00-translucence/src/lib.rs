@@ -29,6 +29,7 @@ mod line;
 mod material;
 mod medium;
 mod photon;
+mod reservoir;
 mod spread;
 mod walk;
 

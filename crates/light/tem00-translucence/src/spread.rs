@@ -4,6 +4,7 @@ use tem00_coherence::{DelayedLight, PathPairs, SpectralLine};
 
 use crate::{
     Medium, Walk, bins,
+    reservoir::Reservoir,
     walk::{BLOCKS, Block},
 };
 
@@ -130,8 +131,7 @@ pub(crate) struct Tally {
     /// The light in [bins](bins), or none.
     bins: Vec<f64>,
     /// The path of the photon that is drawn so far, with the light of all of its paths.
-    drawn: PathSample,
-    uniform: f64,
+    drawn: Reservoir<PathSample>,
 }
 
 impl Tally {
@@ -157,7 +157,7 @@ impl Tally {
 
     /// Begins a photon, with a uniform number that chooses one of its paths.
     pub(crate) fn begin(&mut self, uniform: f64) {
-        (self.drawn, self.uniform) = (PathSample::default(), uniform);
+        self.drawn = Reservoir::new(uniform);
     }
 
     pub(crate) fn add(&mut self, path: PathSample) {
@@ -166,24 +166,15 @@ impl Tally {
         if let Some(bin) = self.bins.get_mut(bins::index(path.place, path.length)) {
             *bin += path.weight;
         }
-        let weight = self.drawn.weight + path.weight;
-        if weight <= 0.0 {
-            return;
-        }
-        // One number serves all choices of a photon: the remainder is uniform again.
-        let chance = path.weight / weight;
-        if self.uniform < chance {
-            self.uniform /= chance;
-            self.drawn = path;
-        } else {
-            self.uniform = (self.uniform - chance) / (1.0 - chance);
-        }
-        self.drawn.weight = weight;
+        self.drawn.add(path, path.weight);
     }
 
     pub(crate) fn end(&mut self) {
         if self.drawn.weight > 0.0 {
-            self.samples.push(self.drawn);
+            self.samples.push(PathSample {
+                weight: self.drawn.weight,
+                ..self.drawn.item
+            });
         }
     }
 }

@@ -91,8 +91,7 @@ impl<'a> Vertex<'a> {
                 .map_or(0.0, |event| event.e_perp)
         };
         let wi = self.towards(laser.wave_direction_at(self.hit.position))?;
-        let position = self.hit.position;
-        let distance = laser.distance_to(position) - laser.narrow_radius_at(position);
+        let distance = laser.distance_beside(self.hit.position);
         let directions = [self.back, wi];
         let (offset, radiance) = self
             .material

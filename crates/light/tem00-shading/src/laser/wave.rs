@@ -215,12 +215,16 @@ impl Laser {
         }
     }
 
-    /// Returns the distance of `point` from the axis of a spot or the plane of a line, in metres.
-    pub fn distance_to(&self, point: DVec3) -> f64 {
-        let [x, y, _] = self.local(point);
+    /// Returns how far `point` lies beside the beam, in metres: beyond the larger radius of a spot,
+    /// or the half-thickness of a line; negative within.
+    pub fn distance_beside(&self, point: DVec3) -> f64 {
+        let [x, y, z] = self.local(point);
         match &self.source {
-            Source::Spot { .. } => x.hypot(y),
-            Source::Line { .. } => y.abs(),
+            Source::Spot { beam, .. } => {
+                let [first, second] = beam.radii_at(z);
+                x.hypot(y) - first.max(second)
+            }
+            Source::Line { .. } => y.abs() - self.narrow_radius_at(point),
         }
     }
 

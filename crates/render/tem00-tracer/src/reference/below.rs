@@ -28,7 +28,7 @@ impl Reference<'_> {
             let place = |offset: DVec3| position + point.axes.to_world(offset);
             let irradiance = |offset| laser.next_event(place(offset)).map_or(0.0, |e| e.e_perp);
             let seed = random.number().to_bits();
-            let distance = laser.distance_to(position) - laser.narrow_radius_at(position);
+            let distance = laser.distance_beside(position);
             let directions = [point.back, wi];
             let entry = point.material.entry(directions, distance, seed, irradiance);
             let Some((offset, radiance)) = entry else {

@@ -44,14 +44,14 @@ impl Surface {
     ///
     /// # Errors
     ///
-    /// Returns an error if more than a twentieth of the surface curves with a smaller radius than ten
-    /// transport lengths.
+    /// Returns an error if more than a twentieth of the surface curves with a smaller radius than
+    /// ten transport lengths.
     pub fn check_curvature(&self) -> Result<(), TracerError> {
+        let Some(medium) = self.material.below() else {
+            return Ok(());
+        };
         let radius = self.shape.radius_of_curvature();
-        let min = self
-            .material
-            .below()
-            .map_or(0.0, |medium| MIN_CURVATURE * medium.transport_length());
+        let min = MIN_CURVATURE * medium.transport_length();
         match radius >= min {
             true => Ok(()),
             false => Err(TracerError::Curvature { radius, min }),
@@ -186,20 +186,20 @@ impl Scene {
     /// Returns an error if a translucent surface [curves](Surface::check_curvature) strongly, or
     /// unless paths from the camera connect to the beams of lasers.
     pub fn check_bodies(&self, options: &RenderOptions) -> Result<(), TracerError> {
-        let mut bodies = self.surfaces.iter();
-        let bodies = bodies
-            .by_ref()
-            .filter(|body| body.material.below().is_some());
-        for body in bodies {
-            body.check_curvature()?;
-            if options.method == Method::Light {
-                let needs = "the method \"path\"";
-                return Err(TracerError::Translucent { needs });
-            }
-            if options.samples_beams() {
-                let needs = "laser_events \"beam\"";
-                return Err(TracerError::Translucent { needs });
-            }
+        self.surfaces
+            .iter()
+            .try_for_each(Surface::check_curvature)?;
+        let mut surfaces = self.surfaces.iter();
+        if !surfaces.any(|surface| surface.material.below().is_some()) {
+            return Ok(());
+        }
+        if options.method == Method::Light {
+            let needs = "the method \"path\"";
+            return Err(TracerError::Translucent { needs });
+        }
+        if options.samples_beams() {
+            let needs = "laser_events \"beam\"";
+            return Err(TracerError::Translucent { needs });
         }
         Ok(())
     }

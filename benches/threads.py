@@ -85,7 +85,7 @@ def main():
                     same = filecmp.cmp(pathlib.Path(one) / output, out / output, shallow=False)
                     assert same, f"{name}: {output} differs with {threads} threads"
                 ratio = alone / took
-                line = f"{name}, {threads} threads: {took:.2f} s"
+                line = f"{name}, threads {threads}: {took:.2f} s"
                 if threads > first:
                     more = threads / first
                     serial = max(0.0, (more / ratio - 1.0) / (more - 1.0))

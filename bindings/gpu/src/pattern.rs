@@ -78,8 +78,8 @@ impl GpuPattern {
         })
     }
 
-    /// Generates another pattern in the same buffer and, where the pupil fills the same box, with the
-    /// same memory for the transform. A field of another size gets a buffer of its own.
+    /// Generates another pattern in the same buffer and, where the pupil fills the same box, with
+    /// the same memory for the transform. A field of another size gets a buffer of its own.
     ///
     /// # Errors
     ///

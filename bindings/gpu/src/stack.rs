@@ -107,9 +107,9 @@ impl GpuStack {
         })
     }
 
-    /// Generates other slices in the same buffers, which [`bind_group`](Self::bind_group) keeps, and
-    /// where the pupil fills the same box with the same memory for the transform. A stack of another
-    /// size, and one that was uploaded, gets buffers of its own.
+    /// Generates other slices in the same buffers, which [`bind_group`](Self::bind_group) keeps,
+    /// and where the pupil fills the same box with the same memory for the transform. A stack of
+    /// another size, and one that was uploaded, gets buffers of its own.
     ///
     /// # Errors
     ///

@@ -312,8 +312,8 @@ fn passes(
 
 /// The points that a workgroup of a device holds: 2048 at least, except in browsers.
 ///
-/// Without a card, a browser takes four seconds to compile the kernels of long sequences, and then runs
-/// them more slowly than those of one butterfly each.
+/// Without a card, a browser takes four seconds to compile the kernels of long sequences, and then
+/// runs them more slowly than those of one butterfly each.
 fn memory(limits: &Limits) -> usize {
     if cfg!(target_arch = "wasm32") {
         return HELD;
@@ -325,8 +325,8 @@ fn memory(limits: &Limits) -> usize {
     (limits.max_compute_workgroup_storage_size as usize / 8).min(HELD * threads)
 }
 
-/// The sequences of a workgroup: enough for its threads and, where `neighbours` lie side by side, for
-/// the lines of a cache.
+/// The sequences of a workgroup: enough for its threads and, where `neighbours` lie side by side,
+/// for the lines of a cache.
 fn batch(points: usize, memory: usize, neighbours: bool) -> usize {
     if RADICES.contains(&points) {
         // One butterfly needs no memory of the workgroup.
@@ -374,7 +374,8 @@ fn radices(length: usize) -> Result<Vec<usize>, GpuError> {
     }
 }
 
-/// The kernel: the stages of `batch` sequences of `points`, each thread with butterflies of its own.
+/// The kernel: the stages of `batch` sequences of `points`, each thread with butterflies of its
+/// own.
 ///
 /// Every index of a value is a constant, so that values stay in registers.
 fn stages(points: usize, batch: usize) -> String {
@@ -452,8 +453,8 @@ fn stages(points: usize, batch: usize) -> String {
     text.join("\n")
 }
 
-/// The factors `w1`, `w2` … of the values of a butterfly: powers of the first, each of two that are half as
-/// high.
+/// The factors `w1`, `w2` … of the values of a butterfly: powers of the first, each of two that are
+/// half as high.
 fn factors(own: &str, done: usize, radix: usize) -> String {
     let powers = (2..radix).map(|r| {
         let [low, high] = [r / 2, r - r / 2];

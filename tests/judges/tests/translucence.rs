@@ -523,8 +523,8 @@ fn a_rendered_line_is_that_of_the_half_space() {
     );
 }
 
-/// Light from below a surface, in renders: its contrast is that of the paths, and its pattern is new
-/// once the surface has moved.
+/// Light from below a surface, in renders: its contrast is that of the paths, and its pattern is
+/// new once the surface has moved.
 #[test]
 fn speckle_of_light_from_below_is_that_of_its_paths() {
     let scene = |linewidth: &str| {
@@ -653,9 +653,9 @@ fn h_function(c: f64, mu: f64) -> f64 {
     1.0 / inverse(&h, mu)
 }
 
-/// Without a step of the refractive index the reflectance has a closed form, 1 − √(1 − c) H(µ); with
-/// n = 1.5 and c = 0.9 Giovanelli (Opt. Acta 2, 153, 1955) computed 0.2600, with what the boundary
-/// reflects.
+/// Without a step of the refractive index the reflectance has a closed form, 1 − √(1 − c) H(µ);
+/// with n = 1.5 and c = 0.9 Giovanelli (Opt. Acta 2, 153, 1955) computed 0.2600, with what the
+/// boundary reflects.
 #[test]
 fn a_half_space_reflects_what_theory_says() {
     let albedo = |n: f64, c: f64, incidence: f64| {

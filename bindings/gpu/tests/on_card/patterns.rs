@@ -79,8 +79,8 @@ fn patterns_agree_on_devices_with_little_memory() {
     }
 }
 
-/// Memory that is filled again holds the bits of memory that is new: of another seed, place, pupil and
-/// size, made on the card or by the library.
+/// Memory that is filled again holds the bits of memory that is new: of another seed, place, pupil
+/// and size, made on the card or by the library.
 #[test]
 fn patterns_and_stacks_are_refilled() {
     let gpu = Gpu::new().expect("an adapter");

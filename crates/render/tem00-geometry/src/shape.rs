@@ -48,8 +48,9 @@ impl Shape {
         shape
     }
 
-    /// Returns the radius of curvature in metres below which a twentieth of the area curves; infinite
-    /// for flat faces. A mesh curves by its vertex normals, and has no sharper edges than they say.
+    /// Returns the radius of curvature in metres below which a twentieth of the area curves;
+    /// infinite for flat faces. A mesh curves by its vertex normals, and has no sharper edges than
+    /// they say.
     pub fn radius_of_curvature(&self) -> f64 {
         match self {
             Self::Rectangle(_) => f64::INFINITY,

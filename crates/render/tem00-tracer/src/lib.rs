@@ -19,8 +19,9 @@
 //! Rectangles, spheres, tubes and meshes; diffuse surfaces, metals, plastic, translucent bodies,
 //! mirrors and clear glass; moving objects, lasers and cameras. Each laser is traced at its own
 //! wavelength, and other lights are white. There is no polarisation, no dispersion, and nothing
-//! scatters between surfaces. Laser light that meets mirrors or glass both before and after a rough surface is not
-//! found unless lasers are [sampled](LaserEvents::Sampled). The crate reads no files.
+//! scatters between surfaces. Laser light that meets mirrors or glass both before and after a rough
+//! surface is not found unless lasers are [sampled](LaserEvents::Sampled). The crate reads no
+//! files.
 
 mod below;
 mod environment;

@@ -148,8 +148,8 @@ impl Material {
         }
     }
 
-    /// Draws the place where light from [below](Self::below) the boundary entered it, in local axes,
-    /// and returns its radiance; see [`Medium::entry`].
+    /// Draws the place where light from [below](Self::below) the boundary entered it, in local
+    /// axes, and returns its radiance; see [`Medium::entry`].
     ///
     /// The light comes from a distant source in the direction `wi`, and reaches the surface from a
     /// `distance` on, in metres; `irradiance` is its irradiance at an offset from the point, on a

@@ -138,12 +138,12 @@ impl Material {
         ))))
     }
 
-    /// Creates a body that lets light in, such as plastic, ceramic, marble or skin: light of a laser
-    /// that enters it leaves it beside the place of entry.
+    /// Creates a body that lets light in, such as plastic, ceramic, marble or skin: light of a
+    /// laser that enters it leaves it beside the place of entry.
     ///
-    /// `roughness` is the parameter α of the facets of its boundary, which reflect light as the coat
-    /// of [`plastic`](Self::plastic) does, and refract it on its way in and out with normal slopes of
-    /// the root mean square α/√2 along each axis.
+    /// `roughness` is the parameter α of the facets of its boundary, which reflect light as the
+    /// coat of [`plastic`](Self::plastic) does, and refract it on its way in and out with normal
+    /// slopes of the root mean square α/√2 along each axis.
     ///
     /// # Validity
     ///

@@ -142,7 +142,7 @@ fn of_two_sweeps_each_task_is_done_by_one() {
     let folder = with_grid(&replaced(
         GRID,
         "\"--trials\", \"0\"",
-        "\"--trials\", \"100\"",
+        "\"--trials\", \"20\"",
     ));
     let path = folder.path();
     said(path, "sweep a.toml -o ref", 0);

@@ -10,7 +10,8 @@ pub(crate) mod speckle_size;
 pub(crate) mod uneven_light;
 
 pub use autocovariance::{
-    Boundary, Ring, autocovariance, decorrelated_samples, power_spectrum, radial_average,
+    Boundary, Ring, autocovariance, autocovariance_from_spectrum, decorrelated_samples,
+    power_spectrum, radial_average,
 };
 pub use gamma_fit::GammaFit;
 pub use local_contrast::local_contrast;

@@ -1,6 +1,8 @@
+use core::ops::Range;
+
 use num_complex::Complex;
 use tem00_numerics::{
-    Fft2, Grid,
+    Fft2, Fft2Scratch, Grid,
     cast::{to_f32, to_usize},
 };
 
@@ -66,29 +68,60 @@ pub enum Boundary {
 /// # Ok::<(), tem00_statistics::StatisticsError>(())
 /// ```
 pub fn autocovariance(image: &Grid<f32>, boundary: Boundary) -> Result<Grid<f32>, StatisticsError> {
-    let fluctuation = standardised(image)?;
-    let (width, height) = (image.width(), image.height());
     match boundary {
-        Boundary::Periodic => {
-            let lags = correlate(&fluctuation, width, height)?;
-            let zero = lags[(0, 0)];
-            Ok(lags.map(|&sum| sum / zero))
-        }
+        Boundary::Periodic => autocovariance_from_spectrum(&power_spectrum(image)?),
         Boundary::Finite => {
-            let lags = correlate(&fluctuation, 2 * width, 2 * height)?;
+            let (width, height) = (image.width(), image.height());
+            let mut lags = transformed_back(&power(image, 2 * width, 2 * height)?)?;
             let zero = f64::from(lags[(0, 0)]);
             let count = (width * height) as f64;
-            let normalised = |x: usize, y: usize| {
-                let pairs = (pairs_at(x, width) * pairs_at(y, height)) as f64;
-                if pairs > 0.0 {
-                    to_f32(f64::from(lags[(x, y)]) / zero * (count / pairs))
-                } else {
-                    0.0
+            lags.for_each_row_mut(|y, row| {
+                for (x, lag) in row.iter_mut().enumerate() {
+                    let pairs = (pairs_at(x, width) * pairs_at(y, height)) as f64;
+                    *lag = if pairs > 0.0 {
+                        to_f32(f64::from(*lag) / zero * (count / pairs))
+                    } else {
+                        0.0
+                    };
                 }
-            };
-            Ok(Grid::from_fn(2 * width, 2 * height, normalised))
+            });
+            Ok(lags)
         }
     }
+}
+
+/// Returns the [`autocovariance`] of a periodic image from its [`power_spectrum`], of which it is
+/// the Fourier transform (Wiener and Khinchin).
+///
+/// # Errors
+///
+/// Returns an error if a value is not finite or their sum is not positive.
+///
+/// # Examples
+///
+/// ```
+/// use tem00_numerics::Grid;
+/// use tem00_statistics::{Boundary, autocovariance, estimate};
+///
+/// let image = Grid::from_fn(8, 8, |x, y| (x * y % 5) as f32);
+/// let lags = estimate::autocovariance_from_spectrum(&estimate::power_spectrum(&image)?)?;
+/// assert_eq!(lags, autocovariance(&image, Boundary::Periodic)?);
+/// # Ok::<(), tem00_statistics::StatisticsError>(())
+/// ```
+pub fn autocovariance_from_spectrum(spectrum: &Grid<f32>) -> Result<Grid<f32>, StatisticsError> {
+    check_finite(spectrum.values())?;
+    let mut lags = transformed_back(spectrum)?;
+    let variance = lags[(0, 0)];
+    if !(variance > 0.0 && variance.is_finite()) {
+        let allowed = "positive in the sum of its values";
+        return Err(StatisticsError::refused(
+            "spectrum",
+            f64::from(variance),
+            allowed,
+        ));
+    }
+    lags.for_each_row_mut(|_, row| row.iter_mut().for_each(|lag| *lag /= variance));
+    Ok(lags)
 }
 
 /// Returns the power spectrum of the fluctuations of a periodic image, in pixels² per unit
@@ -119,15 +152,7 @@ pub fn autocovariance(image: &Grid<f32>, boundary: Boundary) -> Result<Grid<f32>
 /// Returns an error if the image holds fewer than two pixels, one is not finite or all are the
 /// same.
 pub fn power_spectrum(image: &Grid<f32>) -> Result<Grid<f32>, StatisticsError> {
-    let fluctuation = standardised(image)?;
-    let transform = Fft2::new(image.width(), image.height())?;
-    let squares: f64 = fluctuation
-        .values()
-        .iter()
-        .map(|value| f64::from(value.re).powi(2))
-        .sum();
-    let scale = to_f32(squares.recip());
-    Ok(transform.forward(&fluctuation, |_, _, amplitude| amplitude.norm_sqr() * scale))
+    power(image, image.width(), image.height())
 }
 
 /// The average of a grid over a ring of lags or frequencies.
@@ -262,26 +287,43 @@ pub fn decorrelated_samples(grid: &Grid<f32>, stride: usize) -> Result<Vec<f64>,
         .collect())
 }
 
-/// Returns the image with mean 0 and variance 1, ready to be transformed.
-fn standardised(image: &Grid<f32>) -> Result<Grid<Complex<f32>>, StatisticsError> {
+/// Returns the squared magnitudes of the Fourier transform of an image's fluctuations, in a periodic
+/// array of zeros of the given size; per pixel, where the variance is 1.
+fn power(image: &Grid<f32>, width: usize, height: usize) -> Result<Grid<f32>, StatisticsError> {
     let scaled = Scaled::new(image.values())?;
     scaled.check_varies()?;
-    Ok(image.map(|&value| Complex::new(to_f32(scaled.standardise(value)), 0.0)))
+    let fluctuations = |columns: Range<usize>, y, values: &mut [Complex<f32>]| {
+        for (value, &pixel) in values.iter_mut().zip(&image.row(y)[columns]) {
+            *value = to_f32(scaled.standardise(pixel)).into();
+        }
+    };
+    // The squares of values of unit variance add up to the divisor of the variance.
+    let scale = to_f32(((image.values().len() - 1) as f64).recip());
+    let transform = Fft2::with_aperture(width, height, image.width(), image.height())?;
+    let mut power = Grid::filled(width, height, 0.0);
+    let squared = |_, _, amplitude: Complex<f32>| amplitude.norm_sqr() * scale;
+    transform.forward_from(
+        fluctuations,
+        &mut power,
+        &mut Fft2Scratch::default(),
+        squared,
+    );
+    Ok(power)
 }
 
-/// Returns the sums Σ a(x) a(x + r) of an image in a periodic array of zeros of the given size.
-fn correlate(
-    image: &Grid<Complex<f32>>,
-    width: usize,
-    height: usize,
-) -> Result<Grid<f32>, StatisticsError> {
-    let there = Fft2::with_aperture(width, height, image.width(), image.height())?;
-    let power = there.forward(image, |_, _, amplitude| {
-        Complex::new(amplitude.norm_sqr(), 0.0)
-    });
-    // The power is even, so that the forward transform is the backward one.
-    let back = Fft2::new(width, height)?;
-    Ok(back.forward(&power, |_, _, sum| sum.re))
+/// Returns the transform of a power spectrum, which is even, so that the forward transform is the
+/// backward one.
+fn transformed_back(power: &Grid<f32>) -> Result<Grid<f32>, StatisticsError> {
+    let transform = Fft2::new(power.width(), power.height())?;
+    let copied = |columns: Range<usize>, y, values: &mut [Complex<f32>]| {
+        for (value, &power) in values.iter_mut().zip(&power.row(y)[columns]) {
+            *value = power.into();
+        }
+    };
+    let mut lags = Grid::filled(power.width(), power.height(), 0.0);
+    let real = |_, _, sum: Complex<f32>| sum.re;
+    transform.forward_from(copied, &mut lags, &mut Fft2Scratch::default(), real);
+    Ok(lags)
 }
 
 /// Returns the number of pairs among `size` pixels at the lag of `index`, in a grid of 2 · `size`

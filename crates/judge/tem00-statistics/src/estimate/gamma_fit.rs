@@ -53,7 +53,7 @@ impl GammaFit {
     /// the mean is not positive.
     pub fn by_moments<T>(samples: &[T]) -> Result<Self, StatisticsError>
     where
-        T: Copy + Into<f64>,
+        T: Copy + Into<f64> + Sync,
     {
         let scaled = checked(samples)?;
         let root = scaled.mean / scaled.standard_deviation;
@@ -87,7 +87,7 @@ impl GammaFit {
     /// all are the same to all digits.
     pub fn by_likelihood<T>(samples: &[T]) -> Result<Self, StatisticsError>
     where
-        T: Copy + Into<f64>,
+        T: Copy + Into<f64> + Sync,
     {
         let scaled = checked(samples)?;
         if let Some(index) = samples.iter().position(|&sample| sample.into() <= 0.0) {
@@ -145,7 +145,7 @@ impl GammaFit {
 /// Returns mean and standard deviation of samples that vary about a positive mean.
 fn checked<T>(samples: &[T]) -> Result<Scaled, StatisticsError>
 where
-    T: Copy + Into<f64>,
+    T: Copy + Into<f64> + Sync,
 {
     let scaled = Scaled::new(samples)?;
     scaled.check_varies()?;

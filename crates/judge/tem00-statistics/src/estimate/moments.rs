@@ -1,7 +1,7 @@
 use core::f64::consts::SQRT_2;
 
 use statrs::function::erf::erf_inv;
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, map_pieces};
 
 use crate::{StatisticsError, space::second_order::pixels_per_contrast_sample};
 
@@ -38,7 +38,7 @@ impl Moments {
     /// Returns an error if there are fewer than two samples or one is not finite.
     pub fn from_samples<T>(samples: &[T]) -> Result<Self, StatisticsError>
     where
-        T: Copy + Into<f64>,
+        T: Copy + Into<f64> + Sync,
     {
         let scaled = Scaled::new(samples)?;
         Ok(Self {
@@ -110,7 +110,7 @@ impl Contrast {
     /// positive.
     pub fn from_samples<T>(samples: &[T]) -> Result<Self, StatisticsError>
     where
-        T: Copy + Into<f64>,
+        T: Copy + Into<f64> + Sync,
     {
         let scaled = Scaled::new(samples)?;
         let (mean, deviation) = (scaled.mean, scaled.standard_deviation);
@@ -128,7 +128,7 @@ impl Contrast {
             value * (0.5 * (delta * delta - 1.0) - delta * value)
         };
         let squares = if deviation > 0.0 {
-            samples.iter().map(|&x| influence(x).powi(2)).sum()
+            sum(samples, |x| influence(x).powi(2))
         } else {
             0.0
         };
@@ -249,7 +249,7 @@ impl Contrast {
 /// # Examples
 ///
 /// ```
-/// use tem00_numerics::Grid;
+/// use tem00_numerics::{Grid, map_pieces};
 /// use tem00_statistics::pearson_correlation;
 ///
 /// let ramp = Grid::from_fn(4, 4, |x, y| (x + y) as f32);
@@ -289,7 +289,7 @@ pub(crate) struct Scaled {
 impl Scaled {
     pub(crate) fn new<T>(samples: &[T]) -> Result<Self, StatisticsError>
     where
-        T: Copy + Into<f64>,
+        T: Copy + Into<f64> + Sync,
     {
         let (low, high) = range(samples)?;
         let unit = power_of_two_near(high.abs().max(low.abs()));
@@ -302,9 +302,8 @@ impl Scaled {
             });
         }
         let count = samples.len() as f64;
-        let values = || samples.iter().map(|&x| x.into() / unit);
-        let mean = values().sum::<f64>() / count;
-        let squares: f64 = values().map(|x| (x - mean) * (x - mean)).sum();
+        let mean = sum(samples, |x| x.into() / unit) / count;
+        let squares = sum(samples, |x| (x.into() / unit - mean).powi(2));
         Ok(Self {
             unit,
             mean,
@@ -342,7 +341,7 @@ fn power_of_two_near(magnitude: f64) -> f64 {
 /// Returns the smallest and the largest of at least two finite samples.
 fn range<T>(samples: &[T]) -> Result<(f64, f64), StatisticsError>
 where
-    T: Copy + Into<f64>,
+    T: Copy + Into<f64> + Sync,
 {
     if samples.len() < 2 {
         return Err(StatisticsError::Samples {
@@ -351,21 +350,33 @@ where
         });
     }
     check_finite(samples)?;
-    let values = samples.iter().map(|&x| x.into());
-    Ok(
-        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-            (low.min(x), high.max(x))
-        }),
-    )
+    let wider = |(low, high): (f64, f64), [l, h]: [f64; 2]| (low.min(l), high.max(h));
+    let none = (f64::INFINITY, f64::NEG_INFINITY);
+    let ranges = map_pieces(samples, |_, piece| {
+        let values = piece.iter().map(|&x| [x.into(); 2]);
+        values.fold(none, wider)
+    });
+    Ok(ranges.into_iter().map(<[f64; 2]>::from).fold(none, wider))
+}
+
+/// Returns the sum of a term of each sample, the same for any number of threads.
+fn sum<T: Copy + Sync>(samples: &[T], term: impl Fn(T) -> f64 + Sync) -> f64 {
+    let sums = map_pieces(samples, |_, piece| {
+        piece.iter().map(|&x| term(x)).sum::<f64>()
+    });
+    sums.into_iter().sum()
 }
 
 /// Returns an error at the first sample that is not finite.
 pub(crate) fn check_finite<T>(samples: &[T]) -> Result<(), StatisticsError>
 where
-    T: Copy + Into<f64>,
+    T: Copy + Into<f64> + Sync,
 {
-    let bad = samples.iter().position(|&x| !x.into().is_finite());
-    match bad {
+    let bad = map_pieces(samples, |start, piece| {
+        let bad = piece.iter().position(|&x| !x.into().is_finite());
+        bad.map(|index| start + index)
+    });
+    match bad.into_iter().flatten().next() {
         Some(index) => Err(StatisticsError::refused_at(
             index,
             "samples",

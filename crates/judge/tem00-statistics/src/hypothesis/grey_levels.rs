@@ -49,7 +49,7 @@ impl GreyLevels {
     /// Values that differ by less than 10⁻⁶ of the greater one are one level. Returns `None` for an
     /// image that is not rounded, has only one value, or is not an image of light: with a value
     /// that is negative or not finite.
-    pub fn from_values<T: Copy + Into<f64>>(values: &[T]) -> Option<Self> {
+    pub fn from_values<T: Copy + Into<f64> + Sync>(values: &[T]) -> Option<Self> {
         let mut levels: Vec<f64> = values.iter().map(|&value| value.into()).collect();
         if !levels
             .iter()

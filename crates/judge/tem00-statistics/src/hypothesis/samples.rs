@@ -69,7 +69,7 @@ pub fn kolmogorov_smirnov<T>(
     cumulative: impl Fn(f64) -> f64,
 ) -> Result<TestOutcome, StatisticsError>
 where
-    T: Copy + Into<f64>,
+    T: Copy + Into<f64> + Sync,
 {
     if samples.is_empty() {
         return Err(StatisticsError::Samples {
@@ -251,7 +251,7 @@ fn merge_sparse_bins(
 /// - Student, *The probable error of a mean*, Biometrika 6, 1908.
 pub fn t_test_mean<T>(samples: &[T], mean: f64) -> Result<TestOutcome, StatisticsError>
 where
-    T: Copy + Into<f64>,
+    T: Copy + Into<f64> + Sync,
 {
     if !mean.is_finite() {
         return Err(StatisticsError::refused("mean", mean, "finite"));

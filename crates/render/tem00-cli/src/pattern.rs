@@ -9,7 +9,7 @@ use std::{
 };
 
 use num_complex::Complex;
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, map_pieces};
 use tem00_report::{
     atomic::write_atomically,
     failure::Failure,
@@ -29,7 +29,7 @@ const MAXIMUM_SIZE: usize = 1 << 14;
 
 /// The memory needed to generate, measure and write one sample of intensity, in bytes; its complex
 /// amplitude needs more.
-const BYTES_PER_SAMPLE: u64 = 36;
+const BYTES_PER_SAMPLE: u64 = 24;
 
 /// The maximum memory of an external field, in bytes: as much as the largest pattern of amplitudes.
 const FIELD_MEMORY: u64 = 8 << 28;
@@ -217,8 +217,8 @@ fn write_scaled_png(
     values: &Grid<f32>,
     description: &str,
 ) -> Result<(), ImageError> {
-    let samples = values.values().iter().copied();
-    let white = samples.fold(f32::MIN_POSITIVE, f32::max);
+    let brightest = |samples: &[f32]| samples.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
+    let white = brightest(&map_pieces(values.values(), |_, piece| brightest(piece)));
     let text = [
         ("Description", description.to_owned()),
         ("Scale", format!("white is the intensity {white}, linear")),

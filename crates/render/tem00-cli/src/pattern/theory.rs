@@ -5,12 +5,13 @@ use core::fmt::Display;
 use tem00_numerics::{
     Grid,
     cast::{to_f32, to_usize},
+    map_pieces,
 };
 use tem00_report::{failure::Failure, interrupt};
 use tem00_speckle::{Phasors, Pupil, PupilField, SpecklePattern};
 use tem00_statistics::{
-    Boundary, Contrast, Moments, SpeckleSize, StatisticsError, autocovariance,
-    estimate::{Axis, decorrelated_samples, power_spectrum},
+    Contrast, Moments, SpeckleSize, StatisticsError,
+    estimate::{Axis, autocovariance_from_spectrum, decorrelated_samples, power_spectrum},
     exponential_cumulative, kolmogorov_smirnov,
     laws::{AIRY_FIRST_ZERO, contrast_of_phasor_sum},
 };
@@ -63,11 +64,14 @@ pub(super) fn compare(field: &PupilField, pattern: &SpecklePattern) -> Result<Co
     found.add(&"mean", mean_row(field, values).map(Some));
     found.add(&"contrast", contrast_row(field, values).map(Some));
     interrupt::check()?;
-    sizes(&mut found, field, values)?;
+    let spectrum = power_spectrum(values);
+    interrupt::check()?;
+    sizes(&mut found, field, spectrum.as_ref())?;
     interrupt::check()?;
     found.add(&"distribution", distribution_rows(field, values));
     interrupt::check()?;
-    found.add(&"spectrum", support_row(field, values).map(Some));
+    let support = spectrum.map(|spectrum| Some(support_row(field, &spectrum)));
+    found.add(&"spectrum", support);
     interrupt::check()?;
     if let Some(samples) = field.samples() {
         found
@@ -143,8 +147,13 @@ fn contrast_squared_spread(field: &PupilField) -> f64 {
 
 /// Adds the speckle size along both axes, compared with the size by the exact autocovariance of the
 /// pupil.
-fn sizes(found: &mut Comparison, field: &PupilField, values: &Grid<f32>) -> Result<(), Failure> {
-    let measured = match autocovariance(values, Boundary::Periodic) {
+fn sizes(
+    found: &mut Comparison,
+    field: &PupilField,
+    spectrum: Result<&Grid<f32>, &StatisticsError>,
+) -> Result<(), Failure> {
+    let lags = spectrum.map_err(Clone::clone);
+    let measured = match lags.and_then(autocovariance_from_spectrum) {
         Ok(measured) => measured,
         Err(error) => {
             found.add::<Option<Row>>(&"speckle size", Err(error));
@@ -219,27 +228,28 @@ fn stride(field: &PupilField) -> usize {
 }
 
 /// Measures the fraction of the power beyond the pupil's cut-off frequency, one period per speckle.
-fn support_row(field: &PupilField, values: &Grid<f32>) -> Result<Row, StatisticsError> {
-    let spectrum = power_spectrum(values)?;
+fn support_row(field: &PupilField, spectrum: &Grid<f32>) -> Row {
     let ([size, _], [diameter, _]) = (field.size(), field.diameter());
     let frequency = |index: usize| index.min(size - index) as f64;
     let beyond = |x: f64, y: f64| match field.pupil() {
         Pupil::Rectangle { .. } => x.max(y) > diameter,
-        _ => x.hypot(y) > diameter,
+        _ => x * x + y * y > diameter * diameter,
     };
-    let (mut outside, mut all) = (0.0, 0.0);
-    for (y, row) in spectrum.rows().enumerate() {
-        for (x, &power) in row.iter().enumerate() {
+    let sums = map_pieces(spectrum.values(), |start, piece| {
+        let (mut outside, mut all) = (0.0, 0.0);
+        for (index, &power) in (start..).zip(piece) {
             all += f64::from(power);
-            if beyond(frequency(x), frequency(y)) {
+            if beyond(frequency(index % size), frequency(index / size)) {
                 outside += f64::from(power);
             }
         }
-    }
+        [outside, all]
+    });
+    let [outside, all] = [0, 1].map(|i| sums.iter().map(|sum| sum[i]).sum::<f64>());
     // Rounding of f32 makes noise of 10⁻¹³ of the power of each frequency.
     let quantity = "power beyond the cut-off frequency";
     let theory = Expectation::at_most(1e-6);
-    Ok(Row::new(quantity, outside / all, theory))
+    Row::new(quantity, outside / all, theory)
 }
 
 #[cfg(test)]
@@ -328,10 +338,11 @@ mod tests {
         let field = PupilField::new(256, 64, 0).expect("valid");
         let other = PupilField::new(256, 96, 0).expect("valid").pattern();
         let mut found = Comparison::default();
-        sizes(&mut found, &field, other.values()).expect("nobody interrupts");
+        let spectrum = power_spectrum(other.values());
+        sizes(&mut found, &field, spectrum.as_ref()).expect("nobody interrupts");
         assert_eq!(found.rows.len(), 2, "{found:?}");
         assert!(found.rows.iter().all(|row| !agrees(row)), "{found:?}");
-        let support = support_row(&field, other.values()).expect("measured");
+        let support = support_row(&field, &spectrum.expect("it varies"));
         assert!(!agrees(&support), "{support:?}");
     }
 

@@ -5,6 +5,7 @@ mod exr_file;
 mod exr_reader;
 mod npy_file;
 mod orientation;
+mod png_data;
 mod png_file;
 mod raw_file;
 mod reading;

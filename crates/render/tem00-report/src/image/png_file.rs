@@ -3,7 +3,7 @@ use std::io::Write;
 use png::{BitDepth, ColorType, Encoder, ScaledFloat, SrgbRenderingIntent};
 use tem00_numerics::Grid;
 
-use super::common::ImageError;
+use super::{common::ImageError, png_data};
 use crate::colour::srgb_encoded;
 
 /// Writes linear sRGB components in [0, 1] as 16-bit sRGB; larger ones become 1.
@@ -14,11 +14,14 @@ pub fn write_rgb_png(
     image: &Grid<[f32; 3]>,
     text: &[(&str, String)],
 ) -> Result<(), ImageError> {
-    let sixteen = |component: &f32| sixteen_bits(srgb_encoded(component.clamp(0.0, 1.0).into()));
-    let data: Vec<u8> = image.values().iter().flatten().flat_map(sixteen).collect();
+    let sixteen = |pixel: [f32; 3]| {
+        pixel.map(|component| sixteen_bits(srgb_encoded(component.clamp(0.0, 1.0).into())))
+    };
+    let data = converted(image, sixteen);
+    let data = data.values().as_flattened().as_flattened();
     let size = [image.width(), image.height()];
     let kind = (ColorType::Rgb, BitDepth::Sixteen);
-    write_png(writer, size, kind, text, &data, |encoder| {
+    write_png(writer, size, kind, text, data, |encoder| {
         encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
     })
 }
@@ -33,11 +36,11 @@ pub fn write_grey_png(
     white: f32,
     text: &[(&str, String)],
 ) -> Result<(), ImageError> {
-    let sixteen = |value: &f32| sixteen_bits((value / white).into());
-    let data: Vec<u8> = image.values().iter().flat_map(sixteen).collect();
+    let data = converted(image, |value| sixteen_bits((value / white).into()));
+    let data = data.values().as_flattened();
     let size = [image.width(), image.height()];
     let kind = (ColorType::Grayscale, BitDepth::Sixteen);
-    write_png(writer, size, kind, text, &data, |encoder| {
+    write_png(writer, size, kind, text, data, |encoder| {
         encoder.set_source_gamma(ScaledFloat::new(1.0));
     })
 }
@@ -61,8 +64,25 @@ pub(crate) fn write_png<'a, W: Write>(
         encoder.add_itxt_chunk((*keyword).to_owned(), content.clone())?;
     }
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(data)?;
+    let pixel = colour.samples() * if depth == BitDepth::Sixteen { 2 } else { 1 };
+    png_data::compress(data, size[0] * pixel, pixel, |piece| {
+        writer.write_chunk(png::chunk::IDAT, piece)
+    })?;
     Ok(writer.finish()?)
+}
+
+/// Returns the stored form of each pixel.
+fn converted<T: Copy + Sync, U: Clone + Default + Send>(
+    image: &Grid<T>,
+    stored: impl Fn(T) -> U + Sync,
+) -> Grid<U> {
+    let mut result = Grid::filled(image.width(), image.height(), U::default());
+    result.for_each_row_mut(|y, row| {
+        for (stored_pixel, &pixel) in row.iter_mut().zip(image.row(y)) {
+            *stored_pixel = stored(pixel);
+        }
+    });
+    result
 }
 
 #[expect(
@@ -151,6 +171,35 @@ mod tests {
             matches!(missing, Err(ImageError::Channel { .. })),
             "{missing:?}"
         );
+    }
+
+    #[test]
+    fn images_of_several_pieces_are_read_back_as_they_were() {
+        // Bytes that cannot be compressed, by the generator of Knuth, and a ramp.
+        let mut state = 1_u64;
+        let mut noise = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            state.to_be_bytes()[0]
+        };
+        for (colour, depth, pixel) in [
+            (ColorType::Grayscale, BitDepth::Eight, 1_usize),
+            (ColorType::Rgba, BitDepth::Eight, 4),
+            (ColorType::Rgb, BitDepth::Sixteen, 6),
+        ] {
+            let [width, height] = [700, 3_000_000 / 700 / pixel];
+            let mut data: Vec<u8> = (0..width * height * pixel).map(|_| noise()).collect();
+            let ramp = (0..width * pixel).map(|x| x.to_le_bytes()[0]);
+            data.extend(ramp);
+            let mut file = Vec::new();
+            let size = [width, height + 1];
+            write_png(&mut file, size, (colour, depth), &[], &data, |_| {}).expect("written");
+            let mut reader = Decoder::new(Cursor::new(&file)).read_info().expect("a PNG");
+            let mut back = vec![0; data.len()];
+            reader.next_frame(&mut back).expect("whole");
+            assert!(back == data, "{colour:?}");
+        }
     }
 
     #[test]

@@ -148,7 +148,5 @@ pub(super) fn write(
     let text = [&[(BIT_DEPTH, frame.bit_depth.to_string())][..], text].concat();
     let size = [frame.values.width(), frame.values.height()];
     let kind = (ColorType::Grayscale, depth);
-    write_png(writer, size, kind, &text, &data, |encoder| {
-        encoder.set_compression(png::Compression::Fast);
-    })
+    write_png(writer, size, kind, &text, &data, |_| {})
 }

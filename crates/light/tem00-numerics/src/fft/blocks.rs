@@ -27,11 +27,21 @@ pub(super) const fn stride(length: usize) -> usize {
 pub(super) fn aligned(values: &mut Vec<Complex<f32>>, length: usize) -> &mut [Complex<f32>] {
     let needed = length + COLUMNS;
     if values.len() < needed {
-        values.resize(needed, Complex::new(0.0, 0.0));
+        *values = zeros(needed);
     }
     // Without this alignment everything works as well, only slower.
     let skipped = values.as_ptr().align_offset(64).min(COLUMNS);
     &mut values[skipped..skipped + length]
+}
+
+/// Zeros; many are written by all threads, since the system clears memory where it is first written.
+fn zeros(length: usize) -> Vec<Complex<f32>> {
+    #[cfg(feature = "parallel")]
+    if length > 1 << 20 {
+        use rayon::prelude::*;
+        return rayon::iter::repeat_n(Complex::default(), length).collect();
+    }
+    vec![Complex::default(); length]
 }
 
 /// Writes columns of an aperture into lines one [`stride`] apart; `fill(columns, y, values)`

@@ -114,11 +114,13 @@ impl SpeckleLaw<'_> {
         let [_, now] = self.lasers;
         let shape = now.wave_shape();
         let mut points = points.into_iter();
+        let mut block = Block::new();
+        let mut changes = Changes::new();
         for shifts in shifts.chunks_mut(BLOCK) {
             let count = shifts.len();
-            let block = self.block(points.by_ref().take(count));
+            self.fill(&mut block, points.by_ref().take(count));
             assert_eq!(block.count, count, "a point for each shift");
-            let mut changes = shared.changes(&block, &shape);
+            shared.changes(&block, &shape, &mut changes);
             add_axial_shifts(count, &mut changes.pupil, &changes.axial);
             for (index, shift) in shifts.iter_mut().enumerate() {
                 *shift = changes.shift(index);
@@ -132,14 +134,14 @@ impl SpeckleLaw<'_> {
     /// in the reference frame and in the current frame, or `None` where the law has no value.
     pub fn shift_under(&self, to_source: [DVec3; 2], point: SeenPoint) -> Option<SpeckleShift> {
         let shared = self.shared(LightPath::Direct);
-        let block = self.block([point].into_iter());
+        let focus_vergence = self.perspective.focus_vergence(self.geometry, point.pixel);
         let changed = self.change.at(&ChangedPoint {
             position: point.position,
             normal: point.normal,
             to_source,
         });
         let mut changes = Changes::new();
-        shared.put(&changed, block.focus_vergence[0], 0, &mut changes);
+        shared.put(&changed, focus_vergence, 0, &mut changes);
         add_axial_shifts(1, &mut changes.pupil, &changes.axial);
         changes.shift(0)
     }
@@ -157,11 +159,17 @@ impl SpeckleLaw<'_> {
         }
     }
 
-    #[inline(always)] // It is filled in place.
-    fn block(&self, points: impl Iterator<Item = SeenPoint>) -> Block {
-        Block::new(points, |pixel| {
-            self.perspective.focus_vergence(self.geometry, pixel)
-        })
+    fn fill(&self, block: &mut Block, points: impl Iterator<Item = SeenPoint>) {
+        block.count = 0;
+        for (i, point) in points.enumerate() {
+            block.count = i + 1;
+            for axis in 0..3 {
+                block.position[axis][i] = point.position[axis];
+                block.normal[axis][i] = point.normal[axis];
+            }
+            let vergence = self.perspective.focus_vergence(self.geometry, point.pixel);
+            block.focus_vergence[i] = vergence;
+        }
     }
 }
 
@@ -197,53 +205,35 @@ struct Changes {
 
 impl Block {
     #[inline(always)] // It is filled in place.
-    fn new(points: impl Iterator<Item = SeenPoint>, focus_vergence: impl Fn(DVec2) -> f64) -> Self {
-        let mut block = Self {
+    const fn new() -> Self {
+        Self {
             count: 0,
             position: [[0.0; BLOCK]; 3],
             normal: [[0.0; BLOCK]; 3],
             focus_vergence: [0.0; BLOCK],
-        };
-        for (i, point) in points.enumerate() {
-            block.count = i + 1;
-            for axis in 0..3 {
-                block.position[axis][i] = point.position[axis];
-                block.normal[axis][i] = point.normal[axis];
-            }
-            block.focus_vergence[i] = focus_vergence(point.pixel);
         }
-        block
     }
 }
 
 impl Shared<'_> {
     /// Computes the changes at the points of a block.
-    #[inline(always)] // They are written in place.
-    fn changes(&self, block: &Block, shape: &WaveShape) -> Changes {
-        let end = block.count.next_multiple_of(LANES).min(BLOCK);
-        let mut changes = Changes::new();
+    fn changes(&self, block: &Block, shape: &WaveShape, changes: &mut Changes) {
         vectorised(
             #[inline(always)]
             || match shape {
                 WaveShape::Spot(wave) => {
-                    self.run(block, end, |local| wave.slopes(local), &mut changes);
+                    self.run(block, |local| wave.slopes(local), changes);
                 }
                 WaveShape::Line(wave) => {
-                    self.run(block, end, |local| wave.slopes(local), &mut changes);
+                    self.run(block, |local| wave.slopes(local), changes);
                 }
             },
         );
-        changes
     }
 
     #[inline(always)]
-    fn run(
-        &self,
-        block: &Block,
-        end: usize,
-        slopes: impl Fn([f64; 3]) -> [f64; 2],
-        changes: &mut Changes,
-    ) {
+    fn run(&self, block: &Block, slopes: impl Fn([f64; 3]) -> [f64; 2], changes: &mut Changes) {
+        let end = block.count.next_multiple_of(LANES).min(BLOCK);
         let ([px, py, pz], [nx, ny, nz]) = (&block.position, &block.normal);
         for i in 0..end {
             let position = DVec3::new(px[i], py[i], pz[i]);
@@ -293,8 +283,9 @@ impl Changes {
     /// The shift of a point, or `None` where it has no value.
     #[inline]
     fn shift(&self, index: usize) -> Option<SpeckleShift> {
-        let [x, y] = self.displacement.map(|along| along[index]);
-        let displacement = DVec2::new(x, -y);
+        // Of references: by value, both arrays would be copied for each point.
+        let at = |[x, y]: &[[f64; BLOCK]; 2]| DVec2::new(x[index], y[index]);
+        let displacement = at(&self.displacement) * DVec2::new(1.0, -1.0);
         let pupil = self.pupil[index];
         displacement.is_finite().then_some(SpeckleShift {
             displacement,
@@ -303,7 +294,7 @@ impl Changes {
             } else {
                 f64::INFINITY
             },
-            across: DVec2::from_array(self.across.map(|along| along[index])),
+            across: at(&self.across),
             axial: self.axial[index],
         })
     }

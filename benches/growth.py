@@ -4,8 +4,8 @@
     python benches/growth.py [--quick] [--plot docs/figures/growth.svg]
 
 One number at a time grows; the scenes are made in a temporary folder. Prints seconds, seconds of
-processor time and the peak memory of each run, and the slopes of the latter two in log-log scale over
-the largest decade: 1 is proportional. `--quick` runs the smaller sizes only, a few seconds.
+processor time and the peak memory of each run, and the slopes of the latter two in log-log scale
+over the largest decade: 1 is proportional. `--quick` runs the smaller sizes only, a few seconds.
 Needs numpy, and matplotlib for the plot.
 """
 

@@ -3,10 +3,10 @@
     cargo build --release
     python benches/threads.py [--threads 1,2,4,8,16] [--runs 3] [--quick]
 
-Prints, for each work and number of threads, the fastest of the runs in seconds, the speed-up over one
-thread, the efficiency (speed-up over threads), and the serial part of the work that would explain it
-(Amdahl). Numbers of threads above the processors of the machine are left out. Every output is compared
-with the output of one thread, byte by byte. `--quick` runs smaller works, once.
+Prints, for each work and number of threads, the fastest of the runs in seconds, the speed-up over
+one thread, the efficiency (speed-up over threads), and the serial part of the work that would
+explain it (Amdahl). Numbers of threads above the processors of the machine are left out. Every
+output is compared with the output of one thread, byte by byte. `--quick` runs smaller works, once.
 """
 
 import argparse
@@ -23,12 +23,18 @@ SCENES, SETUPS = ROOT / "examples/scenes", ROOT / "examples/setups"
 
 
 def works(quick):
-    """Returns the commands by name, with the files of their outputs that must not depend on threads."""
+    """Returns the commands by name, with the output files that must not depend on threads."""
     size, spp, trials = (1024, 1, 20) if quick else (8192, 64, 400)
     part = "step_gauge" if quick else "hexagon_nut"
     all_works = {
-        f"pattern of {size}², EXR": ([RENDER, "pattern", "--size", size, "-o", "{out}/pattern.exr"], ["pattern.exr"]),
-        f"pattern of {size}², PNG": ([RENDER, "pattern", "--size", size, "-o", "{out}/pattern.png"], ["pattern.png"]),
+        f"pattern of {size}², EXR": (
+            [RENDER, "pattern", "--size", size, "-o", "{out}/pattern.exr"],
+            ["pattern.exr"],
+        ),
+        f"pattern of {size}², PNG": (
+            [RENDER, "pattern", "--size", size, "-o", "{out}/pattern.png"],
+            ["pattern.png"],
+        ),
         "render a part": (
             [RENDER, "render", SCENES / "machined_part.toml", "--spp", spp, "-o", "{out}"],
             ["machined_part.exr"],
@@ -64,7 +70,9 @@ def seconds(command, threads, out):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--threads", default="1,2,4,8,16")
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--quick", action="store_true")
@@ -89,7 +97,10 @@ def main():
                 if threads > first:
                     more = threads / first
                     serial = max(0.0, (more / ratio - 1.0) / (more - 1.0))
-                    line += f", {ratio:.2f} times as fast, efficiency {ratio / more:.0%}, serial part {serial:.1%}"
+                    line += (
+                        f", {ratio:.2f} times as fast, efficiency {ratio / more:.0%},"
+                        f" serial part {serial:.1%}"
+                    )
                 print(line, flush=True)
 
 

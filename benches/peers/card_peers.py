@@ -2,10 +2,11 @@
 
     card_peers.py
 
-The peers of `cargo run --release -p tem00-gpu --example times`, which is to run in the same minute on the same
-card. Patterns get their phasors for free, in the corner of an array of zeros on the card, and new memory
-for their result. Look-ups are cubic splines between prefiltered complex slices: two slices are blended and squared. Every time is
-that from the order to its end, the fastest of those of a second, once plans and kernels are made.
+The peers of `cargo run --release -p tem00-gpu --example times`, which is to run in the same minute
+on the same card. Patterns get their phasors for free, in the corner of an array of zeros on the
+card, and new memory for their result. Look-ups are cubic splines between prefiltered complex
+slices: two slices are blended and squared. Every time is that from the order to its end, the
+fastest of those of a second, once plans and kernels are made.
 """
 
 import time
@@ -49,7 +50,10 @@ def main():
     print(cupy.cuda.runtime.getDeviceProperties(0)["name"].decode())
     print(f"CuPy {cupy.__version__}, PyTorch {torch.__version__}")
     square = cupy.ElementwiseKernel(
-        "complex64 a", "float32 squared", "squared = a.real() * a.real() + a.imag() * a.imag()", "square"
+        "complex64 a",
+        "float32 squared",
+        "squared = a.real() * a.real() + a.imag() * a.imag()",
+        "square",
     )
     cupy_wait = cupy.cuda.Stream.null.synchronize
     for size in (1024, 2048, 4096):
@@ -75,7 +79,8 @@ def main():
     blend = cupy.ElementwiseKernel(
         "complex64 a, complex64 b, float32 f",
         "float32 squared",
-        "complex<float> c = (1 - f) * a + f * b; squared = c.real() * c.real() + c.imag() * c.imag()",
+        "complex<float> c = (1 - f) * a + f * b; "
+        "squared = c.real() * c.real() + c.imag() * c.imag()",
         "blend",
     )
 

@@ -8,9 +8,9 @@ get their phasors for free, in the corner of an array of zeros; pyFFTW measures 
 has all of its memory. pyspeckle makes its own, from an array of twice the size in double precision.
 
 A turn is a call that does not count, which brings its threads and memory back into the caches, and
-three that do: the median of these is the turn's time. The medians of the turns are printed, the median
-of the calls that did not count, and the median over the rounds of the ratio to ours of the same round;
-for a stack also the memory that a process takes for it, less the slices.
+three that do: the median of these is the turn's time. The medians of the turns are printed, the
+median of the calls that did not count, and the median over the rounds of the ratio to ours of the
+same round; for a stack also the memory that a process takes for it, less the slices.
 """
 
 import os
@@ -89,7 +89,7 @@ def with_pyfftw(aperture, threads):
 
 
 def contenders(ours, size):
-    """Returns what takes part at a pattern size, by name; the first is what the others are divided by."""
+    """Returns what takes part at a pattern size, by name; the others are divided by the first."""
     aperture = phasors(size)
     two, one = ours
     found = {

@@ -2,9 +2,9 @@
 
     mitsuba_server.py VARIANT[:avx2]
 
-`avx2` compiles for eight lanes in place of AVX-512's sixteen, with which loops over surfaces abort (LLVM 19).
-The tasks are `load scene.xml SAMPLER`, `render SAMPLES SEED`, `write image.raw`, `peak` and `samples`: the
-samples per pixel that were taken, which some samplers round up.
+`avx2` compiles for eight lanes in place of AVX-512's sixteen, with which loops over surfaces abort
+(LLVM 19). The tasks are `load scene.xml SAMPLER`, `render SAMPLES SEED`, `write image.raw`, `peak`
+and `samples`: the samples per pixel that were taken, which some samplers round up.
 """
 
 import ctypes

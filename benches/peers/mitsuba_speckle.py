@@ -3,10 +3,10 @@
     mitsuba_speckle.py [--rounds N] [--variant NAME] [--samples N] [--figure]
 
 The scene is that of figure 11, by default on 512 x 512 pixels and with 256 samples for each: a
-plate, a thin lens, a laser, direct light, in millimetres. Every row renders it in turns with the others, once as a
-warm-up that compiles the kernel (which Dr.Jit keeps on disk) and makes the patterns, and N times that
-count. The table has the medians in seconds, the throughput, and the median and the quartiles of the
-ratios to the first row, turn by turn.
+plate, a thin lens, a laser, direct light, in millimetres. Every row renders it in turns with the
+others, once as a warm-up that compiles the kernel (which Dr.Jit keeps on disk) and makes the
+patterns, and N times that count. The table has the medians in seconds, the throughput, and the
+median and the quartiles of the ratios to the first row, turn by turn.
 """
 
 import argparse

@@ -2,9 +2,9 @@
 
     pixel_samples.py
 
-The mean squared error of the mean over the pixel, of 4000 pixels, for a step of height 1 along the rows
-or columns (as the walls of the box in render_scenes.py have), for one in any direction, and for light that
-grows by 1 over the pixel. `jittered` has one by chance in each cell of 8 x 8,
+The mean squared error of the mean over the pixel, of 4000 pixels, for a step of height 1 along the
+rows or columns (as the walls of the box in render_scenes.py have), for one in any direction, and
+for light that grows by 1 over the pixel. `jittered` has one by chance in each cell of 8 x 8,
 `multi-jittered` one in each of 64 columns and rows as well, and `Sobol` one in each elementary
 rectangle, scrambled by Owen's method. `lattice` is how tem00 places camera samples.
 """

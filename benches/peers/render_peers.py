@@ -1,15 +1,17 @@
 """The same scenes by tem00 and Mitsuba, in turns.
 
-    render_peers.py SERVER [--rounds N] [--only WORD] [--variants A,B] [--samplers A,B] [--sampling A,B]
+    render_peers.py SERVER [--rounds N] [--only WORD] [--variants A,B] [--samplers A,B]
+                    [--sampling A,B]
 
-SERVER is the example `render_server`. Each scene is loaded by a fresh process of every program; then
-they render in turns, one image that does not count and N that do, each with a seed of its own. Mitsuba
-does so with each of the samplers, of which some take more samples than they are asked for. The table has
-medians: seconds to load, seconds to render, samples per second; the squared error of a pixel, which is the
-variance between seeds since all estimates are unbiased: its mean over the image and its median; and ours by
-theirs of time, and of the time that an equal error takes, by the mean and by the median, if errors fell with
-the samples, of images brought to the same mean. `mean` is the mean of our image by theirs. Ours renders with even and
-with adaptive samples. A variant may be `llvm_ad_rgb:avx2`, see mitsuba_server.py.
+SERVER is the example `render_server`. Each scene is loaded by a fresh process of every program;
+then they render in turns, one image that does not count and N that do, each with a seed of its own.
+Mitsuba does so with each of the samplers, of which some take more samples than they are asked for.
+The table has medians: seconds to load, seconds to render, samples per second; the squared error of
+a pixel, which is the variance between seeds since all estimates are unbiased: its mean over the
+image and its median; and ours by theirs of time, and of the time that an equal error takes, by the
+mean and by the median, if errors fell with the samples, of images brought to the same mean. `mean`
+is the mean of our image by theirs. Ours renders with even and with adaptive samples. A variant may
+be `llvm_ad_rgb:avx2`, see mitsuba_server.py.
 """
 
 import argparse
@@ -81,19 +83,22 @@ def report(name, ours, theirs):
         time, errors = program.median(), program.squared_errors()
         rate = pixels * program.samples / time / 1e6
         line = (
-            f"  {program.name:24} load {program.load_seconds:6.3f} s  first {program.first_seconds:6.3f} s"
+            f"  {program.name:24} load {program.load_seconds:6.3f} s"
+            f"  first {program.first_seconds:6.3f} s"
             f"  render {time:6.3f} s  {program.samples} samples  {rate:6.2f} Msamples/s"
-            f"  error {errors.mean():.2e}  median {np.median(errors):.2e}  peak {program.peak:5.0f} MiB"
+            f"  error {errors.mean():.2e}  median {np.median(errors):.2e}"
+            f"  peak {program.peak:5.0f} MiB"
         )
         for our in ours if program in theirs else []:
             ratio = our.median() / time
             mean = our.mean_image().mean() / program.mean_image().mean()
-            # Of images brought to the same mean: a light that stands in for another may be brighter.
+            # Of images brought to the same mean: a light that stands in for another may be
+            # brighter.
             own, scaled = our.squared_errors(), errors * mean**2
             costs = ratio * own.mean() / scaled.mean(), ratio * np.median(own) / np.median(scaled)
             line += (
-                f"\n    {our.name} by it: time {ratio:5.2f} cost {costs[0]:8.5f}, median {costs[1]:8.5f}"
-                f" mean {mean:.4f}"
+                f"\n    {our.name} by it: time {ratio:5.2f} cost {costs[0]:8.5f},"
+                f" median {costs[1]:8.5f} mean {mean:.4f}"
             )
         print(line, flush=True)
 
@@ -101,9 +106,14 @@ def report(name, ours, theirs):
 def compare(row, arguments, folder):
     name, our_file, their_file, lights_only = row
     here = pathlib.Path(__file__).parent
-    ours = [Program(f"tem00 {sampling}", [arguments.server]) for sampling in arguments.sampling.split(",")]
+    ours = [
+        Program(f"tem00 {sampling}", [arguments.server])
+        for sampling in arguments.sampling.split(",")
+    ]
     theirs = [
-        Program(f"{variant} {sampler}", [sys.executable, here / "mitsuba_server.py", variant], sampler)
+        Program(
+            f"{variant} {sampler}", [sys.executable, here / "mitsuba_server.py", variant], sampler
+        )
         for variant in arguments.variants.split(",")
         for sampler in arguments.samplers.split(",")
     ]

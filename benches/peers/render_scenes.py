@@ -1,9 +1,9 @@
 """The scenes that render_peers.py renders, as files for tem00 and for Mitsuba.
 
 The open box is [-1, 1]³ without the wall towards the camera, with a displaced sphere; all of albedo
-0.6. Its light is a square of 0.5 m under the ceiling, or a point. The spot and the line are those of
-scenes/: Mitsuba has neither beam, so a spot light with a soft edge and a projector with a bright row
-of texels stand in for them; what is compared is the cost of finding the light.
+0.6. Its light is a square of 0.5 m under the ceiling, or a point. The spot and the line are those
+of scenes/: Mitsuba has neither beam, so a spot light with a soft edge and a projector with a bright
+row of texels stand in for them; what is compared is the cost of finding the light.
 """
 
 import math
@@ -156,7 +156,7 @@ def mitsuba_box(mesh, light, integrator):
 
 
 def mitsuba_plate(resolution, position, half_size, emitter, integrator):
-    """A plate seen from 300 mm through 25 mm lens with pixels of 3.45 µm, as in examples/scenes/."""
+    """A plate seen from 300 mm by a 25 mm lens with pixels of 3.45 µm, as in examples/scenes/."""
     width, height = resolution
     tangent = 0.5 * width * 3.45e-6 / (0.025 * 0.3 / (0.3 - 0.025))
     text = mitsuba_film(width, height, tangent, position, integrator)
@@ -172,7 +172,10 @@ SPOT = """<emitter type="spot"><transform name="to_world">
 
 
 def line_projector(folder):
-    """A projector of 30° whose middle row of texels is bright: 0.1 mm wide on the plate at half its height, as our line."""
+    """A projector of 30° whose middle row of texels is bright.
+
+    On the plate the row is 0.1 mm wide at half its height, as our line.
+    """
     import mitsuba as mi
 
     mi.set_variant("scalar_rgb")

@@ -1,4 +1,7 @@
-"""Each link inside the book leads to a file, and each anchor to a place. Addresses elsewhere are not asked."""
+"""Each link inside the book leads to a file, and each anchor to a place.
+
+Addresses elsewhere are not asked.
+"""
 
 import sys
 from html.parser import HTMLParser
@@ -22,7 +25,11 @@ class Page(HTMLParser):
 
 book = Path(sys.argv[1]).resolve()
 # Of the reference the front page of each crate; rustdoc has checked its links.
-files = [file for file in book.rglob("*.html") if file.match("api/*/index.html") or book / "api" not in file.parents]
+files = [
+    file
+    for file in book.rglob("*.html")
+    if file.match("api/*/index.html") or book / "api" not in file.parents
+]
 pages = {file: Page(file) for file in files}
 dead = []
 for file, page in pages.items():
@@ -31,7 +38,11 @@ for file, page in pages.items():
         target = (file.parent / unquote(address.path)).resolve() if address.path else file
         if address.scheme or address.netloc:
             continue
-        if not target.is_file() or target in pages and unquote(address.fragment) not in pages[target].names:
+        if (
+            not target.is_file()
+            or target in pages
+            and unquote(address.fragment) not in pages[target].names
+        ):
             dead.append(f"{file.relative_to(book)}: {link}")
 if dead:
     sys.exit("dead links:\n" + "\n".join(dead))

@@ -1,7 +1,7 @@
 """A parameter sweep over pictures of a laser line, as a Dask graph.
 
-    python bindings/integrations/dask/sweep.py                                  # workers on this machine
-    python bindings/integrations/dask/sweep.py --scheduler tcp://host:8786      # those of any cluster
+    python bindings/integrations/dask/sweep.py                              # workers here
+    python bindings/integrations/dask/sweep.py --scheduler tcp://host:8786  # those of any cluster
 
 Every combination of thickness, tilt, f-number and seed is a frame, and every frame a task. Pictures
 come back over the network: workers share no folder with this program. They need the packages

@@ -1,8 +1,9 @@
 """pydcc and dsiUnits judge the digital calibration certificate of a budget.
 
-pydcc reads the certificate back, and every number must be that of the budget's JSON, in the SI unit that dsiUnits finds
-in it. The schema of the Physikalisch-Technische Bundesanstalt is in no package, and its servers cannot be asked
-offline: CHILDREN states, of the elements that certificates have, what version 3.3.0 of the DCC with D-SI 2.2 allows.
+pydcc reads the certificate back, and every number must be that of the budget's JSON, in the SI unit
+that dsiUnits finds in it. The schema of the Physikalisch-Technische Bundesanstalt is in no package,
+and its servers cannot be asked offline: CHILDREN states, of the elements that certificates have,
+what version 3.3.0 of the DCC with D-SI 2.2 allows.
 """
 
 import json
@@ -15,7 +16,8 @@ from xml.etree import ElementTree
 
 from judge import FRAMES, ROOT, Verdict, run
 
-# Signatures are not judged. Their package does not know OpenSSL from 3.0.10 on, and fails on import.
+# Signatures are not judged. Their package does not know OpenSSL from 3.0.10 on, and fails on
+# import.
 sys.modules["certvalidator"] = mock.MagicMock()
 
 from dcc import DCC  # noqa: E402
@@ -25,15 +27,17 @@ Record = dict[str, Any]
 
 NAMESPACES = {"{https://ptb.de/dcc}": "dcc:", "{https://ptb.de/si}": "si:"}
 
-# The children of elements in their order; those with `!` must be there, those with `+` more than once perhaps.
+# The children of elements in their order; those with `!` must be there, those with `+` more than
+# once perhaps.
 CHILDREN = {
     "dcc:digitalCalibrationCertificate": "dcc:administrativeData! dcc:measurementResults!",
-    "dcc:administrativeData": "dcc:dccSoftware! dcc:coreData! dcc:items! dcc:calibrationLaboratory! dcc:respPersons! "
-    "dcc:customer! dcc:statements",
+    "dcc:administrativeData": "dcc:dccSoftware! dcc:coreData! dcc:items! "
+    "dcc:calibrationLaboratory! dcc:respPersons! dcc:customer! dcc:statements",
     "dcc:dccSoftware": "dcc:software!+",
     "dcc:software": "dcc:name! dcc:release! dcc:type",
-    "dcc:coreData": "dcc:countryCodeISO3166_1! dcc:usedLangCodeISO639_1!+ dcc:mandatoryLangCodeISO639_1!+ "
-    "dcc:uniqueIdentifier! dcc:beginPerformanceDate! dcc:endPerformanceDate! dcc:performanceLocation! dcc:issueDate",
+    "dcc:coreData": "dcc:countryCodeISO3166_1! dcc:usedLangCodeISO639_1!+ "
+    "dcc:mandatoryLangCodeISO639_1!+ dcc:uniqueIdentifier! dcc:beginPerformanceDate! "
+    "dcc:endPerformanceDate! dcc:performanceLocation! dcc:issueDate",
     "dcc:items": "dcc:item!+",
     "dcc:item": "dcc:name! dcc:manufacturer dcc:model dcc:identifications!",
     "dcc:identifications": "dcc:identification!+",
@@ -64,8 +68,10 @@ CHILDREN = {
     "si:real": "si:value! si:unit! si:measurementUncertaintyUnivariate",
     "si:measurementUncertaintyUnivariate": "si:standardMU si:expandedMU si:coverageIntervalMU",
     "si:standardMU": "si:valueStandardMU! si:distribution",
-    "si:expandedMU": "si:valueExpandedMU! si:coverageFactor! si:coverageProbability! si:distribution",
-    "si:coverageIntervalMU": "si:valueStandardMU! si:intervalMin! si:intervalMax! si:coverageProbability! si:distribution",
+    "si:expandedMU": "si:valueExpandedMU! si:coverageFactor! si:coverageProbability! "
+    "si:distribution",
+    "si:coverageIntervalMU": "si:valueStandardMU! si:intervalMin! si:intervalMax! "
+    "si:coverageProbability! si:distribution",
 }
 PATTERNS = {
     "dcc:countryCodeISO3166_1": "[A-Z]{2}",
@@ -120,7 +126,7 @@ def check_schema(element: ElementTree.Element) -> int:
 
 
 def certified(name: str, change: tuple[str, str]) -> tuple[DCC, Record, Path]:
-    """Has the program certify the example set-up with a change, and returns certificate and budget."""
+    """Has the program certify the example set-up with a change; returns certificate and budget."""
     folder = FRAMES / name
     folder.mkdir(parents=True, exist_ok=True)
     text = (ROOT / "examples/setups/certified.toml").read_text()
@@ -156,16 +162,27 @@ def check(verdict: Verdict, quoted: str, change: tuple[str, str]) -> None:
     """Compares every number of a certificate with the budget."""
     certificate, ours, path = certified(f"certificate_{quoted}", change)
     if ours["quoted"] != quoted or certificate.version() != "3.3.0":
-        raise SystemExit(f"{ours['quoted']} is quoted, not {quoted}; schema {certificate.version()}")
-    names = certificate.uid(), certificate.calibration_laboratory_name(), f"{certificate.calibration_date():%F}"
+        raise SystemExit(
+            f"{ours['quoted']} is quoted, not {quoted}; schema {certificate.version()}"
+        )
+    names = (
+        certificate.uid(),
+        certificate.calibration_laboratory_name(),
+        f"{certificate.calibration_date():%F}",
+    )
     if names != ("EX-2026-001", "Example laboratory for lengths", "2026-11-23"):
         raise SystemExit(f"other names: {names}")
-    print(f"{quoted}: {check_schema(ElementTree.parse(path).getroot())} elements as the schema has them")
+    print(
+        f"{quoted}: {check_schema(ElementTree.parse(path).getroot())} elements"
+        " as the schema has them"
+    )
     found = by_name(certificate)
     answer = next(row for row in ours["answers"] if row["method"] == quoted)
     pairs = of_height(found.pop("height"), answer) + of_inputs(found, ours["inputs"])
     for row in ours["correlations"]:
-        pairs.append(("correlation", found.pop(" and ".join(row["between"]))["value"], row["coefficient"]))
+        pairs.append(
+            ("correlation", found.pop(" and ".join(row["between"]))["value"], row["coefficient"])
+        )
     if found:
         raise SystemExit(f"beside the budget: {list(found)}")
     for what, theirs, expected in pairs:
@@ -189,11 +206,13 @@ def of_height(height: Record, answer: Record) -> list[tuple[str, str, float]]:
     }
     kind = "expandedMU" if answer["method"] == "first_order" else "coverageIntervalMU"
     numbers = {key: value for key, value in uncertainty[kind].items() if key != "distribution"}
-    return [("height", height["value"], answer["estimate"])] + [(key, numbers[key], expected[key]) for key in numbers]
+    return [("height", height["value"], answer["estimate"])] + [
+        (key, numbers[key], expected[key]) for key in numbers
+    ]
 
 
 def of_inputs(found: Record, inputs: list[Record]) -> list[tuple[str, str, float]]:
-    """Takes the inputs out of what was found; returns their numbers, each beside that of the budget."""
+    """Takes the inputs out of what was found; returns their numbers beside those of the budget."""
     pairs = []
     for row in inputs:
         theirs = found.pop(row["input"])

@@ -1,4 +1,6 @@
-"""A height map and a point cloud of `tem00-inspect triangulate`, read by x3pio, surfalize, pypcd4 and Pillow.
+"""A height map and a point cloud of `tem00-inspect triangulate`, read by other programs.
+
+x3pio, surfalize, pypcd4 and Pillow read them.
 
 - X3P holds the heights of `height.npy` as they are, and verifies its checksums; its points are the
   middles of the cells.

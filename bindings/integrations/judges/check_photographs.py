@@ -1,17 +1,19 @@
 """`tem00 stats` beside NumPy and SciPy, on photographs of speckle that others took.
 
-The photographs are not part of this project. The check runs where the environment variable TEM00_PHOTOGRAPHS names a
-folder that holds them, made from these files:
+The photographs are not part of this project. The check runs where the environment variable
+TEM00_PHOTOGRAPHS names a folder that holds them, made from these files:
 
-- `ground_glass_hene.png`: HeNe light through ground glass. https://github.com/bu-cisl/Deep-Speckle-Correlation, commit
-  bd2f915f, `test_data/number_8.npy`, frame 0 times 65535, 256 × 256 pixels of 16 bits (BSD-3-Clause; Li, Xue, Tian,
-  Optica 5, 1181, 2018).
-- `rat_cortex.png`: a rat's cortex, blurred by the flow of blood. https://github.com/pkeilbach/pylsci, commit d0b021ff,
-  `binder/img/spatial.tif`, the 300 × 300 pixels of 8 bits from (200, 200) on (MIT).
+- `ground_glass_hene.png`: HeNe light through ground glass.
+  https://github.com/bu-cisl/Deep-Speckle-Correlation, commit bd2f915f, `test_data/number_8.npy`,
+  frame 0 times 65535, 256 × 256 pixels of 16 bits (BSD-3-Clause; Li, Xue, Tian, Optica 5, 1181,
+  2018).
+- `rat_cortex.png`: a rat's cortex, blurred by the flow of blood.
+  https://github.com/pkeilbach/pylsci, commit d0b021ff, `binder/img/spatial.tif`, the 300 × 300
+  pixels of 8 bits from (200, 200) on (MIT).
 
-Both are compared as they are and divided by the mean over 41 × 41 pixels: contrast, grain size, and the
-Kolmogorov-Smirnov distance of independent pixels to the exponential law. Nothing of it is fitted: the definitions agree,
-and what is left is the single precision of the program, a few 1e-7.
+Both are compared as they are and divided by the mean over 41 × 41 pixels: contrast, grain size, and
+the Kolmogorov-Smirnov distance of independent pixels to the exponential law. Nothing of it is
+fitted: the definitions agree, and what is left is the single precision of the program, a few 1e-7.
 """
 
 import json
@@ -45,7 +47,10 @@ def airy_lag(value: float) -> float:
 
 
 def grain_sizes(image: Floats) -> tuple[float, float]:
-    """The sizes along x and y: the lag of one half, interpolated on the Airy curve, by that of a grain of one pixel."""
+    """The sizes along x and y.
+
+    Each is the lag of one half, interpolated on the Airy curve, by that of a grain of one pixel.
+    """
     around = image - image.mean()
     counts = signal.fftconvolve(np.ones_like(image), np.ones_like(image))
     covariance = signal.fftconvolve(around, around[::-1, ::-1]) / counts
@@ -61,7 +66,7 @@ def grain_sizes(image: Floats) -> tuple[float, float]:
 
 
 def kolmogorov_smirnov(image: Floats, size: float) -> float:
-    """The distance to the exponential law, of pixels that are the first zero of the Airy curve apart."""
+    """The distance to the exponential law, of pixels apart by the first zero of the Airy curve."""
     stride = math.ceil(1.219669 * size)
     height, width = (side // stride * stride for side in image.shape)
     samples = image[:height:stride, :width:stride].ravel() / image.mean()
@@ -74,7 +79,9 @@ def measured(photograph: Path, *options: str) -> dict[str, float]:
     return {row["quantity"]: row["measured"] for row in found["rows"]}
 
 
-def compare(state: str, found: dict[str, float], numbers: dict[str, float], verdict: Verdict) -> None:
+def compare(
+    state: str, found: dict[str, float], numbers: dict[str, float], verdict: Verdict
+) -> None:
     """Sets the numbers of the program beside these."""
     for quantity, number in numbers.items():
         verdict.within(f"{state}: {quantity} {number:.4f}", found[quantity] / number - 1, ROUNDING)
@@ -87,7 +94,8 @@ def check(photograph: Path, verdict: Verdict) -> None:
     numbers |= {"speckle size x (pixels)": x, "speckle size y (pixels)": y}
     compare(photograph.stem, measured(photograph), numbers, verdict)
 
-    # The mean over those pixels of a window that exist. It takes a fraction of the variance, which the program puts back.
+    # The mean over those pixels of a window that exist. It takes a fraction of the variance, which
+    # the program puts back.
     part = ndimage.uniform_filter(np.ones_like(image), WINDOW, mode="constant")
     flat = image * part / ndimage.uniform_filter(image, WINDOW, mode="constant")
     x, y = grain_sizes(flat)

@@ -1,8 +1,9 @@
 """GTC, the GUM Tree Calculator, judges the law of propagation of uncertainty.
 
-`examples/guide_to_uncertainty` writes the results of two examples of the Guide: the gauge block of H.1 and the
-circuit of H.2, whose inputs are correlated. `tem00-inspect budget` writes those of a set-up whose geometry is uncertain, which
-is stated here a second time. GTC differentiates by automatic differentiation.
+`examples/guide_to_uncertainty` writes the results of two examples of the Guide: the gauge block of
+H.1 and the circuit of H.2, whose inputs are correlated. `tem00-inspect budget` writes those of a
+set-up whose geometry is uncertain, which is stated here a second time. GTC differentiates by
+automatic differentiation.
 """
 
 import csv
@@ -36,7 +37,10 @@ def by_gauge_block() -> dict[str, float]:
 
 def by_circuit() -> dict[str, float]:
     """Returns the resistance of the circuit and its uncertainties, in ohm."""
-    volt, ampere = GTC.ureal(4.999, 0.0032, independent=False), GTC.ureal(19.661e-3, 0.0095e-3, independent=False)
+    volt, ampere = (
+        GTC.ureal(4.999, 0.0032, independent=False),
+        GTC.ureal(19.661e-3, 0.0095e-3, independent=False),
+    )
     phase = GTC.ureal(1.04446, 0.00075, independent=False)
     GTC.set_correlation(-0.36, volt, ampere)
     GTC.set_correlation(0.86, volt, phase)
@@ -62,20 +66,27 @@ def summary(result: GTC.lib.UncertainReal, inputs: list[GTC.lib.UncertainReal]) 
 def check_set_up(verdict: Verdict) -> None:
     """Compares the law of propagation of a budget with that of the line of sight."""
     folder = FRAMES / "certified"
-    run("tem00-inspect", "budget", "examples/setups/certified.toml", "--trials", "0", "--output", str(folder))
+    run(
+        "tem00-inspect", "budget", "examples/setups/certified.toml",
+        "--trials", "0", "--output", str(folder),
+    )
     ours = json.loads((folder / "budget.json").read_text())["measurement"]
     known = {}
     for row in ours["inputs"]:
         freedom = row["degrees_of_freedom"]
         estimate, uncertainty = row["estimate"], row["uncertainty"]
-        known[row["input"]] = GTC.ureal(estimate, uncertainty, freedom or inf, independent=bool(freedom))
+        known[row["input"]] = GTC.ureal(
+            estimate, uncertainty, freedom or inf, independent=bool(freedom)
+        )
     for row in ours["correlations"]:
         first, second = row["between"]
         GTC.set_correlation(row["coefficient"], known[first], known[second])
     height = height_of(known, ours["height"])
     first_order = ours["answers"][0]
     verdict.within("set-up: height (relative)", height.x / first_order["estimate"] - 1, TOLERANCE)
-    verdict.within("set-up: combined (relative)", height.u / first_order["uncertainty"] - 1, TOLERANCE)
+    verdict.within(
+        "set-up: combined (relative)", height.u / first_order["uncertainty"] - 1, TOLERANCE
+    )
     deviation = height.df / ours["degrees_of_freedom"] - 1
     verdict.within("set-up: degrees of freedom (relative)", deviation, TOLERANCE)
     for row in ours["inputs"]:
@@ -98,7 +109,9 @@ def height_of(known: dict[str, GTC.lib.UncertainReal], at: float) -> GTC.lib.Unc
     row = principal.x - image.x * sin(phi) / cos(phi) / pitch.x
     errors = [x for name, x in known.items() if "." not in name and name != "calibration"]
     sight = angle + GTC.atan((principal - row - sum(errors)) * pitch / image)
-    to_plane = (known["laser.offset"] + distance * GTC.sin(angle) * (1 + expansion)) / GTC.sin(sight)
+    to_plane = (
+        known["laser.offset"] + distance * GTC.sin(angle) * (1 + expansion)
+    ) / GTC.sin(sight)
     return distance * GTC.cos(angle) - to_plane * GTC.cos(sight)
 
 
@@ -116,7 +129,11 @@ def main() -> None:
             # Contributions count in parts of the combined uncertainty.
             scale = max(abs(theirs), 1e-3) if "contribution" in row["quantity"] else abs(theirs)
             deviation = 0.0 if same else (ours - theirs) / scale
-            verdict.within(f"{row['example']}: {row['quantity'].replace('_', ' ')} (relative)", deviation, TOLERANCE)
+            verdict.within(
+                f"{row['example']}: {row['quantity'].replace('_', ' ')} (relative)",
+                deviation,
+                TOLERANCE,
+            )
     if any(expected.values()):
         raise SystemExit(f"not written: {expected}")
     verdict.end()

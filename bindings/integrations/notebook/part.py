@@ -1,6 +1,9 @@
-"""The page in a notebook: a part under a laser as a widget whose settings are set, and whose speckle is read, in Python.
+"""The page in a notebook: a part under a laser as a widget.
 
-After `bindings/web/build.sh`, `pip install anywidget jupyterlab` and `jupyter lab bindings/integrations/notebook/part.ipynb` it draws by WebGPU.
+Its settings are set, and its speckle is read, in Python.
+
+After `bindings/web/build.sh`, `pip install anywidget jupyterlab` and
+`jupyter lab bindings/integrations/notebook/part.ipynb` it draws by WebGPU.
 """
 
 import pathlib
@@ -15,14 +18,23 @@ _BUILT = _ROOT / "target" / "web"
 
 
 class Part(anywidget.AnyWidget):
-    """A part under a laser. Settings are those of the page, by name; a wrong one shows in `error` and changes nothing."""
+    """A part under a laser.
+
+    Settings are those of the page, by name; a wrong one shows in `error` and changes nothing.
+    """
 
     _esm = _HERE / "part.js"
     _module = traitlets.Unicode().tag(sync=True)
     _wasm = traitlets.Bytes().tag(sync=True)
-    values = traitlets.Dict(key_trait=traitlets.Unicode(), value_trait=traitlets.Float()).tag(sync=True)
-    measured = traitlets.Dict(help="What is measured in the last picture, beside theory.").tag(sync=True)
-    error = traitlets.Unicode(help="Why the last settings made no picture, or nothing.").tag(sync=True)
+    values = traitlets.Dict(
+        key_trait=traitlets.Unicode(), value_trait=traitlets.Float()
+    ).tag(sync=True)
+    measured = traitlets.Dict(
+        help="What is measured in the last picture, beside theory."
+    ).tag(sync=True)
+    error = traitlets.Unicode(
+        help="Why the last settings made no picture, or nothing."
+    ).tag(sync=True)
 
     def __init__(self, **values: float) -> None:
         """Starts with these settings; the others as the page has them."""

@@ -1,4 +1,4 @@
-"""A plane under a laser spot that slides by 0.1 mm: two frames, and how much of the speckle is left."""
+"""A plane under a laser spot slides by 0.1 mm: two frames, and how much of the speckle is left."""
 
 import numpy as np
 import tem00

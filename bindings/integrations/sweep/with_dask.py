@@ -1,6 +1,7 @@
-"""A sweep as tasks of Dask, on this machine or on a cluster whose workers share the folder.
+r"""A sweep as tasks of Dask, on this machine or on a cluster whose workers share the folder.
 
-    python bindings/integrations/sweep/with_dask.py examples/setups/sweeps/lens_and_line.toml out/sweep [tcp://scheduler:8786]
+    python bindings/integrations/sweep/with_dask.py examples/setups/sweeps/lens_and_line.toml \
+        out/sweep [tcp://scheduler:8786]
 """
 
 import subprocess

@@ -91,7 +91,9 @@ WAVELENGTHS: list[Callable[[float], object]] = [
 @pytest.mark.parametrize("function", WAVELENGTHS, ids=range(len(WAVELENGTHS)))
 # Nanometres, micrometres, a frequency, and what is none at all.
 @pytest.mark.parametrize("bad", [650, 0.65, 4.6e14, 1e-9, 0.0, -650e-9, np.nan, np.inf])
-def test_a_wavelength_is_that_of_light_in_metres(function: Callable[[float], object], bad: float) -> None:
+def test_a_wavelength_is_that_of_light_in_metres(
+    function: Callable[[float], object], bad: float
+) -> None:
     with pytest.raises(tem00.ParameterError, match="from 10 nm to 1 mm, in metres, got") as caught:
         function(bad)
     assert caught.value.parameter == "wavelength"
@@ -122,5 +124,3 @@ def test_arrays_too_large_to_copy_are_a_memory_error() -> None:
     image = as_strided(np.ones((1, 1), np.float32), (1 << 20, 1 << 20), (0, 0))
     with pytest.raises(MemoryError, match="4398046511104 bytes"):
         st.autocovariance(image, "periodic")
-
-

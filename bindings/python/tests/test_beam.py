@@ -28,7 +28,9 @@ def test_radius_and_curvature_follow_from_the_complex_parameter() -> None:
     assert q == pytest.approx(complex(-0.1, z_r), rel=ROUNDING)
     again = beam.LocatedBeam.from_complex_parameter(q, WAVELENGTH, 1.3)
     assert again.radius_at(0.0) == pytest.approx(laser.radius_at(0.1), rel=1e-13)
-    assert laser.encircled_power(laser.radius_at(0.2), 0.2) == pytest.approx(1 - np.exp(-2), rel=1e-14)
+    assert laser.encircled_power(laser.radius_at(0.2), 0.2) == pytest.approx(
+        1 - np.exp(-2), rel=1e-14
+    )
 
 
 def test_constants_of_a_beam_are_those_of_its_waist() -> None:

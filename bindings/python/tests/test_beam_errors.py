@@ -82,7 +82,13 @@ REFUSED: list[tuple[str, Callable[[], object]]] = [
     ("angles", lambda: beam.LineProfile.tabulated([0.1, 0.0], [1, 1])),
     ("powers", lambda: beam.LineProfile.tabulated([0.0, 0.1], [1, -1])),
     ("powers", lambda: beam.LineProfile.tabulated([0.0, 0.1], [1])),
-    ("angles", lambda: beam.LineProfile.tabulated([[0.1, 1], [0, 1]], [0, 1])),  # type: ignore[list-item]
+    (
+        "angles",
+        lambda: beam.LineProfile.tabulated(
+            [[0.1, 1], [0, 1]],  # type: ignore[list-item]
+            [0, 1],
+        ),
+    ),
     ("origin", lambda: place(origin=(0, NAN, 0))),
     ("direction", lambda: place(direction=(0, 0, 0))),
     ("fan_axis", lambda: place(fan_axis=(0, 0, 1))),

@@ -77,7 +77,9 @@ def test_the_frame_is_the_placement() -> None:
         rows = light.to_rows()
         assert rows.dtype == np.float32
         assert (rows.shape[1], rows[1, 3]) == (4, 4)
-        np.testing.assert_allclose(rows[:4, :3], [light.origin, light.ex, light.ey, light.ez], rtol=1e-7)
+        np.testing.assert_allclose(
+            rows[:4, :3], [light.origin, light.ex, light.ey, light.ez], rtol=1e-7
+        )
     assert abs(np.cross(DIRECTION, (1, 0.2, 0.1)) @ line("table").ex) < 1e-15
 
 
@@ -198,5 +200,3 @@ def test_a_box_has_all_of_the_power_or_some_or_none(name: str) -> None:
     whole, some, none = np.asarray(light.power_bound(centres - sides, centres + sides))
     assert none == 0 < some < whole <= POWER == light.power
     np.testing.assert_allclose(whole, POWER, rtol=1e-5)
-
-

@@ -52,7 +52,9 @@ def test_contrast_and_line_noise_are_means_over_pairs_of_wave_numbers(height: fl
         return float(2 * integrate.quad(integrand, 0, 8, epsabs=1e-12, limit=200)[0])
 
     line = SpectralLine(WAVELENGTH, LINEWIDTH)
-    assert cell(height).contrast(line) ** 2 == pytest.approx(mean(lambda s: overlap(s) ** 2), rel=1e-7)
+    assert cell(height).contrast(line) ** 2 == pytest.approx(
+        mean(lambda s: overlap(s) ** 2), rel=1e-7
+    )
     thin = mean(lambda s: 1 - 1.5 * s + 0.5 * s**3)
     assert cell(height).line_noise_ratio(line) ** 2 == pytest.approx(thin, rel=1e-7)
     tall = cell(height).line_noise_ratio(line, tall_rows=True)
@@ -77,7 +79,9 @@ def test_lines_have_the_coherence_of_their_shapes() -> None:
     assert SpectralLine(WAVELENGTH, LINEWIDTH).coherence_length == pytest.approx(
         math.sqrt(2 * math.log(2) / math.pi) * unit
     )
-    assert SpectralLine.lorentzian(WAVELENGTH, LINEWIDTH).coherence_length == pytest.approx(unit / math.pi)
+    assert SpectralLine.lorentzian(WAVELENGTH, LINEWIDTH).coherence_length == pytest.approx(
+        unit / math.pi
+    )
     assert SpectralLine.rectangular(WAVELENGTH, LINEWIDTH).coherence_length == pytest.approx(unit)
     comb = SpectralLine.comb(WAVELENGTH, 1e-9, 3)
     again = WAVELENGTH**2 / 0.5e-9
@@ -125,7 +129,9 @@ def test_multiple_light_counts_with_what_its_paths_share() -> None:
     squared = (1 - f) ** 2 + f * (1 - f) * shared + f**2 * within / 2
     assert contrast == pytest.approx(math.sqrt(squared), rel=1e-12)
     assert mixed_contrast(f) == pytest.approx(1)
-    with pytest.raises(tem00.ParameterError, match=r"^within_multiple must be from 0 to 1, got 1\.5$"):
+    with pytest.raises(
+        tem00.ParameterError, match=r"^within_multiple must be from 0 to 1, got 1\.5$"
+    ):
         mixed_contrast(f, within_multiple=1.5)
 
 
@@ -161,7 +167,9 @@ def test_light_that_is_drawn_has_the_contrast_of_the_law(height: float) -> None:
 
 def test_the_extent_of_a_source_adds_patterns() -> None:
     line = SpectralLine(WAVELENGTH)
-    wide = ResolutionCell([0, 0, 1], [0, 0, 1], [0, 0, 1], 0.025, WAVELENGTH, source_half_angle=0.025)
+    wide = ResolutionCell(
+        [0, 0, 1], [0, 0, 1], [0, 0, 1], 0.025, WAVELENGTH, source_half_angle=0.025
+    )
     # As wide as the lens.
     assert wide.contrast(line) == pytest.approx(0.515, abs=1e-3)
     fractions, heights = wide.patterns(line)

@@ -92,7 +92,9 @@ def test_the_geometry_is_that_of_a_thin_lens() -> None:
     assert math.isclose(CAMERA.pupil_to_image, image_distance, rel_tol=1e-14)
     assert math.isclose(CAMERA.magnification, image_distance / 0.3, rel_tol=1e-14)
     assert math.isclose(CAMERA.speckle_size, WAVELENGTH * image_distance * 8 / 25e-3, rel_tol=1e-14)
-    assert math.isclose(CAMERA.depth_of_focus, 4 * WAVELENGTH * (0.3 * 8 / 25e-3) ** 2, rel_tol=1e-14)
+    assert math.isclose(
+        CAMERA.depth_of_focus, 4 * WAVELENGTH * (0.3 * 8 / 25e-3) ** 2, rel_tol=1e-14
+    )
     depths = np.array([0.2, 0.3, 0.5])
     np.testing.assert_allclose(CAMERA.defocus_at(depths), 1 / depths - 1 / 0.3, rtol=1e-14)
     x, y = CAMERA.pattern_coordinate(([10.0, 20.0], 5.0), (CAMERA.pixel_pitch, 0.0), 4.0)
@@ -236,5 +238,3 @@ def test_a_refusal_names_the_parameter(call: Callable[[], object], parameter: st
     with pytest.raises(tem00.ParameterError) as caught:
         call()
     assert caught.value.parameter == parameter
-
-

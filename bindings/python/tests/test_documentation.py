@@ -43,7 +43,8 @@ def documented() -> Iterator[tuple[str, object]]:
                         yield f"{module.__name__}.{name}.{member}", inner
 
 
-# What numpydoc says of sections, and of parameters where they are listed: names, order, types, the space before a colon.
+# What numpydoc says of sections, and of parameters where they are listed: names, order, types, the
+# space before a colon.
 RULES = {"GL06", "GL07", "PR02", "PR03", "PR05", "PR10"}
 
 
@@ -56,7 +57,11 @@ def test_docstrings_are_those_of_numpydoc(name: str) -> None:
     assert not re.search(r"(?<!`)`(?!`)[^`]+(?<!`)`(?!`)", found["docstring"]), found["docstring"]
 
 
-CLASSES = [value for _, value in documented() if inspect.isclass(value) and not issubclass(value, Exception)]
+CLASSES = [
+    value
+    for _, value in documented()
+    if inspect.isclass(value) and not issubclass(value, Exception)
+]
 
 
 @pytest.mark.parametrize("cls", CLASSES, ids=lambda cls: cls.__name__)

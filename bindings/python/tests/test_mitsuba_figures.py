@@ -1,8 +1,8 @@
 """The paper's figures by Mitsuba against `tem00 render`: the same scene, pixel by pixel.
 
 Needs the program. By default cargo builds and runs it; the environment variable TEM00_PROGRAM names
-one that is there already. The parts of the pictures that are compared by default have 64 samples per
-pixel; TEM00_FIGURE_SAMPLES=256 compares whole pictures with 256.
+one that is there already. The parts of the pictures that are compared by default have 64 samples
+per pixel; TEM00_FIGURE_SAMPLES=256 compares whole pictures with 256.
 """
 
 from __future__ import annotations
@@ -43,7 +43,8 @@ SEED = 11
 class Figure:
     """A figure: our scene, and the part that is compared by default (x, y, width, height).
 
-    Mitsuba takes `more` times our samples: where few of its paths find light, the spread of few says nothing.
+    Mitsuba takes `more` times our samples: where few of its paths find light, the spread of few
+    says nothing.
     """
 
     number: int

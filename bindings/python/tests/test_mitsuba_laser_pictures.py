@@ -249,8 +249,8 @@ def shadow_of_a_blade(unit: str) -> float:
 
 
 def test_a_shadow_is_as_long_as_its_blade_is_high_in_millimetres() -> None:
-    # Mitsuba leaves 8.9e-5 (1 + |p|) mm at the foot; edges of 1/24 mm in 64 samples per pixel, and light
-    # that changes by 0.2 % over the picture, 0.004 mm.
+    # Mitsuba leaves 8.9e-5 (1 + |p|) mm at the foot; edges of 1/24 mm in 64 samples per pixel, and
+    # light that changes by 0.2 % over the picture, 0.004 mm.
     assert shadow_of_a_blade("mm") == pytest.approx(0.5, abs=0.01)
     # In metres it is 0.09 mm: should that end, the documentation may say so.
     assert shadow_of_a_blade("m") == pytest.approx(0.41, abs=0.02)

@@ -144,12 +144,12 @@ def test_the_look_up_is_that_of_the_stack(
     ((pattern,),) = generate(settings(**properties, table=table), [SPECKLE_SIZE], (320, 240), ALIKE)
     error, expected = errors_of(pattern, pupil)
     # The spline with 8 nodes per fringe: 1.2e-4 rms, 9e-4 at worst of so many points, by the same
-    # comparison in NumPy alone. 16-bit coefficients: 1e-4. Coordinates in single precision: 4 * 1200
-    # / 2 * 2**-24 of a node and slopes of 2 pi / 8 of an intensity of 4 per node: 4e-4.
+    # comparison in NumPy alone. 16-bit coefficients: 1e-4. Coordinates in single precision: 4 *
+    # 1200 / 2 * 2**-24 of a node and slopes of 2 pi / 8 of an intensity of 4 per node: 4e-4.
     rms, worst = (2e-4, 1.5e-3)
     if table == "amplitude":
-        # Rounding to 1 / 32767 of 5, weighted: 3e-5, and 2 sqrt(12) * 4e-5 at worst; the coordinates
-        # are finer by the nodes per sample.
+        # Rounding to 1 / 32767 of 5, weighted: 3e-5, and 2 sqrt(12) * 4e-5 at worst; the
+        # coordinates are finer by the nodes per sample.
         rms, worst = (6e-5, 6e-4)
     assert np.sqrt(np.mean(error**2)) < rms
     assert np.abs(error).max() < worst
@@ -157,7 +157,10 @@ def test_the_look_up_is_that_of_the_stack(
 
 
 def errors_of(pattern: Pattern, pupil: float) -> tuple[Array, Array]:
-    """Return the errors of a look-up, and the intensities of the stack, in the image and up to three periods beyond."""
+    """Return the errors of a look-up, and the intensities of the stack.
+
+    Both are in the image and up to three periods beyond.
+    """
     x, y = np.random.default_rng(1).uniform(-900.0, 1200.0, (2, 20_000)).astype(np.float32)
     shift = (0.3, -0.7)
     pattern.move_to(pupil, shift)
@@ -187,12 +190,15 @@ def test_five_megapixels_fit_the_memory_as_amplitudes() -> None:
     scale = pattern.stack.speckle_size / 1.9
     expected = pattern.stack.intensity_at(scale * x.astype(float), -scale * y.astype(float), 0.0)
     error = np.array(pattern.factor(mi.Point2f(x, y)), dtype=np.float64) - expected
-    # Samples up to 2880 have 1e-4 of one, and intensities of 4 rise by 2 pi / 2 of themselves per sample.
+    # Samples up to 2880 have 1e-4 of one, and intensities of 4 rise by 2 pi / 2 of themselves per
+    # sample.
     assert np.sqrt(np.mean(error**2)) < 2e-4
     assert np.abs(error).max() < 1.5e-3
 
 
-@pytest.mark.parametrize("motion", [{}, {"path": "straight", "half_period": 8, "pupil_shift": 0.16}])
+@pytest.mark.parametrize(
+    "motion", [{}, {"path": "straight", "half_period": 8, "pupil_shift": 0.16}]
+)
 def test_pictures_of_amplitudes_are_those_of_intensities(motion: dict[str, Any]) -> None:
     of_amplitudes, of_intensities = (
         picture({**DIRECT, **motion, "table": table}) for table in ("amplitude", "intensity")
@@ -277,7 +283,9 @@ def test_poses_move_and_change_the_pattern_by_the_law_of_motion() -> None:
     there = tem00.Pose.along([pixel, 0.0, 0.0])
     poses = [there, there.inverse()]
     moving = tem00.Speckle(thick, laser, 1, poses=poses, memory=16 << 20)
-    loaded = scene({"type": "speckle", "max_depth": 2, "path": "straight", "half_period": 32}, **wide)
+    loaded = scene(
+        {"type": "speckle", "max_depth": 2, "path": "straight", "half_period": 32}, **wide
+    )
     smooth = picture(plain(), 64, **wide)
     still = render(loaded, 64) / smooth
     moved = []
@@ -294,8 +302,8 @@ def test_poses_move_and_change_the_pattern_by_the_law_of_motion() -> None:
     ):
         measured = np.corrcoef(was.ravel(), now.ravel())[0, 1]
         law = tem00.decorrelation.pupil_overlap_correlation(shift)
-        # Of 600 speckles the correlation coefficient has the standard error (1 - r) / sqrt(600) times
-        # 1.5 for exponential intensities: 0.03 with r = 0.5.
+        # Of 600 speckles the correlation coefficient has the standard error (1 - r) / sqrt(600)
+        # times 1.5 for exponential intensities: 0.03 with r = 0.5.
         assert measured == pytest.approx(law, abs=3.3 * 0.03)
 
 
@@ -379,7 +387,8 @@ def test_lasers_have_the_seeds_of_their_places_in_a_scene(number: int) -> None:
     speckled, smooth = (picture(node, 1024, plate=PLATE, **lasers) for node in (DIRECT, plain()))
     ratio = (speckled / smooth).ravel()
     correlations = [
-        np.corrcoef(ratio, pixel_means(stack_of(other)).ravel())[0, 1] for other in range(len(NAMES))
+        np.corrcoef(ratio, pixel_means(stack_of(other)).ravel())[0, 1]
+        for other in range(len(NAMES))
     ]
     assert correlations.pop(number) > 0.999
     assert max(correlations) < 0.5
@@ -387,7 +396,8 @@ def test_lasers_have_the_seeds_of_their_places_in_a_scene(number: int) -> None:
 
 def test_the_lasers_of_an_xml_scene_stand_in_its_order() -> None:
     numbers = "".join(
-        f'<float name="{name}" value="{LASER[name]}"/>' for name in ("wavelength", "power", "waist_radius")
+        f'<float name="{name}" value="{LASER[name]}"/>'
+        for name in ("wavelength", "power", "waist_radius")
     )
     lasers = [f'<emitter type="laser" id="{name}">{numbers}</emitter>' for name in NAMES]
     light = '<shape type="sphere"><emitter type="area"/></shape>'

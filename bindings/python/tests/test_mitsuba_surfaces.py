@@ -87,8 +87,9 @@ def test_mixtures_have_the_contrast_of_their_law(
     values = factors(pattern, image)
 
     expected = np.sqrt(0.5 * (1.0 + polarisation**2) / patterns)
-    # The variance of n independent values with the kurtosis 3 + 6 C**2 of a gamma law; the correlation area
-    # of the intensity behind a circular pupil is 4 / pi of the speckle size squared.
+    # The variance of n independent values with the kurtosis 3 + 6 C**2 of a gamma law; the
+    # correlation area of the intensity behind a circular pupil is 4 / pi of the speckle size
+    # squared.
     speckles = values.size / SPECKLE_SIZE**2 * np.pi / 4.0
     contrast = values.std() / values.mean()
     error = expected * np.sqrt((2.0 + 6.0 * expected**2) / (4.0 * speckles))

@@ -41,7 +41,9 @@ def test_arrays_of_any_real_type_and_layout_are_read_alike() -> None:
     np.testing.assert_allclose(
         st.exponential_density(packed["x"]), expected.ravel(), rtol=1e-15
     )
-    np.testing.assert_allclose(st.exponential_density(x[::-1, ::2]), expected[::-1, ::2], rtol=1e-15)
+    np.testing.assert_allclose(
+        st.exponential_density(x[::-1, ::2]), expected[::-1, ::2], rtol=1e-15
+    )
     np.testing.assert_allclose(st.exponential_density(x.tolist()), expected, rtol=1e-15)
 
 
@@ -56,7 +58,9 @@ def test_arguments_broadcast_as_in_numpy(first: tuple[int, ...], second: tuple[i
     whole = [np.ascontiguousarray(x) for x in np.broadcast_arrays(a, b)]
     result = law.conditional_density(a, b)
     np.testing.assert_array_equal(result, law.conditional_density(*whole))
-    one_by_one = [law.conditional_density(float(i), float(g)) for i, g in zip(*map(np.ravel, whole))]
+    one_by_one = [
+        law.conditional_density(float(i), float(g)) for i, g in zip(*map(np.ravel, whole))
+    ]
     np.testing.assert_array_equal(np.ravel(result), one_by_one)
 
 

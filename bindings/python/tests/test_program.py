@@ -1,4 +1,4 @@
-"""The programs that the package brings: what `tem00` says, and how it ends, is as without Python."""
+"""The programs of the package: what `tem00` says, and how it ends, is as without Python."""
 
 import os
 import signal
@@ -12,7 +12,10 @@ import tem00
 
 PROGRAM = Path(sysconfig.get_path("scripts")) / "tem00"
 SCENE = Path(__file__).parents[3] / "examples" / "scenes" / "spot.toml"
-LENS = ("--wavelength", "650 nm", "--focal-length", "25 mm", "--f-number", "8", "--distance", "300 mm")
+LENS = (
+    "--wavelength", "650 nm", "--focal-length", "25 mm",
+    "--f-number", "8", "--distance", "300 mm",
+)
 
 
 def run(*arguments: str) -> subprocess.CompletedProcess[str]:
@@ -21,7 +24,9 @@ def run(*arguments: str) -> subprocess.CompletedProcess[str]:
 
 @pytest.mark.parametrize("name", ["tem00", "tem00-inspect"])
 def test_it_has_the_version_of_the_package(name: str) -> None:
-    ended = subprocess.run([PROGRAM.with_name(name), "--version"], capture_output=True, text=True, check=False)
+    ended = subprocess.run(
+        [PROGRAM.with_name(name), "--version"], capture_output=True, text=True, check=False
+    )
     assert (ended.returncode, ended.stdout) == (0, f"{name} {tem00.__version__}\n")
 
 
@@ -49,7 +54,9 @@ def test_bad_input_has_its_exit_code(arguments: tuple[str, ...], code: int, said
 def test_a_closed_pipe_is_no_failure() -> None:
     read, write = os.pipe()
     os.close(read)
-    ended = subprocess.run([PROGRAM, "completions", "bash"], stdout=write, stderr=subprocess.PIPE, check=False)
+    ended = subprocess.run(
+        [PROGRAM, "completions", "bash"], stdout=write, stderr=subprocess.PIPE, check=False
+    )
     os.close(write)
     assert (ended.returncode, ended.stderr) == (0, b"")
 

@@ -1,4 +1,4 @@
-"""One call per hit: against the Rust crate, the law of motion, the lights of `tem00.beam`, and itself."""
+"""One call per hit: against the Rust crate, law of motion, lights of `tem00.beam`, and itself."""
 
 import math
 import pickle
@@ -96,7 +96,9 @@ def test_a_fixed_case_has_the_values_of_the_rust_crate() -> None:
 
 def test_shifts_are_those_of_the_law_between_two_states() -> None:
     # At f/2 one axial decorrelation length is 3 mm; the light diverges, and the focus lies behind.
-    camera = tem00.Camera(position=[-0.05, 0.01, 0.3], f_number=2, focus_distance=0.31, resolution=(16, 12))
+    camera = tem00.Camera(
+        position=[-0.05, 0.01, 0.3], f_number=2, focus_distance=0.31, resolution=(16, 12)
+    )
     laser = tem00.Laser.spot(650e-9, 30e-6, origin=ORIGIN, target=TARGET, focused_at=0.0)
     axes = dc.CameraFrame.look_at(camera.position, TARGET, [0, 1, 0])
     geometry = dc.ImagingGeometry.from_lens(650e-9, 25e-3, 2.0, 0.31, 3.45e-6)
@@ -110,7 +112,13 @@ def test_shifts_are_those_of_the_law_between_two_states() -> None:
     for _ in range(24):
         body, eye, source = pose(2e-3, 5e-3), pose(2e-4, 1e-3), pose(1e-3, 1e-3)
         speckle = tem00.Speckle(
-            camera, laser, 1, poses=[body], camera_poses=[eye], laser_poses=[source], memory=64 << 20
+            camera,
+            laser,
+            1,
+            poses=[body],
+            camera_poses=[eye],
+            laser_poses=[source],
+            memory=64 << 20,
         )
         point, normal = random.uniform(-3e-3, 3e-3, 3), random.normal(size=3) / 4 + UP
         normal /= np.linalg.norm(normal)
@@ -184,7 +192,9 @@ def test_batches_have_the_bits_of_single_calls_and_shapes_broadcast() -> None:
     assert np.shape(frame.shift(points[0, 0], UP).pupil) == ()
     shift = frame.shift(points, UP)
     assert shift.displacement.shape == (*points.shape[:-1], 2)
-    np.testing.assert_array_equal(shift.displacement[44, 63], frame.shift(points[44, 63], UP).displacement)
+    np.testing.assert_array_equal(
+        shift.displacement[44, 63], frame.shift(points[44, 63], UP).displacement
+    )
 
 
 def test_samples_in_focus_see_a_point_where_the_middle_of_the_lens_does() -> None:
@@ -331,7 +341,10 @@ def test_lasers_are_the_lights_of_beam(
         (lambda: tem00.Speckle(CAMERA, LASER, 1, looks=0), "looks"),
         (lambda: tem00.Speckle(CAMERA, LASER, 1, polarisation=1.5), "polarisation"),
         (lambda: tem00.Speckle(CAMERA, LASER, 1, poses=[AWAY] * 9, memory=700_000), "memory"),
-        (lambda: tem00.Speckle(CAMERA, LASER, 1, poses=[SLIDE] * 2, camera_poses=[SLIDE]), "camera_poses"),
+        (
+            lambda: tem00.Speckle(CAMERA, LASER, 1, poses=[SLIDE] * 2, camera_poses=[SLIDE]),
+            "camera_poses",
+        ),
         (lambda: tem00.Speckle(CAMERA, LASER, 1, at_points=([[0, 0]], UP)), "at_points"),
         (lambda: FAR.frame(tem00.Pose.about(TARGET, [0, 1, 0], 0.05)), "surface"),
         (lambda: MOVED.frame(body=-1), "body"),
@@ -358,7 +371,9 @@ def spot(wavelength: float = 650e-9, waist_radius: object = 1e-3, **given: objec
 
 def line(**given: object) -> tem00.Laser:
     arguments = {"wavelength": 650e-9, "thickness": 1e-4, "fan_angle": 0.1, **given}
-    return tem00.Laser.line(**{"origin": ORIGIN, "target": TARGET, **arguments})  # type: ignore[arg-type]
+    return tem00.Laser.line(
+        **{"origin": ORIGIN, "target": TARGET, **arguments}  # type: ignore[arg-type]
+    )
 
 
 def test_given_points_decide_how_far_the_speckle_moves() -> None:

@@ -132,10 +132,10 @@ def test_arguments_of_another_type_are_type_errors(call: Callable[[], object]) -
 
 def test_errors_of_patterns_come_through_their_mean() -> None:
     with pytest.raises(ZeroDivisionError):
-        SpecklePattern.weighted_mean([1.0], (PupilField(1 // side, 16, 0).pattern() for side in [0]))
+        SpecklePattern.weighted_mean(
+            [1.0], (PupilField(1 // side, 16, 0).pattern() for side in [0])
+        )
     patterns = (PupilField(side, 16, 0).pattern() for side in [64, 128])
     with pytest.raises(tem00.ParameterError, match="all of one size, got 128") as caught:
         SpecklePattern.weighted_mean([1.0, 1.0], patterns)
     assert caught.value.parameter == "patterns"
-
-

@@ -202,7 +202,7 @@ def test_correlations_have_the_closed_forms(field: PupilField, stack: SpeckleSta
         assert stack.coordinate_of(gamma) == pytest.approx(u_of_gamma, abs=1e-9)
     assert stack.coordinate_of([2.0, 1.0, 0.0, -1.0]).tolist() == [0.0, 0.0, 4.0, 4.0]
     there = straight.coordinate_at([0.3, -0.3])
-    np.testing.assert_allclose(straight.correlation_at(there), straight_law(np.asarray(0.3)), atol=1e-9)
+    np.testing.assert_allclose(
+        straight.correlation_at(there), straight_law(np.asarray(0.3)), atol=1e-9
+    )
     assert there[0] == -there[1] > 0
-
-

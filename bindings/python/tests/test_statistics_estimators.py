@@ -127,7 +127,12 @@ def test_speckles_have_the_size_they_were_made_with() -> None:
 def test_singularities_are_where_the_phase_turns() -> None:
     wave = field(8, size=96, pupil=24).astype(np.complex64)
     phase = np.angle(wave.astype(complex))
-    corners = [phase, np.roll(phase, -1, 1), np.roll(phase, (-1, -1), (0, 1)), np.roll(phase, -1, 0)]
+    corners = [
+        phase,
+        np.roll(phase, -1, 1),
+        np.roll(phase, (-1, -1), (0, 1)),
+        np.roll(phase, -1, 0),
+    ]
     around = [corners[(i + 1) % 4] - corners[i] for i in range(4)]
     wrapped = sum((step + np.pi) % (2 * np.pi) - np.pi for step in around)
     charges = np.rint(wrapped / (2 * np.pi)).astype(int)

@@ -100,7 +100,10 @@ def test_two_correlated_intensities_have_a_non_central_chi_squared_law(correlati
         (st.contrast_of_exposure(lambda t: 1 - t), math.sqrt(2 / 3)),
         (st.boiling_contrast(0.0), 1.0),
         (st.rectangular_pixel_contrast(1.0, 1.0), st.pixel_contrast(1.0)),
-        (st.ObjectiveSpeckle.rectangle(650e-9, 2.0, 1e-3, 2e-3).autocovariance(0.65e-3, 0.0), 4 / math.pi**2),
+        (
+            st.ObjectiveSpeckle.rectangle(650e-9, 2.0, 1e-3, 2e-3).autocovariance(0.65e-3, 0.0),
+            4 / math.pi**2,
+        ),
         (st.ObjectiveSpeckle.disc(650e-9, 2.0, 1e-3).size[0], 1.3e-3),
     ],
 )
@@ -118,13 +121,21 @@ def test_closed_forms_have_their_values(found: float, expected: float) -> None:
         (lambda: st.translation_contrast(1.0), 0.8461),
         (lambda: st.gaussian_filter_contrast(0.5), 0.5134),
         (lambda: st.speckle_length(1.0), 0.763677),
-        (lambda: st.line_centroid_deviation(2.0, 1.0), math.sqrt(2 * 0.763677 / (8 * math.sqrt(math.pi)))),
-        (lambda: st.imaged_line_centroid_deviation(32.0, 0.0), math.sqrt(32 * 1.08076 / (8 * math.sqrt(math.pi)))),
+        (
+            lambda: st.line_centroid_deviation(2.0, 1.0),
+            math.sqrt(2 * 0.763677 / (8 * math.sqrt(math.pi))),
+        ),
+        (
+            lambda: st.imaged_line_centroid_deviation(32.0, 0.0),
+            math.sqrt(32 * 1.08076 / (8 * math.sqrt(math.pi))),
+        ),
         (lambda: st.gaussian_spot_centroid_deviation(1e4), 1 / (math.pi * math.sqrt(2))),
         (lambda: st.disc_spot_centroid_deviation(1e5), 1 / math.pi),
     ],
 )
-def test_contrasts_and_noise_are_those_of_the_crate(function: Callable[[], float], expected: float) -> None:
+def test_contrasts_and_noise_are_those_of_the_crate(
+    function: Callable[[], float], expected: float
+) -> None:
     assert abs(function() / expected - 1) < 2e-4
 
 

@@ -1,4 +1,7 @@
-"""Results: numbers that carry their standard error, and named tuples, whose arrays share their leading axes."""
+"""Results: numbers that carry their standard error, and named tuples.
+
+The arrays of a tuple share their leading axes.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,8 @@ if TYPE_CHECKING:
 class Estimate(float):
     """A fitted value, a number like any other, that carries its standard error in the same unit.
 
-    Arithmetic gives plain numbers: how the errors of several estimates go together is not known here.
+    Arithmetic gives plain numbers: how the errors of several estimates go together is not known
+    here.
 
     Parameters
     ----------
@@ -85,7 +89,7 @@ class SpeckleMotion(NamedTuple):
     """Motion of the surface towards the camera along the optical axis, in metres."""
 
     correlation: float
-    """Correlation of intensity with the pattern before, looked up at the ``speckle_displacement``."""
+    """Correlation of intensity with the pattern before, looked up at ``speckle_displacement``."""
 
 
 class TestOutcome(NamedTuple):
@@ -112,7 +116,7 @@ class Ring(NamedTuple):
 
 
 class Singularity(NamedTuple):
-    """A phase singularity of a complex field: a point of intensity zero around which the phase turns."""
+    """A phase singularity of a complex field: a zero of intensity around which the phase turns."""
 
     x: int
     """Column of the cell: the singularity lies between this sample and the next."""
@@ -193,7 +197,7 @@ class RayPdf(NamedTuple):
     """
 
     position: Values
-    """Density of the position, whatever the direction, per m² of the aperture plane, shape (...)."""
+    """Density of the position, over all directions, per m² of the aperture plane, shape (...)."""
 
     direction_given_position: Values
     """Density of the direction at this position, per steradian, shape (...)."""
@@ -202,7 +206,10 @@ class RayPdf(NamedTuple):
     """Density of the direction, wherever the ray starts, per steradian, shape (...)."""
 
     position_given_direction: Values
-    """Density of the position among the rays of this direction, per m² of the aperture plane, shape (...)."""
+    """Density of the position among the rays of this direction, shape (...).
+
+    It is per m² of the aperture plane.
+    """
 
 
 class RaySample(NamedTuple):
@@ -212,7 +219,10 @@ class RaySample(NamedTuple):
     """Point of the aperture plane, shape (..., 3)."""
 
     flux: Values
-    """Power the ray stands for, in watts: that of the light, to be divided by the number of rays, shape (...)."""
+    """Power the ray stands for, in watts, shape (...).
+
+    It is that of the light, to be divided by the number of rays.
+    """
 
     direction: FloatArray
     """Unit vector along the ray, shape (..., 3)."""
@@ -261,14 +271,17 @@ class SliceLaw(NamedTuple):
     """Coefficients of the covariance with the next slice, shape (6, 6)."""
 
     turns: FloatArray
-    """Turns of phase per sample along x and y, from the frame of the next slice to that of this one, shape (2,)."""
+    """Turns of phase per sample along x and y, shape (2,).
+
+    They lead from the frame of the next slice to that of this one.
+    """
 
 
 class SpeckleShift(NamedTuple):
     """What has become of the speckle at points since the reference state.
 
-    Where the law has no value, or the camera does not see the point, the speckle is new: ``pupil`` is
-    infinite and all else 0.
+    Where the law has no value, or the camera does not see the point, the speckle is new: ``pupil``
+    is infinite and all else 0.
     """
 
     displacement: FloatArray
@@ -278,10 +291,13 @@ class SpeckleShift(NamedTuple):
     """Displacement of the pupil over the speckle, in its diameters, shape (...)."""
 
     across: FloatArray
-    """The part of it across the line of sight, to the right and up, in pupil diameters, shape (..., 2)."""
+    """The part of it across the line of sight, right and up, in pupil diameters, shape (..., 2)."""
 
     axial: Values
-    """Displacement along the axis, in axial decorrelation lengths, shape (...): positive towards the camera."""
+    """Displacement along the axis, in axial decorrelation lengths, shape (...).
+
+    It is positive towards the camera.
+    """
 
     correlation: Values
     """Correlation of intensity that is left where the speckle has gone, in [0, 1], shape (...)."""

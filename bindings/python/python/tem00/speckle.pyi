@@ -3,7 +3,16 @@ from typing import ClassVar, SupportsIndex, final, overload
 import numpy as np
 from numpy.typing import NDArray
 from tem00._results import SliceLaw as SliceLaw
-from tem00._typing import ComplexArray, Counts, FloatArray, Numbers, Phasors, Purpose, RealArray, Vector
+from tem00._typing import (
+    ComplexArray,
+    Counts,
+    FloatArray,
+    Numbers,
+    Phasors,
+    Purpose,
+    RealArray,
+    Vector,
+)
 
 __all__ = [
     "Pupil",

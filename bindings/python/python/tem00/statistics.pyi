@@ -3,7 +3,16 @@ from typing import ClassVar, Final, SupportsIndex, final, overload
 import numpy as np
 from numpy.typing import NDArray
 from tem00._results import Ring as Ring, Singularity as Singularity, TestOutcome as TestOutcome
-from tem00._typing import Boundary, ComplexArray, Counts, Cumulative, FloatArray, Numbers, RealArray, Vector
+from tem00._typing import (
+    Boundary,
+    ComplexArray,
+    Counts,
+    Cumulative,
+    FloatArray,
+    Numbers,
+    RealArray,
+    Vector,
+)
 
 __all__ = [
     "Ring",

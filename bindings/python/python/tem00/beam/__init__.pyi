@@ -2,7 +2,16 @@ from collections.abc import Sequence
 from typing import ClassVar, final, overload
 import numpy as np
 from numpy.typing import NDArray
-from tem00._typing import Errors, FloatArray, FocusCurve, Numbers, RealArray, Values, Vector, Vectors
+from tem00._typing import (
+    Errors,
+    FloatArray,
+    FocusCurve,
+    Numbers,
+    RealArray,
+    Values,
+    Vector,
+    Vectors,
+)
 from tem00._results import (
     ApertureHit as ApertureHit,
     Bounds as Bounds,

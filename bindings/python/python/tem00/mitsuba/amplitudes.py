@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 _BITS = 16
 _LARGEST = 2 ** (_BITS - 1) - 1
 _BYTES_PER_SAMPLE = 4
-# The shapes 1, p, p**2 and p**3 of `SliceLaw`. Its odd ones, behind asymmetric pupils, add 1e-5 at most.
+# The shapes 1, p, p**2 and p**3 of `SliceLaw`. Its odd ones, behind asymmetric pupils, add 1e-5 at
+# most.
 _SHAPES = 4
 
 
@@ -33,10 +34,10 @@ def amplitude_bytes(stack: SpeckleStack) -> int:
 
 
 class AmplitudeTable:
-    """The intensities of a stack at a slice coordinate, from its amplitudes, evaluated inside kernels.
+    """The intensities of a stack at a slice coordinate, from amplitudes, evaluated inside kernels.
 
-    The formulas are those of `SliceLaw`. Coefficients are kept as pairs of 16-bit numbers: rounding them
-    moves an intensity I by 1e-4 sqrt(I) at most.
+    The formulas are those of `SliceLaw`. Coefficients are kept as pairs of 16-bit numbers: rounding
+    them moves an intensity I by 1e-4 sqrt(I) at most.
 
     Parameters
     ----------

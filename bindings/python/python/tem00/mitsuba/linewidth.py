@@ -1,4 +1,7 @@
-"""Speckle in the light of a laser that is not of one wavelength: what a surface makes of it, and its pattern."""
+"""Speckle in the light of a laser that is not of one wavelength.
+
+What a surface makes of it, and its pattern.
+"""
 
 from __future__ import annotations
 
@@ -26,8 +29,8 @@ if TYPE_CHECKING:
 
 # Rays along each axis of the image that look for the surfaces.
 _RAYS = 24
-# The spread of the wave number over that which displaces the pupil by its diameter, below which a contrast
-# is above 0.999. The same in `tem00 render`.
+# The spread of the wave number over that which displaces the pupil by its diameter, below which a
+# contrast is above 0.999. The same in `tem00 render`.
 _NEGLIGIBLE_TILT = 5e-4
 # Wave numbers: so many, and so many to a pupil diameter and to a radian of the phases by heights.
 _FEWEST_WAVES, _WAVES_PER_DIAMETER, _WAVES_PER_RADIAN = 24, 16, 12
@@ -91,7 +94,8 @@ def find_lights(
 ) -> list[list[LineLight | None]]:
     """Return the light of each laser on the surfaces; None is light of one wavelength.
 
-    A surface has the tilt of the middle of those points of it that the camera sees and the laser lights.
+    A surface has the tilt of the middle of those points of it that the camera sees and the laser
+    lights.
     """
     lights: list[list[LineLight | None]] = [[None] * len(surfaces) for _ in lasers]
     broad = [number for number, laser in enumerate(lasers) if getattr(laser, "line", None)]
@@ -120,8 +124,8 @@ def _light(
     if many - few > _VARIATION:
         mi.Log(
             mi.LogLevel.Warn,
-            f"speckle: the contrast over a linewidth goes from {few:.2f} to {many:.2f} over a surface, and "
-            "is shown as that of its middle: give its parts ids of their own",
+            f"speckle: the contrast over a linewidth goes from {few:.2f} to {many:.2f} over a "
+            "surface, and is shown as that of its middle: give its parts ids of their own",
         )
     cell = cells[len(cells) // 2]
     fractions, heights = cell.patterns(line)

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     Weights = tuple[mi.Float, mi.Float, mi.Float, mi.Float]
 
 # The fewest nodes of the spline per period of the finest fringes. The intensity has fringes down to
-# one speckle size, and the interpolation of its amplitude adds faint ones down to half of that. With
-# 8 nodes per speckle the spline errs by 1.1e-4 (rms) and 9e-4 (worst of 20000) of the mean.
+# one speckle size, and the interpolation of its amplitude adds faint ones down to half of that.
+# With 8 nodes per speckle the spline errs by 1.1e-4 (rms) and 9e-4 (worst of 20000) of the mean.
 _FEWEST_NODES = 7.5
 # Eight in the end: the rest is spectra, while the coefficients are made.
 _BYTES_PER_NODE = 28
@@ -33,9 +33,10 @@ _LARGEST = 2**_BITS - 1
 
 
 class Part(NamedTuple):
-    """A pattern in the speckle of a surface: its fraction of the light, and its place in a stack, in periods.
+    """A pattern in the speckle of a surface: its fraction of the light, and its place in a stack.
 
-    Light that is not of one wavelength has the pupil ``fields`` of its heights, the first that of the stack.
+    The place is in periods. Light that is not of one wavelength has the pupil ``fields`` of its
+    heights, the first that of the stack.
     """
 
     fraction: float
@@ -82,7 +83,8 @@ def pupil_at(stack: SpeckleStack, u: float) -> NDArray[np.float64]:
     count = stack.slice_count
     index, f = floor(u) % count, u - floor(u)
     here = np.array(stack.offset(index))
-    # From the last slice of a straight path, which closes as the pattern does, the step is that before it.
+    # From the last slice of a straight path, which closes as the pattern does, the step is that
+    # before it.
     first = index - 1 if index + 1 == count > 2 else index
     step = np.subtract(stack.offset((first + 1) % count), stack.offset(first))
     pupil: NDArray[np.float64] = here + f * step
@@ -202,7 +204,7 @@ def cell_of(place: mi.Float, period: int) -> Cell:
 
 
 def cubic_weights(f: mi.Float) -> Weights:
-    """Return the weights of a cubic B-spline: of the node before a cell, its own two, and the next."""
+    """Return the weights of a cubic B-spline: of the node before a cell, its two, and the next."""
     g = 1.0 - f
     inner = tuple(2.0 / 3.0 - 0.5 * t * t * (2.0 - t) for t in (f, g))
     return g * g * g / 6.0, inner[0], inner[1], f * f * f / 6.0

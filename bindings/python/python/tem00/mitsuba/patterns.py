@@ -110,9 +110,10 @@ def generate(
     surfaces: list[Surface],
     lights: list[list[LineLight | None]] | None = None,
 ) -> list[list[Pattern]]:
-    """Return the patterns of each laser on the surfaces, by its speckle size in an image of so many pixels.
+    """Return the patterns of each laser on the surfaces, by its speckle size.
 
-    ``lights`` are those of each laser on each surface, by default of one wavelength.
+    The sizes are those in an ``image`` of so many pixels. ``lights`` are those of each laser on
+    each surface, by default of one wavelength.
     """
     lasers = len(speckle_sizes)
     lights = lights or [[None] * len(surfaces)] * lasers
@@ -135,7 +136,10 @@ def generate(
 
 
 def _fields(seed: int, plan: StackPlan, laser: int, motions: int) -> list[PupilField]:
-    """Return the fields of the laser of this number for each motion, the first that of `tem00 render` in a still scene."""
+    """Return the fields of the laser of this number for each motion.
+
+    The first is that of `tem00 render` in a still scene.
+    """
     first = derived_seed(seed, "laser", laser)
     return [plan.field(derived_seed(first, "body", motion)) for motion in range(motions)]
 
@@ -146,9 +150,10 @@ def _parts(
     memory: int,
     lit: list[tuple[Surface, LineLight | None]],
 ) -> list[list[Part]]:
-    """Return the patterns of a laser on each surface, in stacks of their own where ``memory`` bytes hold them.
+    """Return the patterns of a laser on each surface.
 
-    ``fields`` are those of the laser for each motion, ``lit`` the surfaces with their light.
+    They are in stacks of their own where ``memory`` bytes hold them. ``fields`` are those of the
+    laser for each motion, ``lit`` the surfaces with their light.
     """
     surfaces = [surface for surface, _ in lit]
     counts = _counts([(surface, _stacks_of(surface, light)) for surface, light in lit])
@@ -158,11 +163,13 @@ def _parts(
         if needed > memory:
             _refuse_lines(
                 [[light for _, light in lit]],
-                f"needs {sum(counts)} stacks of speckle, {needed / 2**20:.4g} MiB, and `memory` allows "
-                f"{memory / 2**20:.4g} MiB for each laser",
+                f"needs {sum(counts)} stacks of speckle, {needed / 2**20:.4g} MiB, and `memory` "
+                f"allows {memory / 2**20:.4g} MiB for each laser",
             )
             return _places_in(_stack(settings, fields[0], memory), surfaces)
-        independent = [field.independent(count) for field, count in zip(fields, counts, strict=True)]
+        independent = [
+            field.independent(count) for field, count in zip(fields, counts, strict=True)
+        ]
     except ParameterError as error:
         raise _renamed(error) from error
 
@@ -275,7 +282,11 @@ def _table(speckles: list[list[Part]], settings: PatternSettings) -> str:
     asked = list(needs) if settings.table == "auto" else [settings.table]
     if any(part.light for parts in speckles for part in parts):
         if settings.table == "amplitude":
-            raise refused("table", "must be auto or intensity for a `linewidth`, got 'amplitude', which is of one wavelength")
+            raise refused(
+                "table",
+                "must be auto or intensity for a `linewidth`, got 'amplitude', which is of one "
+                "wavelength",
+            )
         asked = ["intensity"]
     for kind in asked:
         if needs[kind] <= settings.memory_bytes:
@@ -294,8 +305,9 @@ def _check_look_ups(speckles: list[list[Part]], surfaces: list[Surface]) -> None
             memory = ceil(_intensity_bytes(speckles) / 2**20)
             raise refused(
                 f"{surface.prefix}patterns",
-                f"must need {_MOST_LOOK_UPS} look-ups of amplitudes at most, got {len(parts)}, two to a pattern where "
-                "`polarisation` is below 1: each is written out in the kernel. A table of intensities looks up their "
+                f"must need {_MOST_LOOK_UPS} look-ups of amplitudes at most, got {len(parts)}, two "
+                "to a pattern where `polarisation` is below 1: each is written out in the kernel. "
+                "A table of intensities looks up their "
                 f'sum: it needs a `memory` of {memory}, and `table` "intensity" or "auto"',
             )
 

@@ -99,7 +99,9 @@ def _located(numbers: Mapping[str, float], suffix: str) -> beam.LocatedBeam:
 
 def _focus(wavelength: float, waist_radius: float, m_squared: float) -> beam.GaussianBeam:
     """Return a beam whose lengths are in the unit of the scene, which need not be metres."""
-    focus: beam.GaussianBeam = beam.GaussianBeam._restored(wavelength, waist_radius, m_squared)  # type: ignore[attr-defined]
+    focus: beam.GaussianBeam = beam.GaussianBeam._restored(  # type: ignore[attr-defined]
+        wavelength, waist_radius, m_squared
+    )
     return focus
 
 

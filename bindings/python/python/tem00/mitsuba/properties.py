@@ -95,18 +95,23 @@ def read(props: mi.Properties) -> Description:
 
 
 def spectral_line(description: Description) -> SpectralLine | None:
-    """Return the spectrum in the unit of the scene; None is light of one wavelength from a point."""
+    """Return the spectrum in the scene's unit; None is light of one wavelength from a point."""
     numbers = description.numbers
     wavelength, linewidth = numbers["wavelength"], numbers.get("linewidth", 0.0)
     spectrum = description.choices["spectrum"]
     half_angle = numbers.get("source_half_angle", 0.0)
     if not 0.0 <= half_angle <= _MOST_HALF_ANGLE:
-        raise refused("source_half_angle", f"must be from 0 to {_MOST_HALF_ANGLE:g} degrees, got {half_angle:g}")
+        raise refused(
+            "source_half_angle",
+            f"must be from 0 to {_MOST_HALF_ANGLE:g} degrees, got {half_angle:g}",
+        )
     try:
         if spectrum == "comb":
             count = numbers.get("lines", 0.0)
             if count != int(count) or not 1 <= count <= _MOST_LINES:
-                raise refused("lines", f"must be a whole number from 1 to {_MOST_LINES}, got {count:g}")
+                raise refused(
+                    "lines", f"must be a whole number from 1 to {_MOST_LINES}, got {count:g}"
+                )
             return SpectralLine.comb(wavelength, linewidth, int(count))
         if linewidth == half_angle == 0.0:
             return None

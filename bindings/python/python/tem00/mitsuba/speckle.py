@@ -45,8 +45,8 @@ def speckle_class(variant: str) -> type[mi.Integrator]:
 
         Light of an emitter with the private flag bit 0x1000 is multiplied by the intensity of the
         laser's pattern at the place of the camera sample on the film, however many surfaces it
-        meets: of one wavelength, it interferes all the same. The pattern is that of the surface that is seen. All other
-        light is left alone.
+        meets: of one wavelength, it interferes all the same. The pattern is that of the surface
+        that is seen. All other light is left alone.
         """
 
         def __init__(self, props: mi.Properties) -> None:
@@ -77,14 +77,19 @@ def speckle_class(variant: str) -> type[mi.Integrator]:
         def move(
             self, frame: SpeckleFrame, point: Vector, normal: Vector, shape: str = ""
         ) -> None:
-            """Show the speckle of a frame, of a ``tem00.Speckle``, as it has moved at a point of a surface.
+            """Show the speckle of a ``tem00.Speckle`` frame as it has moved at a surface point.
 
-            The point, in metres, and the unit normal are those of now. ``shape`` is the id of a shape with
-            a motion of its own; without it all others move.
+            The point, in metres, and the unit normal are those of now. ``shape`` is the id of a
+            shape with a motion of its own; without it all others move.
             """
             prefix = f"{shape}:" if shape else ""
-            if not any(own.prefix == prefix and bool(own.motion) == bool(shape) for own in self.surfaces):
-                raise refused(shape, f"has no motion of its own: give the integrator a property {prefix}{MOTION[0]}")
+            if not any(
+                own.prefix == prefix and bool(own.motion) == bool(shape) for own in self.surfaces
+            ):
+                raise refused(
+                    shape,
+                    f"has no motion of its own: give the integrator a property {prefix}{MOTION[0]}",
+                )
             shift: Any = frame.shift(point, normal)
             # What has left the pupil is new, however far it has gone.
             pupil = frame.side * min(shift.pupil, _ENDLESS)
@@ -134,10 +139,10 @@ def speckle_class(variant: str) -> type[mi.Integrator]:
             return exposure.finish(develop, evaluate)
 
         def sample(self, *arguments: object, **named: object) -> NoReturn:
-            """Refuse to serve another integrator: a ray does not say where on the film it arrives."""
+            """Refuse to serve another integrator: a ray does not say where it meets the film."""
             raise RuntimeError(
-                "speckle: cannot stand inside another integrator, such as `aov` or `moment`: it must "
-                "know where on the film each ray arrives; render the two one after the other"
+                "speckle: cannot stand inside another integrator, such as `aov` or `moment`: it "
+                "must know where on the film each ray arrives; render the two one after the other"
             )
 
         def _factor(self, scene: mi.Scene, sensor: mi.Sensor) -> Callable[[mi.Point2f], Factor]:
@@ -169,7 +174,10 @@ def speckle_class(variant: str) -> type[mi.Integrator]:
             sensor: mi.Sensor,
             lights: list[list[LineLight | None]],
         ) -> list[list[Pattern]]:
-            """Return the patterns of each laser on the surfaces, from the last image where nothing has changed."""
+            """Return the patterns of each laser on the surfaces.
+
+            They are those of the last image where nothing has changed.
+            """
             width, height = (int(side) for side in sensor.film().size())
             given = self.settings.speckle_size
             sizes = [given or speckle_size(laser, sensor) for laser in lasers]

@@ -90,8 +90,8 @@ def refuse_unknown(props: mi.Properties) -> None:
     if unknown:
         names = (
             "max_depth, rr_depth, hide_emitters, speckle, "
-            "pupil_shift, shift_x, shift_y, patterns, polarisation, rms_height, correlation_length (also of one shape, "
-            "as `id:patterns`)"
+            "pupil_shift, shift_x, shift_y, patterns, polarisation, rms_height, "
+            "correlation_length (also of one shape, as `id:patterns`)"
         )
         known = ", ".join([names, *(field.name for field in fields(PatternSettings))])
         raise refused(unknown[0], f"no property of this integrator; those are {known}")

@@ -24,9 +24,10 @@ _MOST_PATTERNS = 1024
 class Surface:
     """A shape with properties of its own, or all others.
 
-    ``prefix`` begins the names of its properties: ``"gear:"`` of the shape with the id ``gear``, nothing of all
-    others. ``fractions`` are those of the light in each of its patterns. Surfaces of one ``motion`` share patterns.
-    ``relief`` is the rms height finer than a resolution cell, and its correlation length, in the unit of the scene.
+    ``prefix`` begins the names of its properties: ``"gear:"`` of the shape with the id ``gear``,
+    nothing of all others. ``fractions`` are those of the light in each of its patterns. Surfaces of
+    one ``motion`` share patterns. ``relief`` is the rms height finer than a resolution cell, and
+    its correlation length, in the unit of the scene.
     """
 
     prefix: str
@@ -36,7 +37,7 @@ class Surface:
 
 
 def read_surfaces(props: mi.Properties) -> tuple[list[Surface], dict[str, mi.Float]]:
-    """Read all surfaces, that of the other shapes first, and the parameters of their motion by name."""
+    """Read all surfaces, that of the other shapes first, and their motion's parameters by name."""
     names = [*MOTION, *(name for name in props.keys() if name.rpartition(":")[2] in MOTION)]
     places = {name: mi.Float(number(props, name, 0.0)) for name in dict.fromkeys(names)}
     surfaces: list[Surface] = []
@@ -59,8 +60,8 @@ def surface_finder(
             known = ", ".join(sorted(filter(None, shapes))) or "none"
             raise refused(
                 surface.prefix[:-1],
-                f"no shape has this id; those that shapes have are {known} (Mitsuba merges shapes of one "
-                "material, unless the scene is loaded with optimize=False)",
+                f"no shape has this id; those that shapes have are {known} (Mitsuba merges shapes "
+                "of one material, unless the scene is loaded with optimize=False)",
             )
     own = [mi.ShapePtr(shapes[surface.prefix[:-1]]) for surface in surfaces[1:]]
 
@@ -77,11 +78,16 @@ def _prefixes(props: mi.Properties) -> list[str]:
     """Return how the names of properties begin, in the order of the scene."""
     known = {*MOTION, *_MIXTURE, *_RELIEF}
     names = [name.rpartition(":") for name in props.keys()]
-    return list(dict.fromkeys(["", *(id + ":" for id, colon, name in names if colon and name in known)]))
+    return list(
+        dict.fromkeys(["", *(id + ":" for id, colon, name in names if colon and name in known)])
+    )
 
 
 def _fractions(props: mi.Properties, prefix: str) -> tuple[float, ...]:
-    """Return the fractions of light in each pattern; what a shape does not say is that of all others."""
+    """Return the fractions of light in each pattern.
+
+    What a shape does not say is that of all others.
+    """
     patterns, polarisation = 1, 1.0
     for start in dict.fromkeys(("", prefix)):
         patterns = whole(props, f"{start}patterns", patterns, (1, _MOST_PATTERNS))
@@ -92,7 +98,10 @@ def _fractions(props: mi.Properties, prefix: str) -> tuple[float, ...]:
 
 
 def _relief(props: mi.Properties, prefix: str) -> tuple[float, float]:
-    """Return the rms height and its correlation length; what a shape does not say is that of all others."""
+    """Return the rms height and its correlation length.
+
+    What a shape does not say is that of all others.
+    """
     lengths = []
     for name in _RELIEF:
         length = 0.0

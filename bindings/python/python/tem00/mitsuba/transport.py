@@ -25,8 +25,8 @@ class Walk:
 
     ``depth`` counts the surfaces met and ``eta`` is the product of the refractive indices passed.
     ``previous`` is the point that the ray left and ``pdf`` the density of its direction, per
-    steradian, where it was not ``specular``. ``seen`` is the number of the surface that has scattered the light into
-    the camera, once it is ``known``: mirrors before it show it.
+    steradian, where it was not ``specular``. ``seen`` is the number of the surface that has
+    scattered the light into the camera, once it is ``known``: mirrors before it show it.
     """
 
     ray: mi.Ray3f
@@ -65,8 +65,9 @@ class PathTracer(NamedTuple):
     """The rules by which paths are followed.
 
     Depths count as in Mitsuba's ``path``: the segments between camera and emitter, 2 for direct
-    light. ``surface_of`` numbers the surfaces that are told apart. ``meets_light`` says that rays can meet emitters, which delta emitters are not.
-    ``first_surface`` finds what the camera sees where emitters are hidden from it.
+    light. ``surface_of`` numbers the surfaces that are told apart. ``meets_light`` says that rays
+    can meet emitters, which delta emitters are not. ``first_surface`` finds what the camera sees
+    where emitters are hidden from it.
     """
 
     scene: mi.Scene
@@ -178,7 +179,7 @@ class PathTracer(NamedTuple):
 
 
 def _power_heuristic(own: mi.Float, other: mi.Float) -> mi.Float:
-    """Return the weight of the first of two ways to find light: the power heuristic with exponent 2."""
+    """Return the weight of the first of two ways to find light: the power heuristic, exponent 2."""
     square = own * own
     total = square + other * other
     return dr.select(total > 0.0, square / total, 0.0)

@@ -1,5 +1,5 @@
-// The factor of every hit of a frame. Before it stand the function files of tem00-decorrelation and tem00-shading,
-// and GpuStack::wgsl(0), which has that of tem00-speckle.
+// The factor of every hit of a frame. Before it stand the function files of tem00-decorrelation and
+// tem00-shading, and GpuStack::wgsl(0), which has that of tem00-speckle.
 
 @group(1) @binding(0) var<uniform> frame: Tem00SpeckleFrame;
 /// A point as it is now, and its normal.

@@ -1,4 +1,5 @@
-// Fills the box of an aperture with the values that it selects from the lattice: `tem00_speckle::Aperture`.
+// Fills the box of an aperture with the values that it selects from the lattice:
+// `tem00_speckle::Aperture`.
 
 struct Place {
     /// Lattice point of the first column and row.
@@ -62,7 +63,8 @@ fn fill(@builtin(global_invocation_id) id: vec3<u32>) {
         if place.weighted == 1u {
             value = tem00_complex_product(value, weights[at]);
         }
-        values[at] = tem00_complex_product(value, tem00_complex_product(factors[column], factors[place.extent.x + row]));
+        let factor = tem00_complex_product(factors[column], factors[place.extent.x + row]);
+        values[at] = tem00_complex_product(value, factor);
     }
 }
 

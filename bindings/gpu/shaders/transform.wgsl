@@ -1,11 +1,13 @@
-// One pass of a Fourier transform over all lines of an array, by Stockham's stages. A workgroup transforms BATCH
-// neighbouring sequences of POINTS points in its own memory; a line of more points is transformed in two passes. Beside it
-// stand the functions of tem00-speckle, what is written (`after`, `finished`), `transform` with its stages, and
+// One pass of a Fourier transform over all lines of an array, by Stockham's stages. A workgroup
+// transforms BATCH neighbouring sequences of POINTS points in its own memory; a line of more points
+// is transformed in two passes. Beside it stand the functions of tem00-speckle, what is written
+// (`after`, `finished`), `transform` with its stages, and
 //
 //     const POINTS: u32 = …;      points of a sequence
 //     const BATCH: u32 = …;       sequences of a workgroup
 //     const MEMORY: u32 = …;      POINTS · BATCH, up to a multiple of 16
-//     const ALONG: bool = …;      whether neighbouring threads work along a sequence, or on neighbouring ones
+//     const ALONG: bool = …;      whether neighbouring threads work along a sequence, or on
+//                                 neighbouring ones
 
 struct Plan {
     /// Points of a line, and how many from the first are not zero.
@@ -65,7 +67,8 @@ fn loaded(own: Sequence, point: u32) -> vec2<f32> {
 fn store(own: Sequence, point: u32, value: vec2<f32>) {
     if own.is_there {
         let to = tem00_stockham(own.place, point, plan.done, POINTS);
-        after[plan.out_first + to * plan.out_step + own.line * plan.out_line] = finished(value, own.line, to);
+        after[plan.out_first + to * plan.out_step + own.line * plan.out_line] =
+            finished(value, own.line, to);
     }
 }
 
@@ -77,7 +80,8 @@ fn work(at: u32, butterflies: u32) -> vec2<u32> {
     return vec2<u32>(at % BATCH, at / BATCH);
 }
 
-/// Returns where a point lies in the memory: points that sixteen threads read or write together lie in different banks.
+/// Returns where a point lies in the memory: points that sixteen threads read or write together lie
+/// in different banks.
 fn cell(sequence: u32, point: u32) -> u32 {
     let at = sequence * POINTS + point;
     return at ^ ((at >> 4u) & 15u);

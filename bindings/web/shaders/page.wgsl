@@ -1,5 +1,6 @@
-// A part under a laser, as a camera sees it: a film of light with and without speckle, and the film on a screen.
-// In front of it stand the function files of beam, decorrelation, shading and speckle, and the bindings of the stack.
+// A part under a laser, as a camera sees it: a film of light with and without speckle, and the film
+// on a screen. In front of it stand the function files of beam, decorrelation, shading and speckle,
+// and the bindings of the stack.
 
 struct Scene {
     line: Tem00LineLight,
@@ -10,7 +11,8 @@ struct Scene {
     shift: vec4<f32>,
     boxes: array<array<vec4<f32>, 2>, 4>,
     sphere: vec4<f32>,
-    /// Irradiance of the lamp in W/m², whether there is speckle, whether as printed, whether in false colour.
+    /// Irradiance of the lamp in W/m², whether there is speckle, whether as printed, whether in
+    /// false colour.
     lamp: f32,
     speckle: f32,
     printed: f32,
@@ -19,7 +21,8 @@ struct Scene {
     size: vec2<f32>,
     boxes_used: f32,
     slope: f32,
-    /// From light to the screen: the centre of the zoom, exposure, zoom, and the colour of the laser.
+    /// From light to the screen: the centre of the zoom, exposure, zoom, and the colour of the
+    /// laser.
     centre: vec2<f32>,
     exposure: f32,
     zoom: f32,
@@ -77,8 +80,8 @@ fn laser_at(p: vec3<f32>) -> Tem00NextEvent {
     return tem00_spot_next_event(scene.spot, p);
 }
 
-/// Light with speckle, light without it, the light of the lamp, and the correlation with the reference state, seen at a
-/// place of the image in pixels, from the upper left corner.
+/// Light with speckle, light without it, the light of the lamp, and the correlation with the
+/// reference state, seen at a place of the image in pixels, from the upper left corner.
 fn seen(pixel: vec2<f32>) -> vec4<f32> {
     let slope = (pixel - 0.5 * scene.size) * vec2<f32>(scene.slope, -scene.slope);
     let camera = scene.frame;
@@ -88,12 +91,14 @@ fn seen(pixel: vec2<f32>) -> vec4<f32> {
 
     let p = camera.pupil + hit.distance * direction;
     let normal = rotated(hit.normal);
-    let lamp = 0.318309886 * scene.lamp * (0.4 + 0.6 * max(0.0, dot(normal, vec3<f32>(0.48, -0.36, 0.8))));
+    let facing = max(0.0, dot(normal, vec3<f32>(0.48, -0.36, 0.8)));
+    let lamp = 0.318309886 * scene.lamp * (0.4 + 0.6 * facing);
     let event = laser_at(p);
     let cosine = dot(normal, event.wi);
     if event.e_perp <= 0.0 || cosine <= 0.0 { return vec4<f32>(0.0, 0.0, lamp, 1.0); }
     let outside = p + 2e-6 * normal;
-    if nearest(rotated_back(outside - scene.shift.xyz), rotated_back(event.wi)).distance < event.distance {
+    let blocker = nearest(rotated_back(outside - scene.shift.xyz), rotated_back(event.wi));
+    if blocker.distance < event.distance {
         return vec4<f32>(0.0, 0.0, lamp, 1.0);
     }
     // The paper divides by the cosine, and so creates light on tilted surfaces.
@@ -109,7 +114,8 @@ fn speckle_at(p: vec3<f32>, normal: vec3<f32>) -> vec2<f32> {
     let at = tem00_speckle(scene.frame, p, normal);
     // The paper moves the pattern against the image.
     let place = at.place + select(0.0, 2.0, scene.printed > 0.5) * at.displacement;
-    return vec2<f32>(tem00_stack_intensity(tem00_stack, place.x, place.y, at.slice), at.correlation);
+    let intensity = tem00_stack_intensity(tem00_stack, place.x, place.y, at.slice);
+    return vec2<f32>(intensity, at.correlation);
 }
 
 @vertex

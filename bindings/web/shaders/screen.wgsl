@@ -13,12 +13,20 @@ fn screen(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
     }
     // The curve of sRGB (IEC 61966-2-1).
     let bright = clamp(linear, vec3<f32>(0.0), vec3<f32>(1.0));
-    let curve = select(1.055 * pow(bright, vec3<f32>(1.0 / 2.4)) - 0.055, 12.92 * bright, bright <= vec3<f32>(0.0031308));
+    let curve = select(
+        1.055 * pow(bright, vec3<f32>(1.0 / 2.4)) - 0.055,
+        12.92 * bright,
+        bright <= vec3<f32>(0.0031308),
+    );
     return vec4<f32>(curve, 1.0);
 }
 
 /// Black, blue, red, yellow, white, at equal steps.
 fn heat(light: f32) -> vec3<f32> {
     let x = 4.0 * clamp(light, 0.0, 1.0);
-    return vec3<f32>(clamp(x - 1.0, 0.0, 1.0), clamp(x - 2.0, 0.0, 1.0), clamp(min(x, 2.0 - x), 0.0, 1.0) + clamp(x - 3.0, 0.0, 1.0));
+    return vec3<f32>(
+        clamp(x - 1.0, 0.0, 1.0),
+        clamp(x - 2.0, 0.0, 1.0),
+        clamp(min(x, 2.0 - x), 0.0, 1.0) + clamp(x - 3.0, 0.0, 1.0),
+    );
 }

@@ -1,17 +1,17 @@
-// Motion and change of speckle at a surface point between two states of a scene, of any size: the law
-// that `tem00_factor` of tem00-shading looks up by.
+// Motion and change of speckle at a surface point between two states of a scene, of any size: the
+// law that `tem00_factor` of tem00-shading looks up by.
 //
-// Functions and structs only: no bindings, no entry points, no imports, no extensions; names that end in
-// `_` are not for the caller.
+// Functions and structs only: no bindings, no entry points, no imports, no extensions; names that
+// end in `_` are not for the caller.
 //
 // Vectors have the components right, up and towards the camera, in the axes of a camera that stands
-// still: motions are relative to it. Lengths are in metres. A rotation is a unit quaternion x, y, z, w,
-// (0, 0, 0, 1) for none.
+// still: motions are relative to it. Lengths are in metres. A rotation is a unit quaternion x, y,
+// z, w, (0, 0, 0, 1) for none.
 //
 // Validity: lengths from 1e-9 m to 1e9 m. No difference of near-equal numbers is formed: with the
-// distance L to the pupil, the angle φ by which the light turns and the motion a, displacements in the
-// pupil are off by about 4 ε (|a| + L φ), ε = 1.2e-7. Positions enter at second order only. γ is off by
-// 1e-5 at worst. A cosine below 2⁻¹² counts as grazing.
+// distance L to the pupil, the angle φ by which the light turns and the motion a, displacements in
+// the pupil are off by about 4 ε (|a| + L φ), ε = 1.2e-7. Positions enter at second order only. γ
+// is off by 1e-5 at worst. A cosine below 2⁻¹² counts as grazing.
 
 /// Direction of the light at a point, as the part, the light and the camera move.
 struct Tem00LightMotion {
@@ -27,7 +27,8 @@ struct Tem00SpeckleMotion {
     image: vec2<f32>,
     /// Its motion.
     image_displacement: vec2<f32>,
-    /// Motion of the speckle field across the pupil, in metres; 1e18 in both where it is decorrelated.
+    /// Motion of the speckle field across the pupil, in metres; 1e18 in both where it is
+    /// decorrelated.
     pupil_displacement: vec2<f32>,
     /// 1/Z before and after, with the depth Z before the pupil plane, in 1/m.
     per_depth: vec2<f32>,
@@ -35,17 +36,18 @@ struct Tem00SpeckleMotion {
     seen: bool,
 }
 
-/// Returns by how much a rotation changes a vector, (R − 1) v: without cancellation where it is small.
+/// Returns by how much a rotation changes a vector, (R − 1) v: without cancellation where it is
+/// small.
 fn tem00_rotation_change(rotation: vec4<f32>, v: vec3<f32>) -> vec3<f32> {
     return 2.0 * cross(rotation.xyz, rotation.w * v + cross(rotation.xyz, v));
 }
 
-/// Returns the motion of the speckle of a surface point whose surroundings turn by `rotation` while it
-/// moves by `motion`.
+/// Returns the motion of the speckle of a surface point whose surroundings turn by `rotation` while
+/// it moves by `motion`.
 ///
-/// `to_pupil` leads from the point to the centre of the pupil, before; the normal, before, may be of any
-/// length and to either side. The pattern is decorrelated where the point is out of sight, before or
-/// after, seen edge-on, lit from its other side or from no direction.
+/// `to_pupil` leads from the point to the centre of the pupil, before; the normal, before, may be
+/// of any length and to either side. The pattern is decorrelated where the point is out of sight,
+/// before or after, seen edge-on, lit from its other side or from no direction.
 fn tem00_speckle_motion(
     to_pupil: vec3<f32>,
     normal: vec3<f32>,
@@ -94,8 +96,8 @@ struct Tem00Turn_ {
     known: bool,
 }
 
-/// The change of the direction d in which the field leaves: the surface turns it with itself and keeps
-/// the part along itself of the sum of both directions.
+/// The change of the direction d in which the field leaves: the surface turns it with itself and
+/// keeps the part along itself of the sum of both directions.
 fn tem00_turn_of_sight_(
     d: vec3<f32>,
     n: vec3<f32>,
@@ -129,9 +131,9 @@ fn tem00_disc_overlap_(shift: f32) -> f32 {
     return min(e * sqrt(e) * series, 1.0);
 }
 
-/// The factor by which a shift along the axis, of at most one length, reduces the correlation at the
-/// peak beside a shift of the pupil. It is analytic in s and x²: a polynomial at 12 × 12 points of
-/// Chebyshev in 2 s − 1 and y = 2 x² − 1, off by 5e-6, without the terms below 4e-7.
+/// The factor by which a shift along the axis, of at most one length, reduces the correlation at
+/// the peak beside a shift of the pupil. It is analytic in s and x²: a polynomial at 12 × 12 points
+/// of Chebyshev in 2 s − 1 and y = 2 x² − 1, off by 5e-6, without the terms below 4e-7.
 fn tem00_axial_loss_(pupil_shift: f32, axial_shift: f32) -> f32 {
     let s = 2.0 * min(pupil_shift, 1.0) - 1.0;
     let y = 2.0 * axial_shift * axial_shift - 1.0;

@@ -1,15 +1,17 @@
-// The factor by which speckle multiplies the light of a laser at a hit, for a renderer's own kernels:
+// The factor by which speckle multiplies the light of a laser at a hit, for a renderer's own
+// kernels:
 //
 //     radiance += f * abs(dot(n, event.wi)) * event.e_perp * tem00_factor(frame, p, n);
 //
-// Functions and structs only: no bindings, no entry points, no imports, no extensions; names that end in
-// `_` are not for the caller. The function files of tem00-decorrelation and tem00-speckle stand beside
-// this one, with the two functions that the second asks of the host.
+// Functions and structs only: no bindings, no entry points, no imports, no extensions; names that
+// end in `_` are not for the caller. The function files of tem00-decorrelation and tem00-speckle
+// stand beside this one, with the two functions that the second asks of the host.
 //
-// Validity: that of `SpeckleFrame::factor`, for the cameras that `to_rows` takes, and points in metres that
-// are numbers: keep the origin of the world near the scene. A pattern is looked up 4 ε of the principal
-// distance beside its place, in its samples, ε = 1.2e-7; the pupil is off as `tem00_speckle_motion` says,
-// and by 4 ε L² |a| / z_R² in light of a waist with the Rayleigh range z_R.
+// Validity: that of `SpeckleFrame::factor`, for the cameras that `to_rows` takes, and points in
+// metres that are numbers: keep the origin of the world near the scene. A pattern is looked up 4 ε
+// of the principal distance beside its place, in its samples, ε = 1.2e-7; the pupil is off as
+// `tem00_speckle_motion` says, and by 4 ε L² |a| / z_R² in light of a waist with the Rayleigh range
+// z_R.
 
 /// Speckle of one body in one frame: `KernelSpeckle::rows` in the crate, 224 bytes.
 ///
@@ -29,7 +31,8 @@ struct Tem00SpeckleFrame {
     towards_camera: vec3<f32>,
     /// Samples of the pattern per slope of the line of sight.
     samples: f32,
-    /// Motion of the body since the reference state, relative to the camera: a quaternion, a translation.
+    /// Motion of the body since the reference state, relative to the camera: a quaternion, a
+    /// translation.
     rotation: vec4<f32>,
     translation: vec3<f32>,
     /// Slices per motion of the pupil by its diameter.
@@ -37,11 +40,13 @@ struct Tem00SpeckleFrame {
     /// That of the laser.
     laser_rotation: vec4<f32>,
     laser_translation: vec3<f32>,
-    /// The largest shift that the slices hold, in pupil diameters: less than 0 on one side of the reference.
+    /// The largest shift that the slices hold, in pupil diameters: less than 0 on one side of the
+    /// reference.
     reach: f32,
     /// The laser now: its aperture and its axes.
     aperture: vec3<f32>,
-    /// The centre of its wave along x, on its axis; that along y from there: once, and per secant of the ray.
+    /// The centre of its wave along x, on its axis; that along y from there: once, and per secant
+    /// of the ray.
     centre: f32,
     ex: vec3<f32>,
     centre_across: f32,
@@ -88,7 +93,8 @@ fn tem00_speckle(frame: Tem00SpeckleFrame, point: vec3<f32>, normal: vec3<f32>) 
     let camera = mat3x3(frame.right, frame.up, frame.towards_camera);
     let to_pupil = (frame.pupil - point) * camera;
     let backwards = vec4(-frame.rotation.xyz, frame.rotation.w);
-    let motion = frame.translation - tem00_rotation_change(backwards, -to_pupil - frame.translation);
+    let motion =
+        frame.translation - tem00_rotation_change(backwards, -to_pupil - frame.translation);
     let before = to_pupil + motion;
     let outwards = normal * camera;
     let outwards_before = outwards + tem00_rotation_change(backwards, outwards);
@@ -124,7 +130,11 @@ fn tem00_speckle(frame: Tem00SpeckleFrame, point: vec3<f32>, normal: vec3<f32>) 
 }
 
 /// The light at a point that lies at `position` after a motion.
-fn tem00_light_(frame: Tem00SpeckleFrame, position: vec3<f32>, motion: vec3<f32>) -> Tem00LightMotion {
+fn tem00_light_(
+    frame: Tem00SpeckleFrame,
+    position: vec3<f32>,
+    motion: vec3<f32>,
+) -> Tem00LightMotion {
     let axes = mat3x3(frame.ex, frame.ey, frame.ez);
     let turn = tem00_rotation_change(frame.laser_rotation, position - motion);
     let step = (motion - turn - frame.laser_translation) * axes;
@@ -135,8 +145,8 @@ fn tem00_light_(frame: Tem00SpeckleFrame, position: vec3<f32>, motion: vec3<f32>
     return Tem00LightMotion(turned + turned_back, axes * wave.change - turned_back);
 }
 
-/// The light in the axes of the laser at a point that moves by `step` from `local`: against the slopes of
-/// the rays, but towards the aperture at the apex of a line and behind it.
+/// The light in the axes of the laser at a point that moves by `step` from `local`: against the
+/// slopes of the rays, but towards the aperture at the apex of a line and behind it.
 fn tem00_wave_(frame: Tem00SpeckleFrame, local: vec3<f32>, step: vec3<f32>) -> Tem00LightMotion {
     let depth = local.z - frame.centre;
     let x = tem00_slope_(vec2(local.x, step.x), vec2(depth, step.z), frame.rayleigh_squared.x);
@@ -171,9 +181,10 @@ fn tem00_slope_(x: vec2<f32>, z: vec2<f32>, rayleigh_squared: f32) -> vec2<f32> 
     return vec2(x.x * z.x / square, x.y * (after / square_after) + x.x * change);
 }
 
-/// The coordinate u ≥ 0, in slices, of a shift of the pupil in its diameters that leaves `overlap` together
-/// with what moved along the axis: where the blend of two slices has kept as much, and on along the
-/// path once nothing is left. `SpeckleStack::coordinates_within` on a straight path behind a circle.
+/// The coordinate u ≥ 0, in slices, of a shift of the pupil in its diameters that leaves `overlap`
+/// together with what moved along the axis: where the blend of two slices has kept as much, and on
+/// along the path once nothing is left. `SpeckleStack::coordinates_within` on a straight path
+/// behind a circle.
 fn tem00_slice_coordinate_(shift: f32, overlap: f32, per_diameter: f32) -> f32 {
     if shift >= 1.0 {
         return shift * per_diameter;

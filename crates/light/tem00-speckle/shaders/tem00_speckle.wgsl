@@ -1,10 +1,11 @@
-// Speckle for a renderer's own kernels: random phasors from seed and lattice point, the parts of a Fourier transform,
-// and look-ups in a stack.
+// Speckle for a renderer's own kernels: random phasors from seed and lattice point, the parts of a
+// Fourier transform, and look-ups in a stack.
 //
 // Functions and structs only: no bindings, no entry points, no imports, no extensions. Every name
 // begins with `tem00_` or `Tem00`; those that end in `_` are not for the caller.
 //
-// A look-up reads the stack by two functions of the host, over storage buffers or textures as it likes:
+// A look-up reads the stack by two functions of the host, over storage buffers or textures as it
+// likes:
 //
 //     fn tem00_stack_coefficient(slice: u32, cell: vec2<u32>) -> vec2<f32>
 //         The coefficient at column cell.x of row cell.y of a slice, real and imaginary part:
@@ -12,20 +13,22 @@
 //     fn tem00_stack_law(slice: u32, row: u32) -> vec4<f32>
 //         Row 0 to 13 of the closed forms of a slice: `SliceLaw::rows`.
 //
-// The intensity has mean 1 and the law of `SpeckleStack::intensity_at`: multiply the irradiance of the light
-// by it. Positions x and y count samples, u counts slices; all three are periodic, at any whole number that an
-// i32 holds. An f32 of a thousand samples resolves 6e-5 of one, which moves the intensity by as much: where that
-// is too coarse, split the coordinates in the host or by integers and call `tem00_stack_intensity_at`.
+// The intensity has mean 1 and the law of `SpeckleStack::intensity_at`: multiply the irradiance of
+// the light by it. Positions x and y count samples, u counts slices; all three are periodic, at any
+// whole number that an i32 holds. An f32 of a thousand samples resolves 6e-5 of one, which moves
+// the intensity by as much: where that is too coarse, split the coordinates in the host or by
+// integers and call `tem00_stack_intensity_at`.
 //
-// A stack is made by `tem00_phasor`, the factors that `Aperture::factors` has for each column and row of the pupil, and a
-// Fourier transform. Stockham's takes a stage for each of the radices 2 to 16 whose product is the side of the pattern:
-// thread `own` of length / radix reads the points own + r length / radix of a line, multiplies them by `tem00_twiddle`,
-// transforms them by `tem00_dft2` to `tem00_dft16`, and writes value r to the point `tem00_stockham` of another array; `done`
-// is the product of the radices before. The rows of the pupil go first, zero where the box ends, then all columns;
-// `tem00_centring` over the root of the pupil's points makes the amplitude.
+// A stack is made by `tem00_phasor`, the factors that `Aperture::factors` has for each column and
+// row of the pupil, and a Fourier transform. Stockham's takes a stage for each of the radices 2 to
+// 16 whose product is the side of the pattern: thread `own` of length / radix reads the points
+// own + r length / radix of a line, multiplies them by `tem00_twiddle`, transforms them by
+// `tem00_dft2` to `tem00_dft16`, and writes value r to the point `tem00_stockham` of another array;
+// `done` is the product of the radices before. The rows of the pupil go first, zero where the box
+// ends, then all columns; `tem00_centring` over the root of the pupil's points makes the amplitude.
 //
-// Nothing is left to a device's own sine, exponential or logarithm: additions, multiplications, divisions, square roots
-// and integers come within a few roundings of the library anywhere.
+// Nothing is left to a device's own sine, exponential or logarithm: additions, multiplications,
+// divisions, square roots and integers come within a few roundings of the library anywhere.
 
 /// What look-ups know of a stack.
 struct Tem00Stack {
@@ -40,11 +43,14 @@ fn tem00_stack_intensity(stack: Tem00Stack, x: f32, y: f32, u: f32) -> f32 {
     let position = vec3<f32>(x, y, u);
     let cell = floor(position);
     let fraction = position - cell;
-    return tem00_stack_intensity_at(stack, vec2<i32>(cell.xy), fraction.xy, i32(cell.z), fraction.z);
+    return tem00_stack_intensity_at(
+        stack, vec2<i32>(cell.xy), fraction.xy, i32(cell.z), fraction.z,
+    );
 }
 
-/// Returns the intensity at the `fraction`, in [0, 1], of the way from sample `cell` to the next along each axis, and at
-/// `slice_fraction` of the way from `slice` to the next. Cells and slices may be any.
+/// Returns the intensity at the `fraction`, in [0, 1], of the way from sample `cell` to the next
+/// along each axis, and at `slice_fraction` of the way from `slice` to the next. Cells and slices
+/// may be any.
 fn tem00_stack_intensity_at(
     stack: Tem00Stack,
     cell: vec2<i32>,
@@ -56,8 +62,8 @@ fn tem00_stack_intensity_at(
     return dot(blend.amplitude, blend.amplitude) / blend.mean_square;
 }
 
-/// Returns the complex amplitude of mean square 1 whose squared magnitude is that intensity, for light whose
-/// fields add: `SpeckleStack::amplitude_at`.
+/// Returns the complex amplitude of mean square 1 whose squared magnitude is that intensity, for
+/// light whose fields add: `SpeckleStack::amplitude_at`.
 fn tem00_stack_amplitude_at(
     stack: Tem00Stack,
     cell: vec2<i32>,
@@ -69,8 +75,9 @@ fn tem00_stack_amplitude_at(
     return blend.amplitude / sqrt(blend.mean_square);
 }
 
-/// Returns word `word` of the ChaCha8 stream `stream` of `seed`, low halves first: what the phasor at the lattice
-/// point (word, stream) is made of, both modulo 2³². Streams from 2³² on are those of the magnitudes.
+/// Returns word `word` of the ChaCha8 stream `stream` of `seed`, low halves first: what the phasor
+/// at the lattice point (word, stream) is made of, both modulo 2³². Streams from 2³² on are those
+/// of the magnitudes.
 fn tem00_phasor_word(seed: vec2<u32>, stream: vec2<u32>, word: u32) -> u32 {
     var words = tem00_phasor_words(seed, stream, word / 16u);
     return words[(word / 4u) % 4u][word % 4u];
@@ -103,11 +110,13 @@ fn tem00_phasor_words(seed: vec2<u32>, stream: vec2<u32>, block: u32) -> array<v
 
 /// Returns exp(2πi · word / 2³²), within 1.2e-7.
 fn tem00_unit_phasor(word: u32) -> vec2<f32> {
-    // The nearest quarter turn and the angle from it, in [−π/4, π/4), of which sine and cosine are Taylor's series.
+    // The nearest quarter turn and the angle from it, in [−π/4, π/4), of which sine and cosine are
+    // Taylor's series.
     let quarter = (word + 0x20000000u) >> 30u;
     let a = 1.4629180792671596e-9 * f32(bitcast<i32>(word - (quarter << 30u)));
     let a2 = a * a;
-    let sine = a - a * a2 * (1.0 / 6.0 - a2 * (1.0 / 120.0 - a2 * (1.0 / 5040.0 - a2 * (1.0 / 362880.0))));
+    let sine = a
+        - a * a2 * (1.0 / 6.0 - a2 * (1.0 / 120.0 - a2 * (1.0 / 5040.0 - a2 * (1.0 / 362880.0))));
     let cosine = 1.0 - a2 * (0.5 - a2 * (1.0 / 24.0 - a2 * (1.0 / 720.0 - a2 * (1.0 / 40320.0))));
     let phasor = select(vec2<f32>(cosine, sine), vec2<f32>(sine, cosine), (quarter & 1u) == 1u);
     // The real part is negative in the quarters 1 and 2, the imaginary part in 2 and 3.
@@ -129,7 +138,8 @@ fn tem00_rayleigh_magnitude(word: u32) -> f32 {
     return sqrt(-0.6931471805599453 * exponent - 2.0 * tem00_artanh_((m - 1.0) / (m + 1.0)));
 }
 
-/// Returns the phasor at the lattice point `k`: of magnitude 1, or circular Gaussian of mean square 1.
+/// Returns the phasor at the lattice point `k`: of magnitude 1, or circular Gaussian of mean
+/// square 1.
 fn tem00_phasor(seed: vec2<u32>, k: vec2<i32>, gaussian: bool) -> vec2<f32> {
     let at = bitcast<vec2<u32>>(k);
     let phasor = tem00_unit_phasor(tem00_phasor_word(seed, vec2<u32>(at.y, 0u), at.x));
@@ -139,8 +149,8 @@ fn tem00_phasor(seed: vec2<u32>, k: vec2<i32>, gaussian: bool) -> vec2<f32> {
     return tem00_rayleigh_magnitude(tem00_phasor_word(seed, vec2<u32>(at.y, 1u), at.x)) * phasor;
 }
 
-/// Returns the point of a lattice that closes after `period` points, below 2³¹, nearest to the origin; 0 stands for 2³²
-/// points, after which phasors repeat by themselves.
+/// Returns the point of a lattice that closes after `period` points, below 2³¹, nearest to the
+/// origin; 0 stands for 2³² points, after which phasors repeat by themselves.
 fn tem00_lattice_nearest(k: i32, period: u32) -> i32 {
     if period == 0u {
         return k;
@@ -156,7 +166,8 @@ fn tem00_turns(count: u32, period: u32) -> u32 {
     return count * unit + u32(f32(count) * f32(rest) / f32(period));
 }
 
-/// Returns exp(−2πi (`own` mod `done`) r / (`done` · `radix`)): what the thread `own` of a stage multiplies its value r by.
+/// Returns exp(−2πi (`own` mod `done`) r / (`done` · `radix`)): what the thread `own` of a stage
+/// multiplies its value r by.
 fn tem00_twiddle(own: u32, r: u32, done: u32, radix: u32) -> vec2<f32> {
     return tem00_unit_phasor(0u - tem00_turns(own % done * r, done * radix));
 }
@@ -167,8 +178,8 @@ fn tem00_stockham(own: u32, r: u32, done: u32, radix: u32) -> u32 {
     return (own - angle) * radix + angle + r * done;
 }
 
-/// Returns exp(−2πi corner · cell / size): what moves a pupil whose box was at the corner of the array, and begins at
-/// `corner` modulo `size` from its centre, to zero frequency.
+/// Returns exp(−2πi corner · cell / size): what moves a pupil whose box was at the corner of the
+/// array, and begins at `corner` modulo `size` from its centre, to zero frequency.
 fn tem00_centring(corner: vec2<u32>, cell: vec2<u32>, size: vec2<u32>) -> vec2<f32> {
     let turns = vec2<u32>(corner.x * cell.x % size.x, corner.y * cell.y % size.y);
     return tem00_unit_phasor(0u - tem00_turns(turns.x, size.x) - tem00_turns(turns.y, size.y));
@@ -235,8 +246,10 @@ fn tem00_dft16(v: array<vec2<f32>, 16>) -> array<vec2<f32>, 16> {
     let g = half * (tem00_turned_back_(odd[6]) - odd[6]);
     let h = tem00_complex_product(odd[7], vec2<f32>(-c, -s));
     return array<vec2<f32>, 16>(
-        even[0] + odd[0], even[1] + a, even[2] + b, even[3] + d, even[4] + e, even[5] + f, even[6] + g, even[7] + h,
-        even[0] - odd[0], even[1] - a, even[2] - b, even[3] - d, even[4] - e, even[5] - f, even[6] - g, even[7] - h,
+        even[0] + odd[0], even[1] + a, even[2] + b, even[3] + d,
+        even[4] + e, even[5] + f, even[6] + g, even[7] + h,
+        even[0] - odd[0], even[1] - a, even[2] - b, even[3] - d,
+        even[4] - e, even[5] - f, even[6] - g, even[7] - h,
     );
 }
 
@@ -280,7 +293,8 @@ fn tem00_stack_blend_(
     }
     let next = tem00_slice_(stack, select(here + 1u, 0u, here + 1u == stack.slices), place);
     let join = tem00_stack_law(here, 13u);
-    let turned = tem00_complex_product(tem00_unit_phasor(tem00_join_phase_(stack, join.xy, place)), next.amplitude);
+    let turn = tem00_unit_phasor(tem00_join_phase_(stack, join.xy, place));
+    let turned = tem00_complex_product(turn, next.amplitude);
     let f = slice_fraction;
     let g = 1.0 - f;
     let both = tem00_covariance_(here, join.z != 0.0, place.fraction);
@@ -302,7 +316,8 @@ fn tem00_slice_(stack: Tem00Stack, slice: u32, place: Tem00Place_) -> Tem00Blend
     return Tem00Blend_(tem00_interpolated_(stack, slice, place), mean_square);
 }
 
-/// The covariance of the amplitudes of a slice and the next; the odd shapes vanish behind a symmetric pupil.
+/// The covariance of the amplitudes of a slice and the next; the odd shapes vanish behind a
+/// symmetric pupil.
 fn tem00_covariance_(slice: u32, odd: bool, fraction: vec2<f32>) -> f32 {
     let p = fraction * (1.0 - fraction);
     let x = tem00_powers_(p.x);
@@ -318,8 +333,10 @@ fn tem00_covariance_(slice: u32, odd: bool, fraction: vec2<f32>) -> f32 {
         let o = p * (1.0 - 2.0 * fraction);
         let ox = vec2<f32>(o.x, o.x * p.x);
         let oy = vec2<f32>(o.y, o.y * p.y);
-        sum += oy.x * dot(tem00_stack_law(slice, 8u), x) + oy.y * dot(tem00_stack_law(slice, 9u), x);
-        // Two rows of the odd shapes of x in each: those of 1 and p, of p² and p³, and of the odd shapes of y.
+        sum +=
+            oy.x * dot(tem00_stack_law(slice, 8u), x) + oy.y * dot(tem00_stack_law(slice, 9u), x);
+        // Two rows of the odd shapes of x in each: those of 1 and p, of p² and p³, and of the odd
+        // shapes of y.
         sum += dot(tem00_stack_law(slice, 10u), vec4<f32>(y.x * ox, y.y * ox));
         sum += dot(tem00_stack_law(slice, 11u), vec4<f32>(y.z * ox, y.w * ox));
         sum += dot(tem00_stack_law(slice, 12u), vec4<f32>(oy.x * ox, oy.y * ox));
@@ -331,7 +348,8 @@ fn tem00_powers_(p: f32) -> vec4<f32> {
     return vec4<f32>(1.0, p, p * p, p * p * p);
 }
 
-/// −step · r / Q turns in units of 2⁻³²: that of the sample by whole numbers, that of the fraction small.
+/// −step · r / Q turns in units of 2⁻³²: that of the sample by whole numbers, that of the fraction
+/// small.
 fn tem00_join_phase_(stack: Tem00Stack, step: vec2<f32>, place: Tem00Place_) -> u32 {
     let whole = vec2<u32>(
         tem00_wrapped_(i32(step.x), stack.size.x) * place.cell.x % stack.size.x,
@@ -395,7 +413,8 @@ fn tem00_wrapped_(n: i32, period: u32) -> u32 {
 /// artanh s for |s| ≤ 1/3 by its series, whose first term left out is 2e-10 of it.
 fn tem00_artanh_(s: f32) -> f32 {
     let s2 = s * s;
-    let tail = 1.0 / 9.0 + s2 * (1.0 / 11.0 + s2 * (1.0 / 13.0 + s2 * (1.0 / 15.0 + s2 * (1.0 / 17.0))));
+    let tail = 1.0 / 9.0
+        + s2 * (1.0 / 11.0 + s2 * (1.0 / 13.0 + s2 * (1.0 / 15.0 + s2 * (1.0 / 17.0))));
     return s + s * s2 * (1.0 / 3.0 + s2 * (0.2 + s2 * (1.0 / 7.0 + s2 * tail)));
 }
 

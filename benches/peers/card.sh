@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Tests and times the crate tem00-gpu on the graphics card of this machine, and CuPy and PyTorch on the same card, in a few
-# minutes. Needs a Vulkan driver; for the peers a CUDA card, and Python with venv.
+# Tests and times the crate tem00-gpu on the graphics card of this machine, and CuPy and PyTorch on
+# the same card, in a few minutes. Needs a Vulkan driver; for the peers a CUDA card, and Python with
+# venv.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 cargo test --locked --release -p tem00-gpu

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Prints the path of an LLVM library for Dr.Jit. That of DRJIT_LIBLLVM_PATH if it is set, else one of
-# the system's, else that of Debian's package, unpacked below target/ without being installed.
+# Prints the path of an LLVM library for Dr.Jit. That of DRJIT_LIBLLVM_PATH if it is set, else one
+# of the system's, else that of Debian's package, unpacked below target/ without being installed.
 set -eu
 cd "$(dirname "$0")/../.."
 if [ -n "${DRJIT_LIBLLVM_PATH:-}" ]; then

@@ -8,4 +8,5 @@ cd "$(dirname "$0")/../.."
 cargo build --quiet --release -p tem00-benches --example render_server
 DRJIT_LIBLLVM_PATH="$(benches/peers/libllvm.sh || true)"
 export DRJIT_LIBLLVM_PATH
-exec target/peers/bin/python benches/peers/render_peers.py target/release/examples/render_server "$@"
+exec target/peers/bin/python benches/peers/render_peers.py \
+    target/release/examples/render_server "$@"

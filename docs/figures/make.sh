@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Makes the pictures of this folder again: a render of every scene, and the diagrams of the examples.
+# Makes the pictures of this folder again: a render of every scene, and the diagrams of the
+# examples.
 #
 #     docs/figures/make.sh [SAMPLES_PER_PIXEL]
 set -euo pipefail
@@ -10,11 +11,13 @@ for scene in examples/scenes/*.toml; do
     cargo run --locked --release -p tem00-cli -- render "$scene" --spp "${1:-64}" -o "$work"
 done
 for scene in spot line_on_metal grazing_waist; do
-    cargo run --locked --release -p tem00-cli -- render "examples/scenes/$scene.toml" --spp "${1:-64}" --no-speckle -o "$work/without"
+    cargo run --locked --release -p tem00-cli -- render "examples/scenes/$scene.toml" \
+        --spp "${1:-64}" --no-speckle -o "$work/without"
     cp "$work/without/$scene.png" "docs/figures/${scene}_without_speckle.png"
 done
 render_spot() {
-    cargo run --locked --release -p tem00-cli -- render examples/scenes/spot.toml --spp "${3:-64}" --set "$2" -o "$work/$1"
+    cargo run --locked --release -p tem00-cli -- render examples/scenes/spot.toml \
+        --spp "${3:-64}" --set "$2" -o "$work/$1"
     cp "$work/$1/spot.png" "docs/figures/spot_$1.png"
 }
 render_spot 1nm 'laser[0].linewidth="1 nm"' "$@"
@@ -23,7 +26,8 @@ render_spot defocused 'camera.focus_distance="250 mm"' "$@"
 cp "$work"/*.png docs/figures/
 # With pieces of it enlarged; needs NumPy and Pillow, and so does the film, which is not made here.
 docs/figures/front_page.py face "${1:-64}"
-for example in beam_caustic correlated_slices focus_by_lens knife_edge line_profile paper_errors thin_line; do
+for example in beam_caustic correlated_slices focus_by_lens knife_edge line_profile paper_errors \
+    thin_line; do
     cargo run --locked --release --example "$example"
     cp "out/$example.svg" docs/figures/
 done
@@ -44,5 +48,5 @@ cp "$work/lines/raw_0000_lines.png" docs/figures/triangulation_lines.png
 tem00-inspect triangulate examples/scenes/triangulation/hexagon_nut.toml -o "$work/nut"
 cp "$work/nut/height_map.png" docs/figures/triangulation_nut.png
 # What they were made from: a test compares it.
-md5sum examples/scenes/triangulation/{step_gauge,hexagon_nut}.toml examples/scenes/meshes/{step_gauge,hexagon_nut}.ply \
-    > docs/figures/made_from.txt
+md5sum examples/scenes/triangulation/{step_gauge,hexagon_nut}.toml \
+    examples/scenes/meshes/{step_gauge,hexagon_nut}.ply > docs/figures/made_from.txt

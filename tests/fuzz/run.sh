@@ -17,5 +17,6 @@ for extension in gltf obj ply stl; do
 done
 cp seeds/*.glb corpus/mesh_gltf
 for target in "$@"; do
-    cargo fuzz run --sanitizer none "$target" -- -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048
+    cargo fuzz run --sanitizer none "$target" -- \
+        -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048
 done

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Builds and tests the programs against the static library, the shared library and, with the static
-# one, under the sanitizers; then against what is installed of both, found by CMake and by pkg-config.
-# Needs cmake, pkg-config, a C++17 compiler and cargo; takes ninja if it is there, and valgrind for the
-# first. Arguments go to cmake, as -DTEM00_PROFILE=dev.
+# one, under the sanitizers; then against what is installed of both, found by CMake and by
+# pkg-config. Needs cmake, pkg-config, a C++17 compiler and cargo; takes ninja if it is there, and
+# valgrind for the first. Arguments go to cmake, as -DTEM00_PROFILE=dev.
 set -euo pipefail
 cd "$(dirname "$0")"
 

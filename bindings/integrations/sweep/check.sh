@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Does a sweep in one go, by each template, and after a killed worker, and compares the tables byte for
-# byte. Needs `tem00` on the path, and Python in a virtual environment that is active.
+# Does a sweep in one go, by each template, and after a killed worker, and compares the tables byte
+# for byte. Needs `tem00` on the path, and Python in a virtual environment that is active.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 python -m pip install --quiet --requirement bindings/integrations/sweep/requirements.txt

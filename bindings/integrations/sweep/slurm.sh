@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# A sweep as a Slurm array, one job for each task that `tem00-inspect sweep GRID --list` shows, and the table:
+# A sweep as a Slurm array, one job for each task that `tem00-inspect sweep GRID --list` shows, and
+# the table:
 #   tasks=$(sbatch --parsable --array=0-23 bindings/integrations/sweep/slurm.sh GRID.toml OUT)
 #   sbatch --dependency=afterok:$tasks --wrap "tem00-inspect sweep GRID.toml -o OUT --gather"
 #SBATCH --job-name=tem00-sweep

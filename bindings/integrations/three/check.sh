@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Opens the laser spot in three.js, in a headless browser on a software adapter: check.sh [PICTURE]. After bindings/web/build.sh.
+# Opens the laser spot in three.js, in a headless browser on a software adapter: check.sh [PICTURE].
+# After bindings/web/build.sh.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 source bindings/web/browser.sh

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes a wheel for Pyodide of a wheel for Linux and of the module for WebAssembly, and loads it in Node:
-# check.sh tem00-….whl _tem00.wasm. Needs a virtual environment that is active, and npm.
+# Makes a wheel for Pyodide of a wheel for Linux and of the module for WebAssembly, and loads it in
+# Node: check.sh tem00-….whl _tem00.wasm. Needs a virtual environment that is active, and npm.
 set -euo pipefail
 here="$(cd "$(dirname "$0")" && pwd)"
 wheel="$(realpath "$1")" module="$(realpath "$2")"

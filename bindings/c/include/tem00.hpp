@@ -1,8 +1,8 @@
 /*
  * tem00 for C++17: handles that free themselves, and exceptions in place of statuses.
  *
- * Header only, on top of tem00.h, whose structs it uses and whose comments hold: units, shapes, what
- * is allowed. Every function that can fail throws tem00::error.
+ * Header only, on top of tem00.h, whose structs it uses and whose comments hold: units, shapes,
+ * what is allowed. Every function that can fail throws tem00::error.
  *
  *     tem00_spot_description description = {};
  *     description.placement = {{0, 0, 0.3}, {0, 0, -1}, {1, 0, 0}};
@@ -181,7 +181,10 @@ public:
         check(tem00_light_next_event_batch_f32(get(), x, y, z, count, &events));
     }
 
-    /** Sampled events at `count` points of x, y, z, with two random numbers for each; all 0 where dark. */
+    /**
+     * Sampled events at `count` points of x, y, z, with two random numbers for each; all 0 where
+     * dark.
+     */
     void next_event_sampled(const double *points, const double *u, std::size_t count,
                             tem00_sampled_event *events) const {
         check(tem00_light_next_event_sampled_batch(get(), points, u, count, events));
@@ -258,7 +261,8 @@ public:
     /** Factor at a point that a camera sample sees at an image point, in pixels with y down. */
     double factor_at(const vec2 &pixel, const vec3 &point, const vec3 &normal) const {
         double factor = 0;
-        check(tem00_speckle_frame_factor_at(get(), pixel.data(), point.data(), normal.data(), &factor));
+        check(tem00_speckle_frame_factor_at(get(), pixel.data(), point.data(), normal.data(),
+                                            &factor));
         return factor;
     }
 
@@ -316,14 +320,20 @@ public:
         return info;
     }
 
-    /** The speckle of a body in a frame, which outlives this; without a motion that of the reference state. */
+    /**
+     * The speckle of a body in a frame, which outlives this; without a motion that of the reference
+     * state.
+     */
     speckle_frame frame(const tem00_body_motion &motion = {}) const {
         tem00_speckle_frame *handle = nullptr;
         check(tem00_speckle_frame_create(get(), &motion, &handle));
         return speckle_frame(handle);
     }
 
-    /** Factors at `count` points that stood at `previous` in the reference state, from buffers of an image. */
+    /**
+     * Factors at `count` points that stood at `previous` in the reference state, from buffers of an
+     * image.
+     */
     void factors_since(const double *previous, const double *points, const double *normals,
                        std::size_t count, double *factors) const {
         check(tem00_speckle_factors_since(get(), previous, points, normals, count, factors));
@@ -450,7 +460,10 @@ private:
     std::unique_ptr<tem00_stack, destroy> handle_;
 };
 
-/** The light of a laser with a linewidth in one resolution cell. Any number of threads may ask it at once. */
+/**
+ * The light of a laser with a linewidth in one resolution cell. Any number of threads may ask it at
+ * once.
+ */
 class bandwidth {
 public:
     explicit bandwidth(const tem00_bandwidth_description &description) {
@@ -459,7 +472,9 @@ public:
         handle_.reset(handle);
     }
 
-    /** What the linewidth makes of speckle, and what stands for it; pointers belong to this object. */
+    /**
+     * What the linewidth makes of speckle, and what stands for it; pointers belong to this object.
+     */
     tem00_bandwidth_info info() const {
         tem00_bandwidth_info info;
         check(tem00_bandwidth_describe(get(), &info));
@@ -540,7 +555,9 @@ private:
     std::unique_ptr<tem00_imaging, destroy> handle_;
 };
 
-/** Intensity correlation at the peak, after a displacement in pupil diameters and in axial lengths. */
+/**
+ * Intensity correlation at the peak, after a displacement in pupil diameters and in axial lengths.
+ */
 inline double correlation(double pupil_shift, double axial_shift) {
     double correlation = 0;
     check(tem00_correlation(pupil_shift, axial_shift, &correlation));

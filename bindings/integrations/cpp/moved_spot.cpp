@@ -1,13 +1,15 @@
-// A plane under a laser spot slides by 0.1 mm: how much of its speckle is left, by the law and as found.
+// A plane under a laser spot slides by 0.1 mm: how much of its speckle is left, by the law and as
+// found.
 #include <cmath>
 #include <cstdio>
 
 #include "tem00.hpp"
 
 int main() {
-    // Position, look at, up; focal length, f-number, focus, pixel pitch, resolution; a plain sensor.
-    const tem00_camera_description lens = {{0, 0, 0.3}, {0, 0, 0}, {0, 1, 0}, 25e-3, 8, 0.3, 3.45e-6,
-                                           {640, 480}, {}, {}, {}};
+    // Position, look at, up; focal length, f-number, focus, pixel pitch, resolution; a plain
+    // sensor.
+    const tem00_camera_description lens = {{0, 0, 0.3}, {0, 0, 0}, {0, 1, 0}, 25e-3, 8, 0.3,
+                                           3.45e-6, {640, 480}, {}, {}, {}};
     // Origin, direction and fan axis; wavelength, power, waist radius and distance, beam quality.
     const tem00_spot_description spot = {{{0.2, 0, 0.4}, {-0.2, 0, -0.4}, {1, 0, 0}},
                                          650e-9, 5e-3, 3e-3, 0.447, 1};

@@ -1,6 +1,6 @@
 /*
- * The header in C99: a light from its description, a batch, a linewidth, a refusal and its message, and the
- * plain numbers of the light in the closed forms of tem00_beam.h.
+ * The header in C99: a light from its description, a batch, a linewidth, a refusal and its message,
+ * and the plain numbers of the light in the closed forms of tem00_beam.h.
  */
 #include <math.h>
 #include <stdio.h>

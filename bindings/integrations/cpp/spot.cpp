@@ -2,9 +2,9 @@
 //
 //     spot FILE.pgm
 //
-// A red laser falls on a diffuse plane at 60° from its normal; a camera looks at it from above, each
-// pixel along the normal. Of each pixel the program asks the next event of the laser, as a renderer
-// does, and multiplies it by the speckle that the pixel sees.
+// A red laser falls on a diffuse plane at 60° from its normal; a camera looks at it from above,
+// each pixel along the normal. Of each pixel the program asks the next event of the laser, as a
+// renderer does, and multiplies it by the speckle that the pixel sees.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -97,8 +97,8 @@ double contrast(const std::vector<double> &values) {
     return std::sqrt(variance) / mean;
 }
 
-// The amplitude correlation 2 J1(v)/v of two points, v = π r / h, by the midpoint rule over the angles
-// of Bessel's integral, which is exact to rounding for so few waves.
+// The amplitude correlation 2 J1(v)/v of two points, v = π r / h, by the midpoint rule over the
+// angles of Bessel's integral, which is exact to rounding for so few waves.
 double correlation(double distance, double speckle_size) {
     const double v = pi * distance / speckle_size;
     if (v < 1e-6) {
@@ -113,8 +113,8 @@ double correlation(double distance, double speckle_size) {
     return 2 * bessel / v;
 }
 
-// The contrast that averaging over a square pixel leaves: the mean of the squared correlation of two
-// points of the pixel (Goodman 1975, §2.6), by the midpoint rule over their distance.
+// The contrast that averaging over a square pixel leaves: the mean of the squared correlation of
+// two points of the pixel (Goodman 1975, §2.6), by the midpoint rule over their distance.
 double pixel_contrast(double speckle_size) {
     constexpr int count = 200;
     double variance = 0;
@@ -161,10 +161,11 @@ bool run(const char *path) {
     std::puts("                               measured |     theory");
     // The spot is smooth over a pixel: the sum errs by what the cut-off leaves out.
     const double on_plane = sum(picture.irradiance) * pixel * pixel;
-    bool right = agree("power on the plane, in mW", 1e3 * on_plane, 1e3 * power, 1e-3 * 1e3 * power);
+    bool right = agree("power on the plane, in mW", 1e3 * on_plane, 1e3 * power,
+                       1e-3 * 1e3 * power);
 
-    // The contrast of n independent exponential numbers errs by 1/√n; an intensity is correlated over
-    // an area of 4 h²/π pixels. Five standard errors.
+    // The contrast of n independent exponential numbers errs by 1/√n; an intensity is correlated
+    // over an area of 4 h²/π pixels. Five standard errors.
     const double independent = width * height / (4 * speckle_size * speckle_size / pi);
     const double tolerance = 5 / std::sqrt(independent);
     right &= agree("contrast at points", contrast(picture.at_centre), 1, tolerance);

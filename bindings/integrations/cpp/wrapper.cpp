@@ -147,8 +147,10 @@ void linewidths() {
     const double contrast = light.info().contrast;
     expect(contrast < 1 && std::abs(light.covariance({0, 0}) / (contrast * contrast) - 1) < 1e-9,
            "two frames without a motion share all of the contrast");
-    expect(light.line_noise_ratio(0) > contrast, "the noise of a line falls less than the contrast");
-    expect(light.draw(0.25).wave_number > light.draw(0.75).wave_number, "peaks stand in their order");
+    expect(light.line_noise_ratio(0) > contrast,
+           "the noise of a line falls less than the contrast");
+    expect(light.draw(0.25).wave_number > light.draw(0.75).wave_number,
+           "peaks stand in their order");
     const tem00::stack stack(stack_description());
     expect(std::abs(std::norm(stack.amplitude(3, 5, 0.5)) - stack.intensity(3, 5, 0.5)) < 1e-5,
            "an amplitude squared is the intensity");
@@ -170,7 +172,8 @@ void cameras() {
            "what is left is the overlap of the pupils");
 }
 
-tem00::speckle_frame moved_frame(const tem00_camera_description &lens, const tem00_body_motion &motion) {
+tem00::speckle_frame moved_frame(const tem00_camera_description &lens,
+                                 const tem00_body_motion &motion) {
     auto wide = spot();
     wide.waist_radius = 5e-3;
     tem00_speckle_description wanted = {};
@@ -185,7 +188,8 @@ tem00::speckle_frame moved_frame(const tem00_camera_description &lens, const tem
     const std::array<double, 3> point = {1e-4, 0, 0}, before = {0, 0, 0}, normal = {0, 0, 1};
     std::array<double, 1> factor;
     speckle.factors_since(before.data(), point.data(), normal.data(), 1, factor.data());
-    expect(factor[0] == speckle.frame(motion).factor(point, normal), "a buffer has the bits of a hit");
+    expect(factor[0] == speckle.frame(motion).factor(point, normal),
+           "a buffer has the bits of a hit");
     return speckle.frame(motion);
 }
 
@@ -205,8 +209,10 @@ void speckles() {
     const auto frame = moved_frame(lens, motion);  // the speckle is gone, its frame is not
     // 0.1 mm over a pupil of 25 mm / 8.
     const auto shift = frame.shift({1e-4, 0, 0}, {0, 0, 1});
-    expect(std::abs(shift.pupil_shift / 0.032 - 1) < 1e-4, "speckle moves over the pupil with a plane");
-    expect(shift.correlation == tem00::correlation(shift.pupil_shift, 0), "what is left is the overlap");
+    expect(std::abs(shift.pupil_shift / 0.032 - 1) < 1e-4,
+           "speckle moves over the pupil with a plane");
+    expect(shift.correlation == tem00::correlation(shift.pupil_shift, 0),
+           "what is left is the overlap");
     const std::array<double, 6> points = {0, 0, 0, NAN, 0, 0}, normals = {0, 0, 1, 0, 0, 1};
     std::array<double, 2> factors;
     frame.factors(points.data(), normals.data(), 2, factors.data());

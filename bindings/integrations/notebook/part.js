@@ -13,8 +13,9 @@ async function render({ model, el }) {
 
   const answer = (error, found) => {
     const { contrast, contrast_in_theory, size, size_in_theory, correlation } = found ?? {};
+    const measured = { contrast, contrast_in_theory, size, size_in_theory, correlation };
     model.set('error', error);
-    model.set('measured', found ? { contrast, contrast_in_theory, size, size_in_theory, correlation } : {});
+    model.set('measured', found ? measured : {});
     model.save_changes();
     found?.free();
   };

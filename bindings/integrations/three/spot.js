@@ -1,4 +1,5 @@
-// A laser spot with its speckle on meshes of three.js: the function files of tem00 in a node of its materials.
+// A laser spot with its speckle on meshes of three.js: the function files of tem00 in a node of its
+// materials.
 import * as THREE from 'three/webgpu';
 import { normalWorld, positionWorld, storage, uniform, vec3, wgsl, wgslFn } from 'three/tsl';
 import init, { SpotSpeckle, functions } from './tem00_web.js';
@@ -7,14 +8,24 @@ const PIXELS = 512;
 
 await init();
 // A spot 6 cm wide, and a lens that makes speckle of 3 pixels. All lengths are in metres.
-const tem00 = new SpotSpeckle([650e-9, 5e-3, 0.03], [0, 0.1, 0.3], [0, 0, 0], [25e-3, 80, 20, PIXELS], [0, 0, 0.3], [0, 0, 0], 1);
+const tem00 = new SpotSpeckle(
+  [650e-9, 5e-3, 0.03], [0, 0.1, 0.3], [0, 0, 0],
+  [25e-3, 80, 20, PIXELS], [0, 0, 0.3], [0, 0, 0], 1,
+);
 const light = tem00.light();
 const { size } = tem00;
 
-// What the functions read: three.js declares the buffers under these names. A part that moves has a frame of its own.
+// What the functions read: three.js declares the buffers under these names. A part that moves has a
+// frame of its own.
 const buffer = (name, values, width) =>
-  storage(new THREE.StorageBufferAttribute(values, width), `vec${width}`, values.length / width).setName(name).toReadOnly();
-const buffers = [buffer('coefficients', tem00.coefficients(), 2), buffer('laws', tem00.laws(), 4), buffer('frame', tem00.frame([0, 0, 0]), 4)];
+  storage(new THREE.StorageBufferAttribute(values, width), `vec${width}`, values.length / width)
+    .setName(name)
+    .toReadOnly();
+const buffers = [
+  buffer('coefficients', tem00.coefficients(), 2),
+  buffer('laws', tem00.laws(), 4),
+  buffer('frame', tem00.frame([0, 0, 0]), 4),
+];
 const row = (i, n = 4) => Array.from(light.slice(4 * i, 4 * i + n)).join(', ');
 // Rows of a vector and a number, but for two quaternions and the last two.
 const members = [...'vvvvqvqvvvvvpq'].map((kind, i) => {
@@ -43,7 +54,8 @@ fn shade(p: vec3<f32>, n: vec3<f32>, speckle: f32, a: vec2<f32>, b: vec4<f32>, c
 const speckle = uniform(1);
 const material = new THREE.MeshBasicNodeMaterial();
 // The elements are there so that the buffers are bound.
-material.colorNode = shade(positionWorld, normalWorld, speckle, ...buffers.map((buffer) => buffer.element(0)));
+const elements = buffers.map((buffer) => buffer.element(0));
+material.colorNode = shade(positionWorld, normalWorld, speckle, ...elements);
 const scene = new THREE.Scene();
 scene.add(new THREE.Mesh(new THREE.TorusKnotGeometry(0.02, 0.005, 256, 64), material));
 const wall = new THREE.Mesh(new THREE.PlaneGeometry(0.2, 0.2), material);
@@ -69,11 +81,16 @@ async function radiance(on) {
 }
 const [smooth, rough] = [await radiance(0), await radiance(1)];
 const brightest = smooth.reduce((a, b) => Math.max(a, b), 0);
-const factors = rough.map((light, i) => light / smooth[i]).filter((_, i) => smooth[i] > 0.1 * brightest);
+const factors = rough
+  .map((light, i) => light / smooth[i])
+  .filter((_, i) => smooth[i] > 0.1 * brightest);
 const mean = factors.reduce((a, b) => a + b) / factors.length;
-const contrast = Math.sqrt(factors.reduce((a, b) => a + (b - mean) ** 2, 0) / factors.length) / mean;
-window.numbers = { middle: smooth[PIXELS * (PIXELS + 1) / 2], mean, contrast, pixels: factors.length };
-document.getElementById('numbers').textContent = `contrast ${contrast.toFixed(3)} on ${factors.length} pixels, mean ${mean.toFixed(3)}`;
+const variance = factors.reduce((a, b) => a + (b - mean) ** 2, 0) / factors.length;
+const contrast = Math.sqrt(variance) / mean;
+const middle = smooth[PIXELS * (PIXELS + 1) / 2];
+window.numbers = { middle, mean, contrast, pixels: factors.length };
+document.getElementById('numbers').textContent =
+  `contrast ${contrast.toFixed(3)} on ${factors.length} pixels, mean ${mean.toFixed(3)}`;
 
 material.colorNode = material.colorNode.mul(vec3(0.8, 0.03, 0.03)); // the light is red
 material.needsUpdate = true;

@@ -1,4 +1,5 @@
-// The settings as controls, the mouse, the measured numbers. What they mean is in the WebAssembly module.
+// The settings as controls, the mouse, the measured numbers. What they mean is in the WebAssembly
+// module.
 import init, { Page, settings } from './tem00_web.js';
 
 const $ = (id) => document.getElementById(id);
@@ -18,7 +19,11 @@ function instead(reason) {
   picture.className = 'instead';
   canvas.replaceWith(picture);
   $('settings').remove();
-  say(`This page draws with WebGPU, but ${reason}. The picture shows what it would draw; a recent Chrome, Edge, Firefox or Safari shows it live.`, true);
+  say(
+    `This page draws with WebGPU, but ${reason}. The picture shows what it would draw; ` +
+      'a recent Chrome, Edge, Firefox or Safari shows it live.',
+    true,
+  );
 }
 
 /** A control for each setting that is not moved by the mouse. */
@@ -32,12 +37,14 @@ function controls(list, onChange) {
     let input;
     if (choices.length > 0 && choices[0] !== 'off') {
       input = document.createElement('select');
-      choices.forEach((choice, value) => input.add(new Option(choice, value, false, value === start)));
+      choices.forEach((choice, value) =>
+        input.add(new Option(choice, value, false, value === start)));
       box.className = 'choice';
       input.addEventListener('change', () => onChange(name, Number(input.value)));
       box.append(label, input);
     } else if (choices.length > 0) {
-      input = Object.assign(document.createElement('input'), { type: 'checkbox', checked: start === 1 });
+      input = document.createElement('input');
+      Object.assign(input, { type: 'checkbox', checked: start === 1 });
       box.className = 'switch';
       input.addEventListener('change', () => onChange(name, input.checked ? 1 : 0));
       box.append(label, input);
@@ -46,7 +53,9 @@ function controls(list, onChange) {
       const ratio = min > 0 && max / min > 20;
       const to = ratio ? Math.log : (x) => x;
       const from = ratio ? Math.exp : (x) => x;
-      input = Object.assign(document.createElement('input'), { type: 'range', min: to(min), max: to(max), step: (to(max) - to(min)) / 400 });
+      input = document.createElement('input');
+      const step = (to(max) - to(min)) / 400;
+      Object.assign(input, { type: 'range', min: to(min), max: to(max), step });
       input.value = to(start);
       const show = (value) => {
         output.value = value.toFixed(max - min > 200 ? 0 : 2);
@@ -63,8 +72,14 @@ function controls(list, onChange) {
     }
     form.append(box);
   }
-  const rest = Object.assign(document.createElement('button'), { type: 'button', textContent: 'Part at rest' });
-  rest.addEventListener('click', () => ['slide', 'lift', 'tilt'].forEach((name) => { shown.get(name)(0); onChange(name, 0); }));
+  const rest = document.createElement('button');
+  Object.assign(rest, { type: 'button', textContent: 'Part at rest' });
+  rest.addEventListener('click', () => {
+    for (const name of ['slide', 'lift', 'tilt']) {
+      shown.get(name)(0);
+      onChange(name, 0);
+    }
+  });
   form.append(rest);
   return shown;
 }
@@ -124,7 +139,8 @@ async function start() {
   }
   async function measure() {
     const found = await page.measure().catch((error) => say(error.message ?? String(error), true));
-    for (const name of ['contrast', 'contrast_in_theory', 'size', 'size_in_theory', 'correlation']) {
+    const names = ['contrast', 'contrast_in_theory', 'size', 'size_in_theory', 'correlation'];
+    for (const name of names) {
       const value = found?.[name];
       $(name).textContent = Number.isFinite(value) ? value.toFixed(2) : '–';
     }
@@ -133,7 +149,10 @@ async function start() {
   }
 
   let last;
-  canvas.addEventListener('pointerdown', (event) => { last = event; canvas.setPointerCapture(event.pointerId); });
+  canvas.addEventListener('pointerdown', (event) => {
+    last = event;
+    canvas.setPointerCapture(event.pointerId);
+  });
   canvas.addEventListener('pointerup', () => { last = undefined; });
   canvas.addEventListener('pointermove', (event) => {
     if (!last) return;
@@ -151,7 +170,8 @@ async function start() {
     turn('zoom', values.zoom * (event.deltaY < 0 ? 0.25 : -0.2));
   }, { passive: false });
   const keys = {
-    ArrowLeft: ['azimuth', 3], ArrowRight: ['azimuth', -3], ArrowUp: ['elevation', 3], ArrowDown: ['elevation', -3],
+    ArrowLeft: ['azimuth', 3], ArrowRight: ['azimuth', -3],
+    ArrowUp: ['elevation', 3], ArrowDown: ['elevation', -3],
     '+': ['zoom', 1], '-': ['zoom', -1],
   };
   canvas.addEventListener('keydown', (event) => {

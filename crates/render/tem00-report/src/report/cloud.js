@@ -6,7 +6,11 @@ for (const view of document.querySelectorAll("svg.cloud")) {
     kind: part.getAttribute("class"),
     places: part.dataset.p.split(" ").map(Number),
   }));
-  const start = { azimuth: Number(view.dataset.azimuth), elevation: Number(view.dataset.elevation), zoom: 1 };
+  const start = {
+    azimuth: Number(view.dataset.azimuth),
+    elevation: Number(view.dataset.elevation),
+    zoom: 1,
+  };
   const turn = { ...start };
 
   const draw = () => {
@@ -41,7 +45,11 @@ for (const view of document.querySelectorAll("svg.cloud")) {
     });
   };
   const look = (azimuth, elevation) =>
-    change({ azimuth: azimuth - turn.azimuth, elevation: elevation - turn.elevation, zoom: 1 / turn.zoom });
+    change({
+      azimuth: azimuth - turn.azimuth,
+      elevation: elevation - turn.elevation,
+      zoom: 1 / turn.zoom,
+    });
 
   const fingers = new Map();
   const gap = () => {
@@ -58,7 +66,10 @@ for (const view of document.querySelectorAll("svg.cloud")) {
     const before = fingers.size === 2 ? gap() : 0;
     fingers.set(event.pointerId, event);
     if (fingers.size === 1)
-      change({ azimuth: (last.clientX - event.clientX) / 2, elevation: (event.clientY - last.clientY) / 2 });
+      change({
+        azimuth: (last.clientX - event.clientX) / 2,
+        elevation: (event.clientY - last.clientY) / 2,
+      });
     else if (before > 0) change({ zoom: gap() / before });
   });
   for (const end of ["pointerup", "pointercancel"])

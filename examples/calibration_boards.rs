@@ -2,7 +2,8 @@
 //!
 //! ```sh
 //! cargo run --release --example calibration_boards -- [FOLDER]
-//! tem00-inspect calibrate out/calibration_boards --corners 9x6 --square "8.4 mm" --pixel-pitch "8 um"
+//! tem00-inspect calibrate out/calibration_boards --corners 9x6 --square "8.4 mm" \
+//!     --pixel-pitch "8 um"
 //! ```
 //!
 //! The boards stand before a camera with a barrel distortion that looks at the laser plane at 30°.

@@ -1,7 +1,8 @@
 //! Two pictures of a plane under a laser spot that slides by 0.1 mm, and how much of the speckle is
 //! left.
 //!
-//!     cargo run --release --example moved_spot        writes out/moved_spot_0.png and out/moved_spot_1.png
+//!     cargo run --release --example moved_spot        writes out/moved_spot_0.png and
+//!                                                     out/moved_spot_1.png
 
 #![expect(clippy::print_stdout, reason = "an example prints its answer")]
 

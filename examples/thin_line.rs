@@ -62,7 +62,8 @@ fn main() -> Result<(), Box<dyn Error>> {
                 row_contrast,
             } = Measured::of(rows, width);
             println!(
-                "{width:>5} | {name:20} | {full:>8.3} h | {centroid_noise:>8.3} h | {across:>6.3} | {row_contrast:.3}"
+                "{width:>5} | {name:20} | {full:>8.3} h | {centroid_noise:>8.3} h | \
+                 {across:>6.3} | {row_contrast:.3}"
             );
             points.push((width, centroid_noise));
         }

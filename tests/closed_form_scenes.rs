@@ -97,7 +97,8 @@ fn a_point_light_obeys_the_inverse_square_and_the_cosine() {
 #[test]
 fn an_area_light_lights_by_its_form_factor() {
     let scene = plate_under(
-        "rectangle = { centre = [0, 0, 0.2], normal = [0, 0, -1], size = [0.3, 0.3], radiance = 10 }",
+        "rectangle = { centre = [0, 0, 0.2], normal = [0, 0, -1], size = [0.3, 0.3], \
+         radiance = 10 }",
     );
     // The light would hide the plate from a camera above it: look from the side.
     let scene = scene.replace("position = [0, 0, 1]\n", "position = [0.5, 0, 0.2]\n");

@@ -104,7 +104,9 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn a_lattice_that_closes_shows_what_the_endless_one_has_about_the_origin(case in cases(20..90, 5.0), path in paths()) {
+    fn a_lattice_that_closes_shows_what_the_endless_one_has_about_the_origin(
+        case in cases(20..90, 5.0), path in paths(),
+    ) {
         let field = case.field();
         let stack = stack(&field, path);
         let reach = period(&stack) as f64 / stack.field().diameter()[0] / 2.0 - 0.51;
@@ -131,7 +133,8 @@ proptest! {
             let rms = (square / pattern.values().values().len() as f64).sqrt();
             // The stated 4.3e−3 of the field at a speckle size of 2, twice that behind a square,
             // falls with its fourth power; |U|² doubles it.
-            let corners = if matches!(case.shape, Shape::Rectangle(_) | Shape::Aberrated(_)) { 2.0 } else { 1.0 };
+            let cornered = matches!(case.shape, Shape::Rectangle(_) | Shape::Aberrated(_));
+            let corners = if cornered { 2.0 } else { 1.0 };
             let stated = corners * 2.0 * 4.3e-3 * (2.0 / stack.speckle_size()).powi(4) + 1e-6;
             prop_assert!(rms < stated, "slice {index}: {rms:e}, stated {stated:e}");
         }

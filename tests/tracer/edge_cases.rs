@@ -100,7 +100,8 @@ fn a_laser_in_a_ball_lights_only_its_inside() {
 #[test]
 fn a_laser_in_the_face_of_a_block_shines() {
     // The aperture lies in a rectangle across the beam, as that of a laser built into a wall.
-    let wall = "[[surface]]\nrectangle = { centre = [0.03, 0, 0.1], normal = [0.03, 0, 0.1], size = [0.004, 0.004] }";
+    let wall = "[[surface]]\n\
+        rectangle = { centre = [0.03, 0, 0.1], normal = [0.03, 0, 0.1], size = [0.004, 0.004] }";
     for method in [Method::Path, Method::Light] {
         let [alone, built_in] = ["", wall].map(|more| render(&plate(more), method));
         let [alone, built_in] = [alone, built_in].map(|frame| frame.lasers[0].power_on_target);

@@ -51,7 +51,8 @@ impl Pass {
             fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
                 if id.x < {width}u && id.y < {height}u {{
                     let at = {PITCH} * vec2<f32>(id.xy);
-                    image[id.y * {width}u + id.x] = tem00_stack_intensity(tem00_stack, at.x, at.y, {SLICE});
+                    image[id.y * {width}u + id.x] = \
+                        tem00_stack_intensity(tem00_stack, at.x, at.y, {SLICE});
                 }}
             }}",
             stack = GpuStack::wgsl(0),

@@ -39,7 +39,8 @@ impl fmt::Display for GpuError {
             Self::Device(reason) => write!(f, "the graphics device failed: {reason}"),
             Self::Size(side) => write!(
                 f,
-                "size must have no prime factor above 5 on a graphics card and be at most {}, got {side}: {} is the next",
+                "size must have no prime factor above 5 on a graphics card and be at most {}, got \
+                 {side}: {} is the next",
                 PupilField::MAX_SIZE,
                 next_size(*side),
             ),
@@ -49,8 +50,8 @@ impl fmt::Display for GpuError {
                 allowed,
             } => write!(
                 f,
-                "a buffer of the graphics device must be at most {allowed} bytes, got {needed} for {what}: \
-                 take fewer slices or a smaller pattern"
+                "a buffer of the graphics device must be at most {allowed} bytes, got {needed} for \
+                 {what}: take fewer slices or a smaller pattern"
             ),
             Self::Speckle(error) => error.fmt(f),
         }

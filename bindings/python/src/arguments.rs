@@ -167,7 +167,10 @@ counts!(u32, u64, usize);
 macro_rules! choices {
     ($($type:ty: $($choice:literal = $value:expr),+;)+) => {$(
         impl<'py> $crate::arguments::Take<'py> for $type {
-            fn take(given: &pyo3::Bound<'py, pyo3::PyAny>, name: &'static str) -> pyo3::PyResult<Self> {
+            fn take(
+                given: &pyo3::Bound<'py, pyo3::PyAny>,
+                name: &'static str,
+            ) -> pyo3::PyResult<Self> {
                 match $crate::arguments::extracted::<String>(given, name)?.as_str() {
                     $($choice => Ok($value),)+
                     other => {

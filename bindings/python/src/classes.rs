@@ -16,7 +16,10 @@ macro_rules! class {
         }
 
         impl<'py> $crate::arguments::Take<'py> for $inner {
-            fn take(given: &pyo3::Bound<'py, pyo3::PyAny>, name: &'static str) -> pyo3::PyResult<Self> {
+            fn take(
+                given: &pyo3::Bound<'py, pyo3::PyAny>,
+                name: &'static str,
+            ) -> pyo3::PyResult<Self> {
                 Ok($crate::arguments::object::<$class>(given, name)?.get().0.clone())
             }
         }
@@ -42,7 +45,10 @@ macro_rules! kept_class {
         }
 
         impl<'py> $crate::arguments::Take<'py> for $inner {
-            fn take(given: &pyo3::Bound<'py, pyo3::PyAny>, name: &'static str) -> pyo3::PyResult<Self> {
+            fn take(
+                given: &pyo3::Bound<'py, pyo3::PyAny>,
+                name: &'static str,
+            ) -> pyo3::PyResult<Self> {
                 Ok($crate::arguments::object::<$class>(given, name)?.get().inner.clone())
             }
         }

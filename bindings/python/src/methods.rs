@@ -102,8 +102,8 @@ macro_rules! methods {
     };
     (
         @ [$class:ident $this:ident $inner:tt] $(#[$($doc:tt)*])*
-        over $name:ident($($argument:ident $(: $size:literal)?),+) -> [$($count:literal)?] = $value:expr;
-        $($items:tt)*
+        over $name:ident($($argument:ident $(: $size:literal)?),+) -> [$($count:literal)?] =
+        $value:expr; $($items:tt)*
     ) => {
         #[pyo3::pymethods]
         impl $class {
@@ -133,7 +133,11 @@ macro_rules! methods {
                 $argument: $crate::arrays::Numbers<'py>,
             ) -> pyo3::PyResult<$crate::arrays::Values<'py>> {
                 let $this = self;
-                $crate::arrays::try_map(py, (stringify!($argument), &$argument), |x| $inner.$name(x))
+                $crate::arrays::try_map(
+                    py,
+                    (stringify!($argument), &$argument),
+                    |x| $inner.$name(x),
+                )
             }
         }
         methods! { @ [$class $this $inner] $($items)* }

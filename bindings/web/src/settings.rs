@@ -141,7 +141,8 @@ pub fn as_json() -> String {
         } = setting;
         // Debug quotes as JSON does: no name needs more.
         format!(
-            "{{\"name\":{name:?},\"label\":{label:?},\"min\":{min},\"max\":{max},\"start\":{start},\"choices\":{choices:?}}}"
+            "{{\"name\":{name:?},\"label\":{label:?},\"min\":{min},\"max\":{max},\
+             \"start\":{start},\"choices\":{choices:?}}}"
         )
     };
     let all: Vec<String> = SETTINGS.iter().map(setting).collect();

@@ -16,7 +16,8 @@ use tem00::uncertainty::{
 };
 
 const MEASUREMENTS: u64 = 10_000;
-/// The fewest columns of a frame, whose speckle repeats beyond it: twice those whose mean is a height.
+/// The fewest columns of a frame, whose speckle repeats beyond it: twice those whose mean is a
+/// height.
 const FRAME: usize = 16;
 /// Heights at which intervals are computed; between them they change evenly.
 const NODES: usize = 17;

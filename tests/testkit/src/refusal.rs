@@ -11,8 +11,11 @@ use std::fmt::{Debug, Display};
 ///
 /// struct Lens { focal_length: f64, f_number: f64 }
 /// fn area(lens: Lens, scale: f64) -> Result<f64, String> {
-///     let positive = |name, x: f64| if x > 0.0 { Ok(x) } else { Err(format!("{name} must be positive")) };
-///     let diameter = positive("focal_length", lens.focal_length)? / positive("f-number", lens.f_number)?;
+///     let positive = |name, x: f64| {
+///         if x > 0.0 { Ok(x) } else { Err(format!("{name} must be positive")) }
+///     };
+///     let focal_length = positive("focal_length", lens.focal_length)?;
+///     let diameter = focal_length / positive("f-number", lens.f_number)?;
 ///     Ok(positive("scale", scale)? * diameter * diameter)
 /// }
 ///
@@ -25,7 +28,8 @@ use std::fmt::{Debug, Display};
 #[macro_export]
 macro_rules! refuses {
     ($($name:ident = $default:expr),+ => $make:expr;
-        $($bad:ident $(. $field:ident)* $(as $shown:literal)? : [$($value:expr),+ $(,)?]),+ $(,)?) => {{
+        $($bad:ident $(. $field:ident)* $(as $shown:literal)? : [$($value:expr),+ $(,)?]),+
+        $(,)?) => {{
         let defaults = { $(let $name = $default;)+ $make };
         $crate::assert_accepted(stringify!($make), defaults);
         $crate::refuses!(@rows { $(let mut $name = $default; let _ = &mut $name;)+ } ($make)
@@ -34,7 +38,8 @@ macro_rules! refuses {
     (@rows $defaults:tt $make:tt $($place:tt $shown:tt [$($value:expr),+])+) => {
         $($($crate::refuses!(@one $defaults $make $place $shown $value);)+)+
     };
-    (@one { $($defaults:tt)* } ($make:expr) { $($place:tt)+ } [$($shown:literal)?] $value:expr) => {{
+    (@one { $($defaults:tt)* } ($make:expr) { $($place:tt)+ } [$($shown:literal)?]
+        $value:expr) => {{
         $($defaults)*
         $($place)+ = $value;
         let place = [stringify!($($place)+), stringify!($value)];

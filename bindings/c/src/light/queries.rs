@@ -108,7 +108,8 @@ pub unsafe extern "C" fn tem00_light_irradiance(
     point: *const f64,
     irradiance: *mut f64,
 ) -> Status {
-    answer!(light: borrow, point: read_point => irradiance: light.ask(|light| light.irradiance(point)))
+    answer!(light: borrow, point: read_point =>
+        irradiance: light.ask(|light| light.irradiance(point)))
 }
 
 /// Computes the energy-flow vector at `point`, in W/m²: a surface whose normal n lies on the lit

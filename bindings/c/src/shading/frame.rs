@@ -71,7 +71,8 @@ pub unsafe extern "C" fn tem00_speckle_frame_factor(
     normal: *const f64,
     factor: *mut f64,
 ) -> Status {
-    answer!(frame: borrow, point: read_vector, normal: read_vector => factor: frame.0.factor(point, normal))
+    answer!(frame: borrow, point: read_vector, normal: read_vector =>
+        factor: frame.0.factor(point, normal))
 }
 
 /// Computes the factor at a point that a camera sample sees at an image point: out of focus it lies

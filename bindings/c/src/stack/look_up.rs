@@ -104,10 +104,12 @@ pub unsafe extern "C" fn tem00_stack_amplitude(
     amplitude: *mut f64,
 ) -> Status {
     let amplitude = amplitude.cast::<[f64; 2]>();
-    answer!(stack: borrow, x: check_coordinate, y: check_coordinate, u: check_coordinate => amplitude: {
-        let found = stack.0.amplitude_at(x, y, u);
-        [found.re, found.im]
-    })
+    answer!(
+        stack: borrow, x: check_coordinate, y: check_coordinate, u: check_coordinate => amplitude: {
+            let found = stack.0.amplitude_at(x, y, u);
+            [found.re, found.im]
+        }
+    )
 }
 
 /// Looks up the intensities at `count` points: the bits of `tem00_stack_intensity`. Points close to

@@ -31,7 +31,8 @@ pub(crate) fn evaluate<const INPUTS: usize, const OUTPUTS: usize>(
         fn input(i: u32) -> f32 {{ return inputs_[thread_ * {INPUTS}u + i]; }}
         fn output(i: u32, value: f32) {{ outputs_[thread_ * {OUTPUTS}u + i] = value; }}
         @compute @workgroup_size({GROUP})
-        fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {{
+        fn main(@builtin(global_invocation_id) id: vec3<u32>, \
+            @builtin(num_workgroups) groups: vec3<u32>) {{
             thread_ = id.y * groups.x * {GROUP}u + id.x;
             if thread_ >= {count}u {{ return; }}
             {body}

@@ -42,7 +42,8 @@ const SPOT: Kind = Kind {
 const LINE: Kind = Kind {
     function: "line",
     structure: "Tem00LineLight",
-    rest: "axis(16u), input(20u), input(21u), input(22u), input(23u), input(24u), input(25u), input(26u), 0.0",
+    rest: "axis(16u), input(20u), input(21u), input(22u), input(23u), input(24u), input(25u), \
+        input(26u), 0.0",
 };
 
 /// Calls `tem00_<kind>_irradiance` and `tem00_<kind>_next_event` at all points.

@@ -18,9 +18,11 @@ type Input = [f32; 62];
 
 const BODY: &str = "
     let frame = Tem00SpeckleFrame(
-        vector(0u), input(3u), vector(4u), input(7u), vector(8u), input(11u), vector(12u), input(15u),
+        vector(0u), input(3u), vector(4u), input(7u), vector(8u), input(11u), vector(12u), \
+            input(15u),
         row(16u), vector(20u), input(23u), row(24u), vector(28u), input(31u),
-        vector(32u), input(35u), vector(36u), input(39u), vector(40u), input(43u), vector(44u), input(47u),
+        vector(32u), input(35u), vector(36u), input(39u), vector(40u), input(43u), vector(44u), \
+            input(47u),
         vec2(input(48u), input(49u)), vec2(input(50u), input(51u)), row(52u),
     );
     let at = tem00_speckle(frame, vector(56u), vector(59u));

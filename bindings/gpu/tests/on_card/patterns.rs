@@ -184,7 +184,8 @@ fn what_does_not_fit_is_refused_with_what_would() {
     assert_eq!(refused, GpuError::Size(154));
     assert_eq!(
         refused.to_string(),
-        "size must have no prime factor above 5 on a graphics card and be at most 32768, got 154: 160 is the next"
+        "size must have no prime factor above 5 on a graphics card and be at most 32768, got 154: \
+         160 is the next"
     );
     let refused = pattern(field(PupilField::MAX_SIZE, 8));
     let GpuError::TooLarge {

@@ -138,7 +138,8 @@ methods! {
     /// -------
     /// ndarray, shape (..., 3)
     ///     Energy flow per watt, with its components in the last axis.
-    over flux_per_watt(x, y, z) -> [3] = |[x, y, z]| this.0.flux_per_watt(DVec3::new(x, y, z)).to_array();
+    over flux_per_watt(x, y, z) -> [3] =
+        |[x, y, z]| this.0.flux_per_watt(DVec3::new(x, y, z)).to_array();
 
     /// The beams along the first and the second principal axis.
     get axes -> (LocatedBeam, LocatedBeam) = {

@@ -48,9 +48,9 @@ class! {
     /// radii : array_like, shape (n,)
     ///     Second-moment radii there, half of D4σ, in metres.
     /// errors : {"relative", "equal"} or array_like, shape (n,), optional
-    ///     ``"relative"``, the default: proportional to the radius; ``"equal"``: the same for all. The size of
-    ///     both follows from the scatter of the data. Numbers: the known standard deviations, in
-    ///     metres.
+    ///     ``"relative"``, the default: proportional to the radius; ``"equal"``: the same for all.
+    ///     The size of both follows from the scatter of the data. Numbers: the known standard
+    ///     deviations, in metres.
     ///
     /// Raises
     /// ------

@@ -129,7 +129,8 @@ methods! {
     /// -------
     /// ndarray, shape (..., 3)
     ///     Energy flow per watt, with its components in the last axis.
-    over flux_per_watt(x, y, z) -> [3] = |[x, y, z]| this.0.flux_per_watt(DVec3::new(x, y, z)).to_array();
+    over flux_per_watt(x, y, z) -> [3] =
+        |[x, y, z]| this.0.flux_per_watt(DVec3::new(x, y, z)).to_array();
 
     /// Wavelength in the medium the beam travels in, in metres.
     get wavelength -> f64;

@@ -91,7 +91,9 @@ class! {
 methods! {
     impl LaserLine as this: this.0;
 
-    make new(focus: physics::GaussianBeam, fan: physics::FanGeometry, profile: physics::LineProfile);
+    make new(
+        focus: physics::GaussianBeam, fan: physics::FanGeometry, profile: physics::LineProfile
+    );
 
     /// Return the half-thickness of the line (1/e²), in metres, along the normal of the fan plane.
     ///
@@ -115,7 +117,8 @@ methods! {
     /// -------
     /// ndarray, shape (..., 3)
     ///     Energy flow per watt, with its components in the last axis.
-    over flux_per_watt(x, y, z) -> [3] = |[x, y, z]| this.0.flux_per_watt(DVec3::new(x, y, z)).to_array();
+    over flux_per_watt(x, y, z) -> [3] =
+        |[x, y, z]| this.0.flux_per_watt(DVec3::new(x, y, z)).to_array();
 
     /// The beam across the fan.
     get focus -> GaussianBeam = this.0.focus().to_owned();

@@ -18,7 +18,8 @@ class! {
 methods! {
     impl LineProfile as this: this.0;
 
-    unmade "gaussian_tan, gaussian_angle, gaussian_sin, uniform_tan, uniform_angle, powell or tabulated";
+    unmade "gaussian_tan, gaussian_angle, gaussian_sin, uniform_tan, uniform_angle, powell or \
+        tabulated";
 
     /// Return the profile that is Gaussian in tan θ, and so along the line on a plane.
     make gaussian_tan() = PyResult::Ok(Profile::GaussianTan);

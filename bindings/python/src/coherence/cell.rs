@@ -44,7 +44,10 @@ methods! {
     impl ResolutionCell as this: this.0;
 
     #[new]
-    #[pyo3(signature = (to_source, to_pupil, normal, sin_aperture, wavelength, rms_height=0.0, correlation_length=0.0, defocus=0.0, source_half_angle=0.0))]
+    #[pyo3(signature = (
+        to_source, to_pupil, normal, sin_aperture, wavelength, rms_height=0.0,
+        correlation_length=0.0, defocus=0.0, source_half_angle=0.0
+    ))]
     build new(_py;
         to_source: Bound<'py, PyAny>, to_pupil: Bound<'py, PyAny>, normal: Bound<'py, PyAny>,
         sin_aperture: f64, wavelength: f64, rms_height: f64, correlation_length: f64, defocus: f64,

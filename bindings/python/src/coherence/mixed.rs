@@ -54,5 +54,6 @@ functions! {
     /// ----------
     /// relative_aperture : float
     ///     The sine of the half-angle of the lit part, seen from the cell, over that of the lens.
-    try cascade_variance(relative_aperture: f64) -> f64 = physics::cascade_variance(relative_aperture);
+    try cascade_variance(relative_aperture: f64) -> f64 =
+        physics::cascade_variance(relative_aperture);
 }

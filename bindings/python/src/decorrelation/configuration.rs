@@ -111,7 +111,8 @@ functions! {
     /// before, after : Configuration
     ///     The states, however far apart.
     try speckle_motion(
-        geometry: physics::ImagingGeometry, before: physics::Configuration, after: physics::Configuration
+        geometry: physics::ImagingGeometry, before: physics::Configuration,
+        after: physics::Configuration
     ) -> SpeckleMotion = numbers(physics::SpeckleMotion::between(&geometry, &before, &after));
 }
 

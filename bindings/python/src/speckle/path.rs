@@ -32,7 +32,8 @@ methods! {
     ///     Half the number of slices, M. Slices are uncorrelated from 2 M / length slices on.
     /// length : int
     ///     Length of the path in pupil diameters, at least 2.
-    make straight(half_period: usize, length: usize) = checked(Path::Straight { half_period, length });
+    make straight(half_period: usize, length: usize) =
+        checked(Path::Straight { half_period, length });
 
     /// Return the bytes of a stack of width x height samples along this path: 8 per sample.
     ///

@@ -98,7 +98,8 @@ methods! {
     /// boundary : {"periodic", "finite"}
     ///     Whether the field repeats, or nothing is known beyond its edges.
     make from_field(field: Grid<Complex32>, boundary: Boundary) =
-        physics::VortexDensity::from_field(&field, boundary).or_raise_renamed(&["samples"], "field");
+        physics::VortexDensity::from_field(&field, boundary)
+            .or_raise_renamed(&["samples"], "field");
 
     /// Number of singularities.
     get count -> usize;

@@ -42,7 +42,8 @@ methods! {
     unmade "from_values";
 
     /// Return the samples in ascending order, those of each level spread evenly over its cell.
-    try spread(samples: Samples) -> Floats = checked(&samples.0).map(|samples| this.0.spread(samples));
+    try spread(samples: Samples) -> Floats =
+        checked(&samples.0).map(|samples| this.0.spread(samples));
 
     /// Number of levels.
     get count -> usize;

@@ -43,8 +43,10 @@ const HALVINGS: u32 = 3;
 ///
 /// ```text
 /// σ_x = √(π/8) σ_I / ΔI      by noise: σ_I of a pixel, ΔI bright less dark
-/// δ   = π σ² g Ī / ΔI        by light of the relative slope g per pixel, Ī the mean of bright and dark
-/// δ   = 2 σ² k₁ r / d²       by distortion, at the distance r from the axis, d the image distance in pixels
+/// δ   = π σ² g Ī / ΔI        by light of the relative slope g per pixel, Ī the mean of bright and
+///                            dark
+/// δ   = 2 σ² k₁ r / d²       by distortion, at the distance r from the axis, d the image distance
+///                            in pixels
 /// ```
 ///
 /// The first, per axis, follows from the slope of the noise and the curvature ΔI / (π σ²) of a

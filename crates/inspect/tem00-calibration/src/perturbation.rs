@@ -43,8 +43,9 @@ impl Perturbations {
     /// parameter, or `None` where it or one of the changed cameras sees none.
     ///
     /// ```text
-    /// ∂P = −ω × (P − O) − τ                         the board turns by ω about its origin O and moves by τ
-    /// ∂P = d (δo − δn·(P − Q)) / (n·d)              the plane's normal changes by δn, the plane moves by δo
+    /// ∂P = −ω × (P − O) − τ                 the board turns by ω about its origin O and moves by τ
+    /// ∂P = d (δo − δn·(P − Q)) / (n·d)      the plane's normal changes by δn, the plane moves by
+    ///                                       δo
     /// ```
     pub(super) fn of_point(
         &self,

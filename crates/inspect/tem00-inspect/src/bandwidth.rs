@@ -34,7 +34,8 @@ pub(crate) fn bandwidth(setup: &Setup) -> Cell {
         ),
     };
     let words = format!(
-        "{source}: line noise × {} (enters the uncertainty), speckle contrast × {} (enters saturation)",
+        "{source}: line noise × {} (enters the uncertainty), speckle contrast × {} (enters \
+         saturation)",
         ratio(effect.line_noise_ratio),
         ratio(effect.contrast),
     );

@@ -126,7 +126,8 @@ fn pairs(folder: &Path) -> Result<Vec<Pair>, Failure> {
                 pairs.len(),
                 lines.len()
             ),
-            "save each board twice: board_01.png in ordinary light, and line_01.png under the laser",
+            "save each board twice: board_01.png in ordinary light, and line_01.png under the \
+             laser",
         ));
     }
     Ok(pairs)
@@ -165,8 +166,8 @@ fn views(
 fn no_board(path: &Path, error: &TriangulationError) -> Failure {
     Failure::input(
         format!("{}: {error}", path.display()),
-        "--corners counts the inner corners, one less than squares per side; the whole board must be \
-         sharp and in the image, or leave this image out",
+        "--corners counts the inner corners, one less than squares per side; the whole board must \
+         be sharp and in the image, or leave this image out",
     )
 }
 
@@ -197,7 +198,8 @@ fn read(
     }
     Err(Failure::input(
         format!(
-            "{} has {width} × {height} pixels, but those before have {first_width} × {first_height}",
+            "{} has {width} × {height} pixels, but those before have {first_width} × \
+             {first_height}",
             path.display()
         ),
         "all images must be whole images of one camera",

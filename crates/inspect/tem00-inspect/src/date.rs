@@ -27,7 +27,8 @@ pub(crate) fn today() -> Result<String, Failure> {
         Ok(seconds) if seconds < LAST => Ok(day(seconds / SECONDS)),
         _ => Err(Failure::input(
             format!(
-                "{EPOCH} must be a number of seconds since 1970, before the year 10000, got {stated}"
+                "{EPOCH} must be a number of seconds since 1970, before the year 10000, got \
+                 {stated}"
             ),
             "unset it to have the day of the clock",
         )),

@@ -78,7 +78,8 @@ pub(crate) fn run(args: &LinesArgs, out: &mut impl Write) -> Result<(), Failure>
             }
             [_] => "the image has no point of a line that is valid".to_owned(),
             several => format!(
-                "none of the {} images has a point of a line that is valid, or most are on saturated pixels",
+                "none of the {} images has a point of a line that is valid, or most are on \
+                 saturated pixels",
                 several.len()
             ),
         },

@@ -20,8 +20,8 @@ pub trait SpeckleCorrelation {
 /// column, and carries the uncertainty of a mean of correlated numbers:
 ///
 /// ```text
-/// speckle          Σ u_a u_b ρ_ab / n²      ρ the correlation of the speckle between columns and frames,
-///                                           between frames at least 0
+/// speckle          Σ u_a u_b ρ_ab / n²      ρ the correlation of the speckle between columns and
+///                                           frames, between frames at least 0
 /// shot, dark, …    Σ u_a² / n²              new in every column and frame
 /// PRNU, DSNU       the same pixels in every frame: only columns average
 /// ```

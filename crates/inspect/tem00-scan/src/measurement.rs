@@ -295,8 +295,8 @@ fn check_direction(camera: &Camera, laser: &Laser) -> Result<(), ScanError> {
         return Ok(());
     }
     Err(ScanError::Scene(
-        "the laser line must run from left to right in the image: turn the camera by its `up`, or the \
-         line by its `line_direction`"
+        "the laser line must run from left to right in the image: turn the camera by its `up`, or \
+         the line by its `line_direction`"
             .to_owned(),
     ))
 }
@@ -305,7 +305,8 @@ fn check_direction(camera: &Camera, laser: &Laser) -> Result<(), ScanError> {
 fn check_render(scene: &Scene) -> Result<(), ScanError> {
     let render = &scene.render;
     let wrong = if render.filter != Filter::default() {
-        "`filter` in [render] must be left out: a sensor sees the mean over the sensitive part of a pixel"
+        "`filter` in [render] must be left out: a sensor sees the mean over the sensitive part of \
+         a pixel"
     } else if render.crop.is_some() {
         "`crop` in [render] must be left out: a sensor exposes all of its pixels"
     } else if render.method != Method::Path {

@@ -85,8 +85,8 @@ fn moving(scene: &Scene) -> Result<Vec<usize>, ScanError> {
     match other {
         None => Ok(moving.into_iter().map(|(index, _)| index).collect()),
         Some((_, other)) => Err(ScanError::Scene(format!(
-            "the surfaces \"{}\" and \"{}\" move differently: `surface` in [scan] must name the one that \
-             is scanned",
+            "the surfaces \"{}\" and \"{}\" move differently: `surface` in [scan] must name the \
+             one that is scanned",
             first.name, other.name
         ))),
     }

@@ -247,7 +247,8 @@ fn light_that_met_a_second_wall_moves_a_line_by_what_is_stated() {
     let wall = |x: i32| {
         format!(
             "[[surface]]\nconductor = {{ metal = \"aluminium\", roughness = 0.35 }}\n\
-             rectangle = {{ centre = [\"{x} mm\", 0, \"8 mm\"], normal = [{}, 0, 1], size = [\"22.627 mm\", \"40 mm\"] }}\n",
+             rectangle = {{ centre = [\"{x} mm\", 0, \"8 mm\"], normal = [{}, 0, 1], \
+             size = [\"22.627 mm\", \"40 mm\"] }}\n",
             -x / 8
         )
     };

@@ -145,8 +145,8 @@ impl Budget {
         self.speckles
     }
 
-    /// Returns the shift of the line by light from below the surface, which is corrected and part of
-    /// no term; `None` for a part that lets no light in.
+    /// Returns the shift of the line by light from below the surface, which is corrected and part
+    /// of no term; `None` for a part that lets no light in.
     ///
     /// Its uncertainty follows from the values of the set-up: see
     /// [`Measurement`](crate::Measurement).

@@ -88,8 +88,8 @@ impl fmt::Display for TriangulationError {
                 found,
             } => write!(
                 f,
-                "there must be a whole checkerboard with {columns} × {rows} inner corners, but only \
-                 {found} corners of squares that fit together are seen"
+                "there must be a whole checkerboard with {columns} × {rows} inner corners, but \
+                 only {found} corners of squares that fit together are seen"
             ),
             Self::NotDetermined { what, advice } => {
                 write!(f, "{what} is not determined by what was measured: {advice}")
@@ -106,8 +106,8 @@ impl fmt::Display for TriangulationError {
                 value,
             } => write!(
                 f,
-                "the distribution of `{input}` must reach possible values only: it is {distribution} and draws {} \
-                 (in SI units), with which nothing is measured",
+                "the distribution of `{input}` must reach possible values only: it is \
+                 {distribution} and draws {} (in SI units), with which nothing is measured",
                 Shown(*value)
             ),
             Self::Cancelled => write!(f, "the work was cancelled"),

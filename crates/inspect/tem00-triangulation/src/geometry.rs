@@ -48,7 +48,8 @@ pub use self::{plane::LaserPlane, profile::ProfilePoint};
 /// let plane = LaserPlane::new(DVec3::ZERO, DVec3::Y)?;
 ///
 /// let pixel = DVec2::new(320.0, 240.0);
-/// let [_, down] = Triangulator::new(camera, plane).derivatives(pixel).expect("the axis meets the plane");
+/// let triangulator = Triangulator::new(camera, plane);
+/// let [_, down] = triangulator.derivatives(pixel).expect("the axis meets the plane");
 ///
 /// // pitch / (m sin θ) with m = 1/11: 75.9 µm per pixel.
 /// assert!((down.z + 3.45e-6 * 11.0 / 0.5).abs() < 1e-12);

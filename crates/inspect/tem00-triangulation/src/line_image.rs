@@ -56,7 +56,8 @@ pub struct LineImageData {
 ///
 /// ```text
 /// A(x, y) = ∫∫ √G(v − c(u)) n(u, v) p(x − u, y − v) du dv      p the transform of the pupil
-/// n(x, y) = N/a² ∫∫ |A|² dx dy                                 over the sensitive square, of the side a
+/// n(x, y) = N/a² ∫∫ |A|² dx dy                                 over the sensitive square, of the
+///                                                              side a
 /// ```
 ///
 /// G is the Gaussian line about its position c(u) and n normal white noise. The lens blurs the line

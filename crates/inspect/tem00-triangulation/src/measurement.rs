@@ -134,7 +134,8 @@ impl MeasurementInput {
 ///     ..SetupUncertainty::default()
 /// };
 /// let found = Measurement::new(&setup, &uncertainty)?.first_order()?;
-/// // A pitch that is a thousandth larger makes heights a thousandth larger, and some perspective more.
+/// // A pitch that is a thousandth larger makes heights a thousandth larger, and some perspective
+/// // more.
 /// let by_pitch = found.contributions()[0].uncertainty;
 /// assert!((by_pitch / 5e-6 - 1.0).abs() < 0.03);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -16,10 +16,10 @@ pub use photon_transfer::PhotonTransferPoint;
 /// A camera sensor after EMVA 1288, the linear model.
 ///
 /// ```text
-/// μ_p = E A t λ / (h c)                     photons on a pixel of the area A during the exposure t
-/// μ_e = η μ_p                               electrons that light frees
-/// μ_y = y₀ + K (μ_e + μ_I t)                grey value, with the dark current μ_I
-/// σ_y² = K² (σ_d² + μ_e + μ_I t) + 1/12     its variance over time: dark, shot and quantisation noise
+/// μ_p = E A t λ / (h c)                  photons on a pixel of the area A during the exposure t
+/// μ_e = η μ_p                            electrons that light frees
+/// μ_y = y₀ + K (μ_e + μ_I t)             grey value, with the dark current μ_I
+/// σ_y² = K² (σ_d² + μ_e + μ_I t) + 1/12  its variance over time: dark, shot and quantisation noise
 /// ```
 ///
 /// # Validity

@@ -44,8 +44,8 @@ pub(crate) const SPECKLE_SIZES: (f64, f64) = (1.0 / 16.0, 64.0);
 /// ```text
 ///            z
 ///    camera  |  laser, from above, in the plane y = 0
-///        \θ  |
-///         \  |          θ: angle between optical axis and z, that is the laser plane if it stands upright
+///        \θ  |          θ: angle between optical axis and z, that is the laser plane if it
+///         \  |          stands upright
 ///   L      \ |          camera at (0, −L sin θ, L cos θ), looking at the origin
 ///           \|
 ///   ---------+--------> y      the reference plane z = 0; the line runs along x
@@ -208,8 +208,8 @@ impl Setup {
         let allowed = "such that the speckle size λ F (1 + m) is from 1/16 to 64 pixels";
         within("f_number", per_pixel[0], SPECKLE_SIZES, allowed)?;
         within("f_number", per_pixel[1], SPECKLE_SIZES, allowed)?;
-        let allowed = "such that the line is from 0.1 pixel to a third of the image wide in it; its \
-                       width there, in pixels, is the value";
+        let allowed = "such that the line is from 0.1 pixel to a third of the image wide in it; \
+                       its width there, in pixels, is the value";
         let widest = match self.line.subsurface_width > self.line.projected_thickness {
             true => "transport_length",
             false => "line_thickness",

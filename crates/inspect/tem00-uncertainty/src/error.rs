@@ -86,8 +86,8 @@ impl fmt::Display for UncertaintyError {
                 inputs,
             } => write!(
                 f,
-                "between must be the positions of two different ones of {inputs} inputs, got {first} and \
-                 {second}"
+                "between must be the positions of two different ones of {inputs} inputs, got \
+                 {first} and {second}"
             ),
             Self::Repeated {
                 between: [first, second],
@@ -97,13 +97,13 @@ impl fmt::Display for UncertaintyError {
             ),
             Self::NotNormal { input } => write!(
                 f,
-                "distribution of correlated inputs must be normal with infinite degrees of freedom, that of \
-                 input {input} is not"
+                "distribution of correlated inputs must be normal with infinite degrees of \
+                 freedom, that of input {input} is not"
             ),
             Self::Contradiction { input } => write!(
                 f,
-                "coefficient must be such that the matrix of all is positive semi-definite; those of input \
-                 {input} contradict the ones before"
+                "coefficient must be such that the matrix of all is positive semi-definite; those \
+                 of input {input} contradict the ones before"
             ),
             Self::NotFinite { value, inputs } => {
                 write!(f, "model must be finite, got {value} at")?;
@@ -115,14 +115,15 @@ impl fmt::Display for UncertaintyError {
                 value,
             } => write!(
                 f,
-                "distribution of input {input} must reach possible values only: it is {distribution} and draws {}, \
-                 where the model is not finite",
+                "distribution of input {input} must reach possible values only: it is \
+                 {distribution} and draws {}, where the model is not finite",
                 Shown(*value)
             ),
             Self::NotDifferentiable { input, open } => write!(
                 f,
-                "model must be smooth within a twentieth of the standard uncertainty of input {input}; its differences leave \
-                 {open:.1e} of the largest contribution open, allowed are 1e-6"
+                "model must be smooth within a twentieth of the standard uncertainty of input \
+                 {input}; its differences leave {open:.1e} of the largest contribution open, \
+                 allowed are 1e-6"
             ),
             Self::Correlated => write!(
                 f,

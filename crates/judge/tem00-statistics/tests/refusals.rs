@@ -136,14 +136,16 @@ fn samples() {
     let contrast = Contrast::from_samples(&[1.0, 2.0]).expect("a contrast");
     refuses!(speckle_size = 1.0 => contrast.with_speckle_size(speckle_size);
         speckle_size: [0.0, -1.0, NAN, UP]);
-    refuses!(level = 0.9 => contrast.confidence_interval(level); level: [0.0, 1.0, 95.0, -0.1, NAN]);
+    refuses!(level = 0.9 => contrast.confidence_interval(level);
+        level: [0.0, 1.0, 95.0, -0.1, NAN]);
 }
 
 #[test]
 fn tests_of_hypotheses() {
     refuses!(samples = vec![0.5], cumulative = 1.0 => kolmogorov_smirnov(&samples, |_| cumulative);
         samples: [vec![], vec![NAN]], cumulative: [2.0, NAN]);
-    refuses!(expected = vec![9.0; 3], constraints = 1 => chi_squared(&[9; 3], &expected, constraints);
+    refuses!(expected = vec![9.0; 3], constraints = 1
+        => chi_squared(&[9; 3], &expected, constraints);
         expected: [vec![9.0], vec![9.0, -1.0, 9.0], vec![NAN; 3], vec![UP; 3]], constraints: [3]);
     refuses!(samples = vec![1.0, 2.0], mean = 1.0 => t_test_mean(&samples, mean);
         samples: [vec![1.0; 2]], mean: [UP, NAN]);

@@ -46,7 +46,8 @@ const FAR: DVec3 = DVec3::new(0.0, 1e30, 0.0);
 
 #[test]
 fn light() {
-    refuses!(wavelength = 650e-9, direction = DVec3::Z => Illumination::plane(wavelength, direction);
+    refuses!(wavelength = 650e-9, direction = DVec3::Z
+        => Illumination::plane(wavelength, direction);
         wavelength: [0.0, -1.0, NAN, UP, 1e-30, 1e30], direction: [DVec3::ZERO, DVec3::NAN]);
     refuses!(position = DVec3::ZERO => Illumination::point(650e-9, position);
         position: [DVec3::NAN, FAR]);
@@ -79,7 +80,8 @@ fn surfaces_planes_and_motions() {
         position,
         amplitude: tem00_wave::Complex::new(re, 0.0),
     };
-    refuses!(scatterers = vec![scatterer(DVec3::Y, 1.0)] => RoughSurface::from_scatterers(scatterers);
+    refuses!(scatterers = vec![scatterer(DVec3::Y, 1.0)]
+        => RoughSurface::from_scatterers(scatterers);
         scatterers: [vec![]],
         scatterers as "position": [vec![scatterer(FAR, 1.0)]],
         scatterers as "amplitude": [vec![scatterer(DVec3::Y, NAN)]],

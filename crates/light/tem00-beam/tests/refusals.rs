@@ -23,11 +23,13 @@ fn located(wavelength: f64) -> LocatedBeam {
 
 #[test]
 fn beams() {
-    refuses!(wavelength = RED, waist_radius = 1e-4 => GaussianBeam::from_waist(wavelength, waist_radius);
+    refuses!(wavelength = RED, waist_radius = 1e-4
+        => GaussianBeam::from_waist(wavelength, waist_radius);
         wavelength: [0.0, -1.0, 1e-31, 1e31, NAN, INFINITE],
         waist_radius: [0.0, -1.0, 1e-31, 1e31, NAN, INFINITE, 4.13e-7],
     );
-    refuses!(wavelength = RED, divergence = 0.5 => GaussianBeam::from_divergence(wavelength, divergence);
+    refuses!(wavelength = RED, divergence = 0.5
+        => GaussianBeam::from_divergence(wavelength, divergence);
         wavelength: [0.0, -1.0, 1e-31, 1e31, NAN, INFINITE],
         divergence: [0.0, -1e-3, 0.500_001, NAN, INFINITE],
         divergence as "waist_radius": [1e-300],
@@ -52,7 +54,8 @@ fn beams() {
 #[test]
 fn a_tight_waist_shows_the_limit_that_the_wavelength_sets() {
     let refusal = GaussianBeam::from_waist(650.0, 1e-3).unwrap_err();
-    let expected = "waist_radius must be at least 2 M² λ / π = 413.8028520389279 m to be paraxial, got 0.001 m";
+    let expected = "waist_radius must be at least 2 M² λ / π = 413.8028520389279 m to be paraxial, \
+        got 0.001 m";
     assert_eq!(refusal.to_string(), expected);
 }
 
@@ -81,18 +84,21 @@ fn lines() {
 
 #[test]
 fn tables_of_angles() {
-    refuses!(angles = &[-0.3, 0.0, 0.3][..], powers = &[1.0, 0.0, 1.0][..] => AngularProfile::new(angles, powers);
+    refuses!(angles = &[-0.3, 0.0, 0.3][..], powers = &[1.0, 0.0, 1.0][..]
+        => AngularProfile::new(angles, powers);
         powers as "powers must be as many": [&[1.0, 1.0][..], &[1.0; 4]],
         powers as "powers must be greater than 0": [&[0.0; 3][..]],
         powers as "got -1e-300 at index 2": [&[1.0, 1.0, -1e-300][..]],
         powers as "got NaN at index 0": [&[NAN, 1.0, 1.0][..]],
         powers as "got inf at index 1": [&[0.0, INFINITE, 1.0][..]],
-        angles as "angles must be ascending within (-π/2, π/2) rad, got -0.3 rad at index 1": [&[-0.3, -0.3, 0.3][..]],
+        angles as "angles must be ascending within (-π/2, π/2) rad, got -0.3 rad at index 1":
+            [&[-0.3, -0.3, 0.3][..]],
         angles as "at index 1": [&[-0.3, -0.3 + 1e-13, 0.3][..]],
         angles as "at index 2": [&[-0.3, 0.0, FRAC_PI_2][..], &[-0.3, 0.0, NAN]],
         angles as "at index 0": [&[-FRAC_PI_2, 0.0, 0.3][..]],
     );
-    refuses!(count = 2 => AngularProfile::new(&[0.0, 0.1][..count], &[1.0; 2][..count]); count as "powers": [0, 1]);
+    refuses!(count = 2 => AngularProfile::new(&[0.0, 0.1][..count], &[1.0; 2][..count]);
+        count as "powers": [0, 1]);
 }
 
 #[test]

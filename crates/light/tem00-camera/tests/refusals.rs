@@ -48,7 +48,12 @@ fn cameras() {
             distortion(0.0, 0.0, INFINITE),
             distortion(-1000.0, 4e5, 0.0),
         ],
-        camera.tilt: [tilt(1.6), tilt(NAN), tilt(1.001 * steepest), SensorTilt { angle: 0.1, azimuth: NAN }],
+        camera.tilt: [
+            tilt(1.6),
+            tilt(NAN),
+            tilt(1.001 * steepest),
+            SensorTilt { angle: 0.1, azimuth: NAN },
+        ],
     );
     // An image higher than the lens is far: its top reaches through the lens.
     let high = CameraDescription {

@@ -147,7 +147,8 @@ impl ResolutionCell {
     /// Returns the cell under a source of finite extent.
     ///
     /// ```text
-    /// C² = ⟨ ∫ R(κ) chat²(|κ v + k w| / κ_t|v|) exp(−(κ q + k p)² R_q²) dκ ⟩     over pairs of directions l_S, l_S'
+    /// C² = ⟨ ∫ R(κ) chat²(|κ v + k w| / κ_t|v|) exp(−(κ q + k p)² R_q²) dκ ⟩
+    ///      over pairs of directions l_S, l_S'
     /// w = δ − p n,   p = δ·l / n·l,   δ = l_S − l_S'
     /// ```
     ///

@@ -239,7 +239,8 @@ impl PolychromaticSpeckle<'_> {
     /// √∫ R(κ) exp(−κ² σ_L²) f(s) dκ,     s = |κ| / κ_t
     /// f = 1 − 3s/2 + s³/2               thin rows
     /// f = chat(s)                       tall rows
-    /// f = ∫ K(L(x, s)) dx / ∫ K(L(x, 0)) dx,   K(L) = ∫ (L − |g|)₊ sinc²(πag) dg      rows of a speckle sizes
+    /// f = ∫ K(L(x, s)) dx / ∫ K(L(x, 0)) dx,   K(L) = ∫ (L − |g|)₊ sinc²(πag) dg
+    ///                                   rows of a speckle sizes
     /// ```
     ///
     /// with the chords L, along the rows, of the lens-shaped overlap of two discs of diameter 1 at

@@ -14,11 +14,13 @@ const Z: DVec3 = DVec3::Z;
 #[test]
 fn spectra() {
     let shape = LineShape::Gaussian;
-    refuses!(wavelength = RED, linewidth = 0.1 * RED => SpectralLine::new(wavelength, linewidth, shape);
+    refuses!(wavelength = RED, linewidth = 0.1 * RED
+        => SpectralLine::new(wavelength, linewidth, shape);
         wavelength: [0.0, -1.0, NAN, INFINITE],
         linewidth: [-1e-9, NAN, INFINITE, 66e-9],
     );
-    refuses!(wavelength = RED, span = 1e-9, peaks = 256 => SpectralLine::comb(wavelength, span, peaks);
+    refuses!(wavelength = RED, span = 1e-9, peaks = 256
+        => SpectralLine::comb(wavelength, span, peaks);
         wavelength: [0.0, NAN],
         span: [-1e-9, NAN, INFINITE, 66e-9],
         peaks: [0, 257, usize::MAX],
@@ -75,7 +77,8 @@ fn cells() {
         relief.rms_height: [-1e-6, NAN, INFINITE],
         relief.correlation_length: [-1e-6, NAN, INFINITE],
     );
-    refuses!(defocus = -1e-3 => cell.clone().with_defocus(defocus); defocus: [NAN, INFINITE, -INFINITE]);
+    refuses!(defocus = -1e-3 => cell.clone().with_defocus(defocus);
+        defocus: [NAN, INFINITE, -INFINITE]);
 }
 
 #[test]
@@ -102,5 +105,6 @@ fn sources_and_mixed_light() {
         light.within_multiple: [1.1, NAN],
         light.polarisation: [[1.0, -0.1], [NAN, 1.0]],
     );
-    refuses!(relative_aperture = 0.0 => cascade_variance(relative_aperture); relative_aperture: [-1.0, NAN]);
+    refuses!(relative_aperture = 0.0 => cascade_variance(relative_aperture);
+        relative_aperture: [-1.0, NAN]);
 }

@@ -17,7 +17,9 @@
 /// use tem00_decorrelation::closed_form::WGSL;
 ///
 /// let kernel = "
-///     fn contrast_left(pupil_shift: f32) -> f32 { return sqrt(tem00_correlation(pupil_shift, 0.0)); }
+///     fn contrast_left(pupil_shift: f32) -> f32 {
+///         return sqrt(tem00_correlation(pupil_shift, 0.0));
+///     }
 /// ";
 /// let module = format!("{WGSL}\n{kernel}");
 /// assert!(module.contains("fn tem00_correlation("));

@@ -15,7 +15,9 @@ use crate::{CameraFrame, GRAZING_COSINE, Refusal, RigidMotion, RigidMotions, vec
 /// the same distance:
 ///
 /// ```
-/// use tem00_decorrelation::{CameraFrame, ChangedPoint, DVec3, RigidChange, RigidMotion, RigidMotions};
+/// use tem00_decorrelation::{
+///     CameraFrame, ChangedPoint, DVec3, RigidChange, RigidMotion, RigidMotions,
+/// };
 ///
 /// let eye = DVec3::new(0.0, 0.0, 0.3);
 /// let camera = CameraFrame::look_at(eye, DVec3::ZERO, DVec3::Y)?;
@@ -268,7 +270,10 @@ mod tests {
             }).unwrap();
             let law = SpeckleMotion::between(&geometry, &before, &after);
             let tangents = law.image_displacement / geometry.principal_distance();
-            prop_assert!(close(found.tangent_displacement, tangents, 1.0), "{found:?}, not {tangents}");
+            prop_assert!(
+                close(found.tangent_displacement, tangents, 1.0),
+                "{found:?}, not {tangents}"
+            );
             let [from, to] = found.per_depth.map(f64::recip);
             prop_assert!((from - to - law.axial_displacement).abs() < 1e-13);
             match law.pupil_displacement {

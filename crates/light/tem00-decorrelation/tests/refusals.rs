@@ -34,7 +34,8 @@ fn lenses() {
         lens.pixel_pitch: [0.0, -1.0, NAN, INFINITE],
     );
     let geometry = ImagingGeometry::from_lens(lens).unwrap();
-    refuses!(wavelength = 1e-6 => geometry.with_wavelength(wavelength); wavelength: [0.0, NAN], wavelength as "pupil_diameter": [1.0]);
+    refuses!(wavelength = 1e-6 => geometry.with_wavelength(wavelength);
+        wavelength: [0.0, NAN], wavelength as "pupil_diameter": [1.0]);
     let thick = ThickLensData {
         wavelength: 650e-9,
         focal_length: 25e-3,
@@ -141,7 +142,8 @@ fn frames_and_motions() {
         axis: [ZERO, DVec3::NAN],
         angle: [NAN, INFINITE],
     );
-    refuses!(pupil = Z => RigidChange::new(camera, pupil, &RigidMotions::default()); pupil: [DVec3::NAN]);
+    refuses!(pupil = Z => RigidChange::new(camera, pupil, &RigidMotions::default());
+        pupil: [DVec3::NAN]);
     refuses!(correlation = 1.0 => equivalent_pupil_shift(correlation);
         correlation: [-0.2, -1e-17, 1.0 + f64::EPSILON, INFINITE, NAN]);
     refuses!(correlation = 0.0 => equivalent_axial_shift(correlation);
@@ -163,18 +165,22 @@ fn light() {
     );
     let skew = DMat3::from_cols(X, DVec3::new(1e-5, 1.0, 0.0), ZERO);
     let nan = DMat3::from_diagonal(DVec3::new(1.0, NAN, 0.0));
-    refuses!(direction = Z, curvature = DMat3::IDENTITY => Wavefront::from_tensor(direction, curvature);
+    refuses!(direction = Z, curvature = DMat3::IDENTITY
+        => Wavefront::from_tensor(direction, curvature);
         direction as "direction_to_source": [ZERO],
         curvature: [skew, nan, DMat3::IDENTITY * INFINITE],
     );
-    refuses!(direction = Z, dp = [X, Y], dl = [ZERO; 2] => Wavefront::from_differentials(direction, dp, dl);
+    refuses!(direction = Z, dp = [X, Y], dl = [ZERO; 2]
+        => Wavefront::from_differentials(direction, dp, dl);
         direction as "direction_to_source": [ZERO],
         dp: [[Z, X], [X; 2], [ZERO; 2], [X, DVec3::NAN]],
         dl: [[DVec3::INFINITY; 2], [X, DVec3::NAN]],
     );
     let wave = Wavefront::plane(Z).unwrap();
-    refuses!(position = X => Illumination::point_source(position); position: [DVec3::NAN, DVec3::INFINITY]);
-    refuses!(position = X => Illumination::near(position, wave); position: [DVec3::NAN, DVec3::INFINITY]);
+    refuses!(position = X => Illumination::point_source(position);
+        position: [DVec3::NAN, DVec3::INFINITY]);
+    refuses!(position = X => Illumination::near(position, wave);
+        position: [DVec3::NAN, DVec3::INFINITY]);
 }
 
 #[test]
@@ -196,8 +202,10 @@ fn states() {
     );
     let state = Configuration::new(upright).unwrap();
     refuses!(wavelength = 1e-6 => state.with_wavelength(wavelength); wavelength: [0.0, NAN]);
-    refuses!(light = upright.illumination => state.with_illumination(light); light as "point": [inside]);
+    refuses!(light = upright.illumination => state.with_illumination(light);
+        light as "point": [inside]);
     let past = RigidMotion::along(0.4 * Z).unwrap();
-    refuses!(surface = RigidMotion::IDENTITY => state.moved(&RigidMotions { surface, ..RigidMotions::default() });
+    refuses!(surface = RigidMotion::IDENTITY
+        => state.moved(&RigidMotions { surface, ..RigidMotions::default() });
         surface as "to_pupil": [past]);
 }

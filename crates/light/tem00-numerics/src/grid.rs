@@ -319,7 +319,9 @@ mod tests {
         }
 
         #[test]
-        fn wrapping_keeps_the_coordinate_up_to_whole_periods(x in -1e12_f64..1e12, period in 1_usize..5_000) {
+        fn wrapping_keeps_the_coordinate_up_to_whole_periods(
+            x in -1e12_f64..1e12, period in 1_usize..5_000,
+        ) {
             let (cell, fraction) = wrap_coordinate(x, period);
             prop_assert!(cell < period && (0.0..1.0).contains(&fraction), "{cell} + {fraction}");
             let turns = (x - (cell as f64 + fraction)) / period as f64;

@@ -21,18 +21,22 @@ fn located(wavelength: f64) -> LocatedBeam {
 #[test]
 fn optical_elements() {
     refuses!(length = -0.1 => AbcdMatrix::free_space(length); length: [NAN, INFINITE, 2e30, -2e30]);
-    refuses!(f = -0.1 => AbcdMatrix::thin_lens(f); f as "focal_length": [0.0, -1e-31, 1e31, NAN, INFINITE]);
-    refuses!(curvature = -4.0 => AbcdMatrix::curved_mirror(curvature); curvature: [NAN, INFINITE, 2e30, -2e30]);
+    refuses!(f = -0.1 => AbcdMatrix::thin_lens(f);
+        f as "focal_length": [0.0, -1e-31, 1e31, NAN, INFINITE]);
+    refuses!(curvature = -4.0 => AbcdMatrix::curved_mirror(curvature);
+        curvature: [NAN, INFINITE, 2e30, -2e30]);
     refuses!(curvature = 1.0, angle = 1.5 => AbcdMatrix::tilted_mirror(curvature, angle);
         curvature: [NAN, -INFINITE, 2e30],
         angle as "angle_of_incidence": [FRAC_PI_2, -FRAC_PI_2, 3.0, 7.0, NAN, INFINITE],
     );
-    refuses!(before = 1.0, after = 1.5, curvature = 1.0 => AbcdMatrix::curved_interface(before, after, curvature);
+    refuses!(before = 1.0, after = 1.5, curvature = 1.0
+        => AbcdMatrix::curved_interface(before, after, curvature);
         before as "index": [0.0, -1.5, 1e-4, 1e4, NAN, INFINITE],
         after as "index": [0.0, -1.5, 1e-4, 1e4, NAN, INFINITE],
         curvature: [NAN, INFINITE, 2e30],
     );
-    refuses!(index = 1.5, gradient = 0.0, length = 1.0 => AbcdMatrix::grin_rod(index, gradient, length);
+    refuses!(index = 1.5, gradient = 0.0, length = 1.0
+        => AbcdMatrix::grin_rod(index, gradient, length);
         index: [0.0, 1e4, NAN],
         gradient: [-1.0, 2e30, NAN, INFINITE],
         length: [2e30, NAN, -INFINITE],
@@ -49,16 +53,23 @@ fn optical_elements() {
         lens.front_curvature as "curvature": [NAN],
         lens.back_curvature as "curvature": [INFINITE],
     );
-    refuses!(entries = [1.0, 0.0, 0.5, 1.0] => { let [a, b, c, d] = entries; AbcdMatrix::new(a, b, c, d) };
+    refuses!(entries = [1.0, 0.0, 0.5, 1.0]
+        => { let [a, b, c, d] = entries; AbcdMatrix::new(a, b, c, d) };
         entries as "matrix": [[1.0, 0.0, NAN, 1.0], [INFINITE, 0.0, 0.0, 1.0]],
-        entries as "determinant": [[1.0, 0.0, 0.0, 0.0], [-1.0, 0.0, 0.0, 1.0], [1e200, 0.0, 0.0, 1e200]],
+        entries as "determinant": [
+            [1.0, 0.0, 0.0, 0.0],
+            [-1.0, 0.0, 0.0, 1.0],
+            [1e200, 0.0, 0.0, 1e200],
+        ],
     );
     let glass = AbcdMatrix::flat_interface(1.0, 1.5).unwrap();
     let round = AstigmaticBeam::stigmatic(located(RED));
-    refuses!(y = glass => through_axes(&round, [glass, y]); y as "determinant": [AbcdMatrix::identity()]);
+    refuses!(y = glass => through_axes(&round, [glass, y]);
+        y as "determinant": [AbcdMatrix::identity()]);
     // A cone of 5/9.
     let wide = LocatedBeam::new(GaussianBeam::from_waist(RED, 5e-3).unwrap(), 0.0).unwrap();
-    refuses!(f = 11e-3 => through_lens(&wide, f); f as "waist_radius": [9e-3], f as "focal_length": [0.0]);
+    refuses!(f = 11e-3 => through_lens(&wide, f);
+        f as "waist_radius": [9e-3], f as "focal_length": [0.0]);
 }
 
 #[test]
@@ -74,8 +85,10 @@ fn complex_parameters() {
         wavelength: [0.0, -1.0, 1e101, NAN, INFINITE],
     );
     let q = ComplexBeamParameter::new(0.0, 1.0).unwrap();
-    refuses!(wavelength = 1e-6 => q.radius(wavelength); wavelength: [0.0, -1.0, 1e101, NAN, INFINITE]);
-    refuses!(m_squared = 1.0 => q.to_located_beam(1e-6, m_squared); m_squared: [0.99, -1.0, NAN, INFINITE]);
+    refuses!(wavelength = 1e-6 => q.radius(wavelength);
+        wavelength: [0.0, -1.0, 1e101, NAN, INFINITE]);
+    refuses!(m_squared = 1.0 => q.to_located_beam(1e-6, m_squared);
+        m_squared: [0.99, -1.0, NAN, INFINITE]);
 }
 
 #[test]
@@ -83,7 +96,8 @@ fn measurements() {
     refuses!(radii = [1e-3, 1e-3] => CrossSection::new(radii);
         radii as "radius": [[0.0, 1.0], [1.0, -1.0], [1e31, 1.0], [NAN, 1.0], [1.0, INFINITE]]);
     let spot = CrossSection::new([1e-3, 2e-3]).unwrap();
-    refuses!(fraction = 0.0 => spot.circle_radius(fraction); fraction: [-0.1, 1.0, 1.5, NAN, INFINITE]);
+    refuses!(fraction = 0.0 => spot.circle_radius(fraction);
+        fraction: [-0.1, 1.0, 1.5, NAN, INFINITE]);
 
     const Z: [f64; 5] = [-2.0, -1.0, 0.0, 1.0, 2.0];
     const W: [f64; 5] = [2e-3, 1.4e-3, 1e-3, 1.41e-3, 2e-3];
@@ -102,7 +116,8 @@ fn measurements() {
         z as "positions must differ": [vec![1.0; 5]],
         radii as "do not determine": [vec![1e-3; 5]],
     );
-    refuses!(count = 4 => CausticFit::new(RED, &Z[..count], &W[..count]); count as "at least 4 points, got 3": [3]);
+    refuses!(count = 4 => CausticFit::new(RED, &Z[..count], &W[..count]);
+        count as "at least 4 points, got 3": [3]);
 
     const P: [f64; 5] = [0.0, 0.1, 1.0, 1.9, 2.0];
     refuses!(x = Z.to_vec(), powers = P.to_vec() => KnifeEdgeFit::new(&x, &powers);
@@ -113,6 +128,8 @@ fn measurements() {
         powers as "does not change": [vec![2.0; 5]],
         powers as "do not determine": [vec![0.0, 0.0, 0.0, 1.0, 1.0]],
     );
-    refuses!(count = 4 => KnifeEdgeFit::new(&Z[..count], &P[..count]); count as "at least 4 points, got 3": [3]);
-    refuses!(count = 5 => KnifeEdgeFit::with_background(&Z[..count], &P[..count]); count as "at least 5 points, got 4": [4]);
+    refuses!(count = 4 => KnifeEdgeFit::new(&Z[..count], &P[..count]);
+        count as "at least 4 points, got 3": [3]);
+    refuses!(count = 5 => KnifeEdgeFit::with_background(&Z[..count], &P[..count]);
+        count as "at least 5 points, got 4": [4]);
 }

@@ -49,8 +49,8 @@ impl fmt::Display for ShadingError {
             Self::Missing(what) => write!(f, "there must be {what}"),
             Self::BeyondPoses { shift, held } => write!(
                 f,
-                "this frame moves the pupil over the speckle by {shift:.3} of its diameters, and the speckle holds \
-                 {held:.3}: prepare it for this motion, too"
+                "this frame moves the pupil over the speckle by {shift:.3} of its diameters, and \
+                 the speckle holds {held:.3}: prepare it for this motion, too"
             ),
             Self::Speckle(source) => source.fmt(f),
         }

@@ -390,8 +390,8 @@ impl SpeckleFrame {
         if error.abs() <= MAX_ERROR {
             return Ok(());
         }
-        let allowed = "along the displacement of the pupil by other wavelengths: an error of at most 0.05 of the \
-                       correlation of two frames";
+        let allowed = "along the displacement of the pupil by other wavelengths: an error of at \
+                       most 0.05 of the correlation of two frames";
         Err(Refusal::new("motion", error, allowed).into())
     }
 }

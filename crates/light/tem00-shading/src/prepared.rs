@@ -118,8 +118,9 @@ impl fmt::Display for PreparedSpeckle {
         let [before, after] = patterns.shifts;
         write!(
             f,
-            "{} of {width} × {height} samples, {slices} {} ({:.0} MiB): speckle of {:.2} px, the region of {:.0} × {:.0} \
-             px repeats nothing, the pupil moves by {:.2} of its diameters in {} frames",
+            "{} of {width} × {height} samples, {slices} {} ({:.0} MiB): speckle of {:.2} px, the \
+             region of {:.0} × {:.0} px repeats nothing, the pupil moves by {:.2} of its diameters \
+             in {} frames",
             counted(patterns.stacks.len(), "pattern", "patterns"),
             if slices == 1 { "slice" } else { "slices each" },
             self.memory_bytes() as f64 / f64::from(1 << 20),

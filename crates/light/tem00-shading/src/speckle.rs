@@ -226,7 +226,8 @@ impl Speckle {
         let seen = seen.into_iter().map(|(point, _)| point);
         let light = state.spectral_law(geometry).light(seen, self.relief);
         light.ok_or(ShadingError::Missing(
-            "one of `at_points` in the image of the reference state, for a laser with a linewidth or an extent",
+            "one of `at_points` in the image of the reference state, for a laser with a linewidth \
+             or an extent",
         ))
     }
 

@@ -97,7 +97,9 @@ proptest! {
                 let factor = frame.factor(point, normal);
                 prop_assert!(factor.is_finite() && factor >= 0.0, "{factor} at {point}");
                 prop_assert!(frame.average(point, normal).is_finite());
-                prop_assert!(frame.amplitude(point, normal).is_none_or(|u| u.norm_sqr().is_finite()));
+                prop_assert!(
+                    frame.amplitude(point, normal).is_none_or(|u| u.norm_sqr().is_finite())
+                );
             }
         }
     }

@@ -33,7 +33,8 @@ use crate::ShadingError;
 /// assert!((quarter - DVec3::Y).length() < 1e-15);
 ///
 /// let turned = Rotation { axis: DVec3::Z, angle: 360_f64.to_radians() };
-/// let keyframes = [Keyframe::unmoved(0.0), Keyframe { rotation: turned, ..Keyframe::unmoved(10.0) }];
+/// let last = Keyframe { rotation: turned, ..Keyframe::unmoved(10.0) };
+/// let keyframes = [Keyframe::unmoved(0.0), last];
 /// let turning = Trajectory::keyframed(DVec3::ZERO, keyframes)?;
 /// let half = turning.pose_at(5).point(DVec3::X);
 /// assert!((half + DVec3::X).length() < 1e-15);

@@ -94,8 +94,8 @@ impl Medium {
 }
 
 impl Medium {
-    /// Returns the light that meets facets over the light that meets the plane, for its cosine to the
-    /// normal, without masking: 1/G₁ of Gaussian slopes (Smith 1967).
+    /// Returns the light that meets facets over the light that meets the plane, for its cosine to
+    /// the normal, without masking: 1/G₁ of Gaussian slopes (Smith 1967).
     fn facets_met(&self, cosine: f64) -> f64 {
         let tangent = (1.0 - cosine * cosine).max(0.0).sqrt() / cosine;
         let steepness = SQRT_2 * self.slope() * tangent;

@@ -158,8 +158,8 @@ impl SpreadLine {
     /// C² = s² + 2 s v ⟨|γ(n l)|²⟩ + v² ⟨|γ(n (l − l′))|²⟩       s + v = 1
     /// ```
     ///
-    /// with the fraction s that the boundary reflects, and means over the paths l, l′ from below the
-    /// surface (Goodman 2007). For polarised light; unpolarised light has C/√2.
+    /// with the fraction s that the boundary reflects, and means over the paths l, l′ from below
+    /// the surface (Goodman 2007). For polarised light; unpolarised light has C/√2.
     pub fn contrast(&self, line: &SpectralLine, places: [f64; 2]) -> Option<f64> {
         let pairs = pairs(
             &self.samples,

@@ -37,11 +37,11 @@ pub struct Walk {
 impl LineSpread {
     /// Follows photons through a medium and returns what each camera sees.
     ///
-    /// A photon flies from collision to collision, is reflected at the boundary by chance, and sends
-    /// a part of its light to each camera at every collision (next event). The walk from the first
-    /// collision on and its mirror image across the line differ in probability only by the first
-    /// scattering angle. Both count, each with its conditional probability, so that the diffusion
-    /// across the line adds little noise to the centre.
+    /// A photon flies from collision to collision, is reflected at the boundary by chance, and
+    /// sends a part of its light to each camera at every collision (next event). The walk from the
+    /// first collision on and its mirror image across the line differ in probability only by the
+    /// first scattering angle. Both count, each with its conditional probability, so that the
+    /// diffusion across the line adds little noise to the centre.
     ///
     /// # Errors
     ///

@@ -166,7 +166,8 @@ mod tests {
                     near("size", 1.2),
                     near("p", 1.0),
                 ],
-                "2 of 3 compared values disagree with theory: contrast, low by 0.21; size, high by 0.2.",
+                "2 of 3 compared values disagree with theory: contrast, low by 0.21; size, high by \
+                 0.2.",
             ),
         ] {
             assert_eq!(conclusion(&rows), expected);

@@ -47,7 +47,8 @@ fn metals(wavelength: f64) -> Result<Table, Failure> {
 }
 
 const MATERIALS_NOTE: &str = "\
-In a scene: lambertian.reflectance = 0.5 in [[surface]]. docs/scene_file.md has ranges and defaults.";
+In a scene: lambertian.reflectance = 0.5 in [[surface]]. docs/scene_file.md has ranges and \
+defaults.";
 
 fn materials() -> Table {
     let mut table = headed(["material", "keys", "what it is"]);

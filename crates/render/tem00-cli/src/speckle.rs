@@ -30,7 +30,8 @@ pub(crate) fn run(args: &SpeckleArgs, out: &mut impl Write) -> Result<(), Failur
     let speckle = Speckle::new(args).map_err(|error| {
         Failure::input(
             error.to_string(),
-            "--wavelength, --focal-length, --f-number, --distance and --pupil-magnification make the lens",
+            "--wavelength, --focal-length, --f-number, --distance and --pupil-magnification make \
+             the lens",
         )
     })?;
     speckle.report(args).print(args.json, &[], out)
@@ -87,9 +88,9 @@ impl Speckle {
     fn report(&self, args: &SpeckleArgs) -> Report {
         let mut report = Report::new("The speckle of a lens");
         report.verdict(
-            "Half and none are of the correlation of intensity, in collimated light on a surface that faces the \
-             camera. A change of the wavelength also decorrelates what the heights of the surface do to the \
-             phase, which is not counted here.",
+            "Half and none are of the correlation of intensity, in collimated light on a surface \
+             that faces the camera. A change of the wavelength also decorrelates what the heights \
+             of the surface do to the phase, which is not counted here.",
         );
         report.section("What changes it").table(self.changes());
         let geometry = &self.geometry;

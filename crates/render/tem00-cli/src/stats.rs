@@ -108,8 +108,8 @@ fn measurement(args: &StatsArgs, image: &LoadedImage) -> Result<Measurement, Fai
     })?;
     let is_raw = args.black_level.is_none();
     measure(&args.image, image, (flat.as_ref(), is_raw)).map_err(|error| {
-        let help = "give an image that light and speckle fill, or a part of one with --crop; --flatten divides by \
-                    uneven light";
+        let help = "give an image that light and speckle fill, or a part of one with --crop; \
+                    --flatten divides by uneven light";
         cannot(args, &error, help)
     })
 }
@@ -176,8 +176,8 @@ fn flattened(image: &Grid<f32>, window: Option<usize>) -> Result<FlatImage, Stri
     let smallest = pixels(SMALLEST_WINDOW * size);
     if window.unwrap_or(shorter) < smallest {
         return Err(format!(
-            "the local mean must be taken over {smallest} pixels at least, 6 speckle sizes of {size:.2} \
-             pixels, got {}",
+            "the local mean must be taken over {smallest} pixels at least, 6 speckle sizes of \
+             {size:.2} pixels, got {}",
             window.unwrap_or(shorter)
         ));
     }

@@ -193,7 +193,8 @@ fn unquoted(source: &Source, problem: &Problem) -> Problem {
         format!(" in line {line}, column {column}")
     });
     Problem::new(format!(
-        "there is a mistake{location}; the file lies outside of the document's folder and is not quoted"
+        "there is a mistake{location}; the file lies outside of the document's folder and is not \
+         quoted"
     ))
     .unreadable(problem.is_unreadable)
 }

@@ -114,8 +114,8 @@ fn in_use(folder: &Path, process: Option<u32>) -> Failure {
             "another tem00{process} is writing into the folder {}",
             folder.display()
         ),
-        "wait until it has ended, or name another folder with -o; only parts of one render, chosen by \
-         --frames, may share a folder",
+        "wait until it has ended, or name another folder with -o; only parts of one render, chosen \
+         by --frames, may share a folder",
     )
 }
 

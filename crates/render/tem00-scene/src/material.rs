@@ -126,7 +126,8 @@ fn translucent(
     if media.iter().any(|medium| *medium != media[0]) {
         return Err(section.problem_with(
             "material",
-            "`material` differs between the wavelengths of the lasers: render their light one by one",
+            "`material` differs between the wavelengths of the lasers: render their light one by \
+             one",
         ));
     }
     Ok(Material::translucent(media[0], roughness))

@@ -106,7 +106,8 @@ impl fmt::Display for TracerError {
             Self::Translucent { needs } => write!(f, "a translucent surface needs {needs}"),
             Self::PatternMemory { needed, allowed } => write!(
                 f,
-                "the speckle patterns of a laser need at least {needed} bytes and may take {allowed}"
+                "the speckle patterns of a laser need at least {needed} bytes and may take \
+                 {allowed}"
             ),
             Self::FilmMemory { needed, available } => write!(
                 f,

@@ -59,7 +59,8 @@ fn transmitted(count: usize, random: &mut Random) -> Vec<DelayedLight> {
     (0..count).map(|_| path(through())).collect()
 }
 
-/// |P̂(κ)|² of diffusion, κ per mean free path, between planes of no light 0.71 outside of the slab.
+/// |P̂(κ)|² of diffusion, κ per mean free path, between planes of no light 0.71 outside of the
+/// slab.
 fn diffusion(kappa: f64) -> f64 {
     const OUTSIDE: f64 = 0.71;
     let whole = THICKNESS + 2.0 * OUTSIDE;

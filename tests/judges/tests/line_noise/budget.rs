@@ -85,8 +85,8 @@ fn judge(case: &Case, formula: [f64; 2]) {
             let law = budget.contribution(UncertaintySource::Speckle);
             let law = law / judged.line.height_per_pixel.abs();
             let found = format!(
-                "{height} mm, {columns} columns, blur {:.1} px: waves {by_waves:.4} ± {error:.4}, trials {tried:.4} ± \
-                 {error_of_trials:.4}, formula {law:.4} px",
+                "{height} mm, {columns} columns, blur {:.1} px: waves {by_waves:.4} ± {error:.4}, \
+                 trials {tried:.4} ± {error_of_trials:.4}, formula {law:.4} px",
                 judged.line.blur
             );
             let chance = 3.3 * error.hypot(error_of_trials) / by_waves;

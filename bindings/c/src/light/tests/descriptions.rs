@@ -112,6 +112,9 @@ fn a_light_keeps_a_copy_of_its_table() {
     let on_axis: [f64; 3] = on_axis;
     let before: f64 = ask!(tem00_light_irradiance(light.handle, on_axis.as_ptr()));
     angles.fill(0.0);
-    agree! { "after it has changed"; tem00_light_irradiance(light.handle, on_axis.as_ptr()) = before; }
+    agree! {
+        "after it has changed";
+        tem00_light_irradiance(light.handle, on_axis.as_ptr()) = before;
+    }
     assert!(before > 0.0, "on the axis");
 }

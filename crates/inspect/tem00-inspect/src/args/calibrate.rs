@@ -50,7 +50,12 @@ pub(crate) struct CalibrateArgs {
     pub(crate) tilted: bool,
 
     /// Number of coefficients of radial distortion to fit, 0 to 3.
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(0..=3))]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 2,
+        value_parser = clap::value_parser!(u8).range(0..=3)
+    )]
     pub(crate) radial: u8,
 
     #[command(flatten)]

@@ -18,11 +18,21 @@ pub(crate) struct CharacteriseArgs {
     pub(crate) common: SetupArgs,
 
     /// Number of places at which flats and grooves are measured, 4 to 1000.
-    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u16).range(4..=1000))]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 16,
+        value_parser = clap::value_parser!(u16).range(4..=1000)
+    )]
     pub(crate) repetitions: u16,
 
     /// Samples per pixel of the rendered frames, 1 to 65536.
-    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=65536))]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 16,
+        value_parser = clap::value_parser!(u32).range(1..=65536)
+    )]
     pub(crate) spp: u32,
 
     /// Random seed of speckle and noise.

@@ -17,7 +17,8 @@ pub(super) fn verdicts(measured: &Measured) -> Vec<String> {
     let height = MILLIMETRES.text(measured.measurement.height());
     let half = MICROMETRES.text(0.5 * measured.quoted_answer().interval.length());
     let mut lines = vec![format!(
-        "Height {height} with the uncertain quantities of the set-up: U = {half} (95 %), by the {}.",
+        "Height {height} with the uncertain quantities of the set-up: U = {half} (95 %), by the \
+         {}.",
         quoted.name()
     )];
     lines.push(why(measured));
@@ -33,7 +34,8 @@ pub(super) fn verdicts(measured: &Measured) -> Vec<String> {
 /// Says that formulas do not hold for so thin a line, and which result to quote.
 pub(super) fn thin(speckles: f64, quote: &str) -> String {
     format!(
-        "The line is {} speckles wide: formulas, which are first order, do not hold below {}; quote {quote}.",
+        "The line is {} speckles wide: formulas, which are first order, do not hold below {}; \
+         quote {quote}.",
         NUMBER.with_digits(2).text(speckles),
         NUMBER.text(Budget::LEAST_SPECKLES)
     )
@@ -53,18 +55,21 @@ fn why(measured: &Measured) -> String {
         .map(|length| MICROMETRES.text(length));
     match measured.quoted() {
         Quoted::FirstOrder => format!(
-            "Law of propagation and propagation of distributions agree within the numerical tolerance of {tolerance} \
-             (the ends of their intervals differ by {low} and {high}): the first is validated, quote it."
+            "Law of propagation and propagation of distributions agree within the numerical \
+             tolerance of {tolerance} (the ends of their intervals differ by {low} and {high}): \
+             the first is validated, quote it."
         ),
         Quoted::Propagation => format!(
-            "The ends of the law of propagation are off by {low} and {high}, more than the numerical tolerance of \
-             {tolerance}: it is not validated, quote the propagation of distributions."
+            "The ends of the law of propagation are off by {low} and {high}, more than the \
+             numerical tolerance of {tolerance}: it is not validated, quote the propagation of \
+             distributions."
         ),
         Quoted::VirtualExperiment => {
             let ratio = measured.ratio().map_or(f64::NAN, |[ratio, _]| ratio);
             format!(
-                "The virtual experiment finds {} times the uncertainty by distributions, whose noise is first order: \
-                 this detector is not linear under so much noise; quote the virtual experiment.",
+                "The virtual experiment finds {} times the uncertainty by distributions, whose \
+                 noise is first order: this detector is not linear under so much noise; quote the \
+                 virtual experiment.",
                 NUMBER.with_digits(3).text(ratio)
             )
         }
@@ -75,14 +80,19 @@ fn why(measured: &Measured) -> String {
 pub(super) fn section(section: &mut Section, measured: &Measured) {
     let (validation, propagation) = (measured.validation(), &measured.propagation);
     section
-        .fact("height", "height", MILLIMETRES.quantity(measured.measurement.height()))
+        .fact(
+            "height",
+            "height",
+            MILLIMETRES.quantity(measured.measurement.height()),
+        )
         .data("quoted", measured.quoted().key())
         .table(answers(measured))
         .paragraph(
-            "Each answer in the words of the GUM. The law of propagation of uncertainty (JCGM 100) is first order; the \
-             propagation of distributions (JCGM 101) draws the inputs and evaluates the height; the virtual experiment \
-             draws the true set-up, exposes frames, finds the line, and evaluates the height with the set-up as it is \
-             described. Its standard uncertainty is the root mean square error, ± its standard error.",
+            "Each answer in the words of the GUM. The law of propagation of uncertainty (JCGM 100) \
+             is first order; the propagation of distributions (JCGM 101) draws the inputs and \
+             evaluates the height; the virtual experiment draws the true set-up, exposes frames, \
+             finds the line, and evaluates the height with the set-up as it is described. Its \
+             standard uncertainty is the root mean square error, ± its standard error.",
         )
         .data("trials", propagation.values().len())
         .data("is_stable", propagation.is_stable())
@@ -95,12 +105,16 @@ pub(super) fn section(section: &mut Section, measured: &Measured) {
                 "is_valid": validation.is_valid(),
             }),
         )
-        .data("degrees_of_freedom", measured.first_order.degrees_of_freedom())
+        .data(
+            "degrees_of_freedom",
+            measured.first_order.degrees_of_freedom(),
+        )
         .data("correlations", correlations(measured))
         .table(inputs(measured))
         .paragraph(
-            "Contributions and their parts of u² are those of the law of propagation; S and S_T are Sobol' indices, the \
-             parts of the variance that an input makes alone, and with all others. They need independent inputs.",
+            "Contributions and their parts of u² are those of the law of propagation; S and S_T \
+             are Sobol' indices, the parts of the variance that an input makes alone, and with all \
+             others. They need independent inputs.",
         );
 }
 
@@ -137,7 +151,10 @@ fn answers(measured: &Measured) -> Table {
 }
 
 fn correlations(measured: &Measured) -> Vec<serde_json::Value> {
-    let named = |(between, coefficient): ([MeasurementInput; 2], f64)| json!({ "between": between.map(source), "coefficient": coefficient });
+    let named = |(between, coefficient): ([MeasurementInput; 2], f64)| {
+        let between = between.map(source);
+        json!({ "between": between, "coefficient": coefficient })
+    };
     measured.correlations().map(named).collect()
 }
 

@@ -17,9 +17,9 @@ use super::{
 const SCHEMA: &str = "3.3.0";
 
 /// Statement in every certificate.
-const STATEMENT: &str = "This certificate states the calculated uncertainty budget of a laser-triangulation set-up \
-    as its data sheets, certificates and tolerances describe it. It is not the result of a measurement: no item was \
-    calibrated.";
+const STATEMENT: &str = "This certificate states the calculated uncertainty budget of a \
+    laser-triangulation set-up as its data sheets, certificates and tolerances describe it. It is \
+    not the result of a measurement: no item was calibrated.";
 
 /// Returns the certificate of a measured height as XML; the same input gives the same bytes.
 pub(super) fn certificate(data: &CertificateData, measured: &Measured, setup: &Setup) -> String {
@@ -143,11 +143,12 @@ fn methods(measured: &Measured) -> Element {
     };
     let what = match quoted {
         Quoted::VirtualExperiment => {
-            "Trials draw the true set-up, expose frames, find the line and evaluate the height with the set-up as it is \
-             described."
+            "Trials draw the true set-up, expose frames, find the line and evaluate the height \
+             with the set-up as it is described."
         }
         _ => {
-            "The height at which the line of sight meets the plane of the laser, by the inputs that are listed."
+            "The height at which the line of sight meets the plane of the laser, by the inputs \
+             that are listed."
         }
     };
     let mut parts = vec![

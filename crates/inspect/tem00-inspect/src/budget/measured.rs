@@ -90,8 +90,8 @@ impl Measured {
         measured.map(Some).map_err(|error| match error {
             TriangulationError::Cancelled => Failure::Interrupted,
             error => {
-                let help = "smaller uncertainties, or limits by another `distribution`; --trials 0 leaves the \
-                            virtual experiment out";
+                let help = "smaller uncertainties, or limits by another `distribution`; --trials 0 \
+                            leaves the virtual experiment out";
                 crate::measuring(&args.common.setup, &error, help)
             }
         })

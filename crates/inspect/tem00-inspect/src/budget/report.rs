@@ -118,7 +118,9 @@ fn numbers(report: &mut Report, answer: Option<&Answer>) {
     report.data("subsurface", shift);
     report.data(
         "formulas",
-        answer.map(|Answer { budget, .. }| json!({ "combined": budget.combined(), "expanded": budget.expanded() })),
+        answer.map(|Answer { budget, .. }| {
+            json!({ "combined": budget.combined(), "expanded": budget.expanded() })
+        }),
     );
     report.data(
         "dominant",
@@ -157,8 +159,8 @@ fn trials(findings: &Findings<'_>) -> serde_json::Value {
 fn terms(section: &mut Section, answer: &Answer, drawings: Vec<String>) {
     const CAPTIONS: [&str; 2] = [
         "The standard uncertainty of a height by each source alone, and by all.",
-        "The combined standard uncertainty, by formulas, over the heights that are in the image and in \
-         the depth of field.",
+        "The combined standard uncertainty, by formulas, over the heights that are in the image \
+         and in the depth of field.",
     ];
     let mut columns: Vec<Column> = [
         Column::new("source", "source"),
@@ -182,10 +184,10 @@ fn terms(section: &mut Section, answer: &Answer, drawings: Vec<String>) {
     }
     table.total(combined(answer));
     section.table(table).paragraph(
-        "Types after the GUM: A by statistics, B by models and data sheets. Formulas are first order in \
-         the noise. Trials expose simulated frames and find the line in them: errors of a single source \
-         against the position without noise, those of all at once against the true position; ± is a standard \
-         error.",
+        "Types after the GUM: A by statistics, B by models and data sheets. Formulas are first \
+         order in the noise. Trials expose simulated frames and find the line in them: errors of a \
+         single source against the position without noise, those of all at once against the true \
+         position; ± is a standard error.",
     );
     for (drawing, caption) in drawings.into_iter().zip(CAPTIONS) {
         section.drawing(drawing, caption);

@@ -35,8 +35,8 @@ pub(super) fn verdicts(answer: &Answer, setup: &Setup) -> Vec<String> {
     // The closed forms are those of a line that stays where it enters.
     lines.push(subsurface(answer, setup).unwrap_or_else(|| {
         format!(
-            "Speckle by closed forms: {} for the line that a lens images, {} for a spot after Dorsch, Häusler \
-             and Herrmann.",
+            "Speckle by closed forms: {} for the line that a lens images, {} for a spot after \
+             Dorsch, Häusler and Herrmann.",
             MICROMETRES.text(budget.line_law()),
             MICROMETRES.text(budget.dorsch())
         )
@@ -73,9 +73,9 @@ fn subsurface(answer: &Answer, setup: &Setup) -> Option<String> {
         false => String::new(),
     };
     Some(format!(
-        "Light from below the surface leaves the part beside the line: with this detector the part reads {height} \
-         {side}. Heights are corrected by that.{contrast} On a part that moves, light from below the surface has new \
-         speckle in every frame."
+        "Light from below the surface leaves the part beside the line: with this detector the part \
+         reads {height} {side}. Heights are corrected by that.{contrast} On a part that moves, \
+         light from below the surface has new speckle in every frame."
     ))
 }
 
@@ -127,8 +127,8 @@ fn of_trials(answer: &Answer) -> Vec<String> {
         lines.push(answers::thin(answer.budget.speckles(), quote));
     } else if let Some([ratio, _]) = answer.ratio().filter(|ratio| differs(*ratio)) {
         lines.push(format!(
-            "Trials find {} times the uncertainty of the formulas, which are first order: this detector is not \
-             linear under so much noise; quote the trials.",
+            "Trials find {} times the uncertainty of the formulas, which are first order: this \
+             detector is not linear under so much noise; quote the trials.",
             NUMBER.with_digits(3).text(ratio)
         ));
     }

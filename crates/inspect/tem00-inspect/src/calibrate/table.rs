@@ -89,8 +89,8 @@ fn height(calibration: &Calibration) -> Option<String> {
     let [_, down] = calibration.triangulator().derivatives(middle)?;
     let uncertainty = calibration.height_uncertainty(point, DVec3::Z)?;
     Some(format!(
-        "In the middle of the image a pixel is {} µm of height above the first board, and the calibration \
-         leaves {} µm uncertain.",
+        "In the middle of the image a pixel is {} µm of height above the first board, and the \
+         calibration leaves {} µm uncertain.",
         number(1e6 * down.z.abs()),
         number(1e6 * uncertainty)
     ))

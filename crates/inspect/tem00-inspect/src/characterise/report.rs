@@ -33,20 +33,23 @@ pub(super) fn report(
             .for_each(|line| report.warning(line));
     }
     report.note(
-        "Rendered, not measured: camera, laser plane and stage are known exactly, and the artefacts are of the surface of \
-         the set-up. A profile is one frame, imaged as waves: with diffraction, defocus and speckle.",
+        "Rendered, not measured: camera, laser plane and stage are known exactly, and the \
+         artefacts are of the surface of the set-up. A profile is one frame, imaged as waves: with \
+         diffraction, defocus and speckle.",
     );
     let section = report.section("Characteristics");
     section.table(table(&rows)).paragraph(
-        "± is a standard uncertainty, by the spread between repetitions. Where a characteristic is the largest of several \
-         deviations, noise alone would give what stands under \"by chance\": only what is clearly larger is one of the sensor.",
+        "± is a standard uncertainty, by the spread between repetitions. Where a characteristic is \
+         the largest of several deviations, noise alone would give what stands under \"by \
+         chance\": only what is clearly larger is one of the sensor.",
     );
     for (drawing, caption) in drawings {
         section.drawing(drawing, caption);
     }
     let definitions = report.section("Definitions").in_detail();
     definitions.table(defined(&rows)).paragraph(
-        "Terms and symbols are those of ISO 25178-600 and ISO 10360-8; the definitions are those of this program, in full.",
+        "Terms and symbols are those of ISO 25178-600 and ISO 10360-8; the definitions are those \
+         of this program, in full.",
     );
     artefacts(
         report
@@ -76,7 +79,10 @@ fn verdict(rows: &[Row]) -> String {
     );
     let widths = said("resolution_along_profile").zip(said("resolution_along_scan"));
     let widths = widths.map(|(x, y)| {
-        format!(" Grooves of {x} along the profile and of {y} along the scan are seen half as deep as they are.")
+        format!(
+            " Grooves of {x} along the profile and of {y} along the scan are seen half as deep \
+            as they are."
+        )
     });
     noise + &widths.unwrap_or_default()
 }
@@ -87,8 +93,8 @@ fn finer_than_columns(symbol: &str, width: f64, column: f64) -> Option<String> {
     let text = |length| MICROMETRES.with_digits(3).text(length);
     (width < two).then(|| {
         format!(
-            "{symbol} = {} is less than two columns, {}: whether so narrow a groove is seen hangs on where a column stands in \
-             it. Quote two columns.",
+            "{symbol} = {} is less than two columns, {}: whether so narrow a groove is seen hangs \
+             on where a column stands in it. Quote two columns.",
             text(width),
             text(two)
         )

@@ -142,7 +142,8 @@ fn unseen(field: &Field) -> String {
         return NOT_SEEN.to_owned();
     }
     format!(
-        "not measured: the comb of grooves needs {:.0} points along the profile, and there are {points:.0}",
+        "not measured: the comb of grooves needs {:.0} points along the profile, and there are \
+         {points:.0}",
         needed.ceil()
     )
 }

@@ -116,8 +116,8 @@ fn over(design: &Design<'_>, sweep: &Sweep) -> Named {
     Named {
         name: format!("over_{}", parameter.key()),
         caption: format!(
-            "The standard uncertainty of a height over {}, all else as in the set-up shown, and what \
-             the sources contribute.",
+            "The standard uncertainty of a height over {}, all else as in the set-up shown, and \
+             what the sources contribute.",
             units::words(parameter.key())
         ),
         drawing: chart.log_y().draw(),
@@ -211,8 +211,8 @@ fn sensitivity(design: &Design<'_>, near: &[Neighbours]) -> Named {
     Named {
         name: "sensitivity".into(),
         caption: format!(
-            "By how much the {name} of the set-up shown changes with 10 % less and 10 % more of each \
-             parameter alone; no bar: infeasible, or no effect."
+            "By how much the {name} of the set-up shown changes with 10 % less and 10 % more of \
+             each parameter alone; no bar: infeasible, or no effect."
         ),
         drawing: bars.draw(),
     }

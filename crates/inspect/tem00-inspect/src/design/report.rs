@@ -50,8 +50,8 @@ pub(super) fn report(
         .for_each(|line| report.verdict(line));
     if !design.is_exact {
         report.note(
-            "The uncertain values of the set-up are taken at their best estimates: the search knows the noise alone, and \
-             best.toml has no uncertainties.",
+            "The uncertain values of the set-up are taken at their best estimates: the search \
+             knows the noise alone, and best.toml has no uncertainties.",
         );
     }
 

@@ -19,7 +19,8 @@ pub(super) fn verdict(design: &Design<'_>) -> String {
             let name = units::words(objective.name());
             let dominant = figures.dominant.name();
             let thin = if figures.speckles < Budget::LEAST_SPECKLES {
-                " Its line is below two speckles wide, where formulas do not hold: ask the trials of `tem00-inspect budget`."
+                " Its line is below two speckles wide, where formulas do not hold: ask the trials \
+                 of `tem00-inspect budget`."
             } else {
                 ""
             };
@@ -82,6 +83,7 @@ pub(super) fn nothing(design: &Design<'_>) -> Failure {
         format!(
             "{name}: none of the {possible} set-ups that are possible keeps every constraint: {why}"
         ),
-        "relax [design.require] or widen [design.vary]; design.html shows the set-up that comes nearest",
+        "relax [design.require] or widen [design.vary]; design.html shows the set-up that comes \
+         nearest",
     )
 }

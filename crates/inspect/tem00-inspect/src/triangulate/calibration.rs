@@ -30,10 +30,12 @@ pub(super) fn calibrated(
     if boards.folder.is_some() {
         return Err(Failure::input(
             format!(
-                "{}: images of real boards do not determine the position of the scene: leave out `folder` in [calibration]",
+                "{}: images of real boards do not determine the position of the scene: leave out \
+                 `folder` in [calibration]",
                 scene.display()
             ),
-            "`tem00-inspect calibrate` estimates a calibration from a folder, and `tem00-inspect lines --calibration` uses it",
+            "`tem00-inspect calibrate` estimates a calibration from a folder, and `tem00-inspect \
+             lines --calibration` uses it",
         ));
     }
     let refused = |error: ScanError| measurement_failure(scene, &error);

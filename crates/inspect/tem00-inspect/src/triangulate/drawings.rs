@@ -50,8 +50,8 @@ impl Drawings<'_> {
         write_rgb_png(&mut png, &marked, &[])
             .map_err(|error| Failure::running(format!("cannot write a picture: {error}")))?;
         let caption = format!(
-            "Frame {} as the camera gives it, brightened to its largest grey value; a colour for each \
-             piece of the line, magenta for points that are not valid.",
+            "Frame {} as the camera gives it, brightened to its largest grey value; a colour for \
+             each piece of the line, magenta for points that are not valid.",
             frame.frame
         );
         section.picture(png, marked.width(), caption);

@@ -54,8 +54,9 @@ pub(super) fn images(map: &HeightMap) -> impl Iterator<Item = MapImage> {
 /// The columns of a profile.
 const HEADINGS: &str = "column,line,x_pixel,y_pixel,width_pixel,intensity_dn,validity,\
                         x_m,y_m,z_m,height_m,u_x_m,u_y_m,u_z_m,u_height_m,u_position_pixel,\
-                        u_speckle_pixel,u_shot_pixel,u_dark_pixel,u_quantisation_pixel,u_prnu_pixel,\
-                        u_dsnu_pixel,u_calibration_height_m,u_indirect_pixel,indirect_fraction";
+                        u_speckle_pixel,u_shot_pixel,u_dark_pixel,u_quantisation_pixel,\
+                        u_prnu_pixel,u_dsnu_pixel,u_calibration_height_m,u_indirect_pixel,\
+                        indirect_fraction";
 
 impl Files {
     /// Checks, before the work starts, that files can be written.
@@ -156,7 +157,8 @@ impl Files {
             (
                 "Description",
                 format!(
-                    "{name} = offset + scale * value; 0 is a hole; the first row is the first profile"
+                    "{name} = offset + scale * value; 0 is a hole; the first row is the first \
+                     profile"
                 ),
             ),
         ];

@@ -48,8 +48,8 @@ impl Refusal {
             advice: if is_saturated {
                 BRIGHT
             } else {
-                "look at the raw frames: is the line in the image? If it is too dark, raise `exposure` in \
-                 [sensor] or `power` in [[laser]]"
+                "look at the raw frames: is the line in the image? If it is too dark, raise \
+                 `exposure` in [sensor] or `power` in [[laser]]"
             },
         }
     }

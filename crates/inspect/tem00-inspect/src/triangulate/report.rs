@@ -21,10 +21,10 @@ use super::{
 };
 
 /// The correlations between the errors.
-const CORRELATIONS: &str = "Speckle correlates the errors of neighbouring columns over about a speckle, and \
-    those of frames in which the surface has not moved; shot noise, dark noise and quantisation are new in \
-    every pixel and frame; PRNU and DSNU are new in every pixel and stay from frame to frame; the error of \
-    the calibration is common to all points.";
+const CORRELATIONS: &str = "Speckle correlates the errors of neighbouring columns over about a \
+    speckle, and those of frames in which the surface has not moved; shot noise, dark noise and \
+    quantisation are new in every pixel and frame; PRNU and DSNU are new in every pixel and stay \
+    from frame to frame; the error of the calibration is common to all points.";
 
 /// The minimum ratio of the speckle noise of a camera to the speckle noise of a frame for which the
 /// reader is warned.
@@ -37,8 +37,9 @@ fn speckle_by_waves(report: &mut Report, job: &Job<'_>, measured: &Measured) {
     report.data("speckle_by_waves", ratio);
     if let Some(ratio) = ratio.filter(|ratio| *ratio >= MUCH_MORE_SPECKLE) {
         report.verdict(format!(
-            "A camera would see {ratio:.2} times as much speckle noise of this line: it is narrower than its speckle or its \
-             blur, which rendered frames leave out. U is that of the frames; `tem00-inspect budget` has that of a camera."
+            "A camera would see {ratio:.2} times as much speckle noise of this line: it is \
+             narrower than its speckle or its blur, which rendered frames leave out. U is that of \
+             the frames; `tem00-inspect budget` has that of a camera."
         ));
     }
 }

@@ -150,8 +150,8 @@ impl Terms {
             )
         });
         format!(
-            "Expanded uncertainty of the height of a point: U = {} (95 %, k = {COVERAGE}), as root mean \
-             square of {} points; half of them have {} at most, 95 % of them {}.{dominant}",
+            "Expanded uncertainty of the height of a point: U = {} (95 %, k = {COVERAGE}), as root \
+             mean square of {} points; half of them have {} at most, 95 % of them {}.{dominant}",
             MICROMETRES.with_digits(3).text(self.expanded),
             self.points,
             MICROMETRES.with_digits(3).text(self.quantiles[0]),
@@ -164,8 +164,8 @@ impl Terms {
         let mut lines = Vec::new();
         if self.indirect > 0.0 {
             lines.push(format!(
-                "In {} of the points a tenth or more of the light came by a second surface. No repetition shows what \
-                 that moves them by; u has it, as the render knows it.",
+                "In {} of the points a tenth or more of the light came by a second surface. No \
+                 repetition shows what that moves them by; u has it, as the render knows it.",
                 PERCENT.with_digits(2).text(self.indirect)
             ));
         }

@@ -237,7 +237,8 @@ fn what_dominates_is_of_the_answer_to_quote() {
 #[test]
 fn correlated_values_have_no_parts_of_the_variance() {
     let folder = written(&format!(
-        "{SETUP}\n[[correlation]]\nbetween = [\"camera.angle\", \"camera.distance\"]\ncoefficient = 0.5\n"
+        "{SETUP}\n[[correlation]]\nbetween = [\"camera.angle\", \"camera.distance\"]\n\
+         coefficient = 0.5\n"
     ));
     let distance = "--set 'camera.distance={ value = \"300 mm\", uncertainty = \"1 mm\" }'";
     let options = format!("{UNCERTAIN_ANGLE} {distance} --set 'budget.height=0.5 mm'");

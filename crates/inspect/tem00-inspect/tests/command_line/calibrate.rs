@@ -142,7 +142,8 @@ fn what_photographs_of_lines_did_not_give_is_told() {
     photograph(&path(4), &pose(4), |point| 200.0 * line(point));
     let Said { out, told } = said(folder.path(), &command, 0);
     let parts = [
-        "3 of 5 pictures of the line gave no point: line_1 (pixels are saturated: expose shorter), line_2",
+        "3 of 5 pictures of the line gave no point: line_1 (pixels are saturated: expose shorter), \
+         line_2",
         "line_3 (no line was found",
     ];
     assert_has(&told, &parts);

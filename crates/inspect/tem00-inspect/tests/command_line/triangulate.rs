@@ -28,8 +28,9 @@ fn a_scan_leaves_all_its_files() {
     // Columns of an image have no size on the part, which X3P wants.
     assert_files(
         &results,
-        "height.npy height.png height_map.svg height_uncertainty.npy measurement.json points.pcd points.ply \
-         profile.png profile_0003.csv raw_0003.png reflectance.png report.html uncertainty_map.png width.png",
+        "height.npy height.png height_map.svg height_uncertainty.npy measurement.json points.pcd \
+         points.ply profile.png profile_0003.csv raw_0003.png reflectance.png report.html \
+         uncertainty_map.png width.png",
         "height.x3p",
     );
     let record = record(&results);
@@ -54,7 +55,8 @@ fn a_scan_leaves_all_its_files() {
 fn light_of_a_second_surface_is_told() {
     // A wall along the scan at the end of a plate.
     let wall = "[[surface]]\nlambertian.reflectance = 0.9\n\
-                rectangle = { centre = [0, 0, \"10 mm\"], normal = [-1, 0, 0], size = [\"80 mm\", \"20 mm\"] }\n[sensor]";
+                rectangle = { centre = [0, 0, \"10 mm\"], normal = [-1, 0, 0], \
+                size = [\"80 mm\", \"20 mm\"] }\n[sensor]";
     let with_wall = replaced(SCAN, "[sensor]", wall);
     for (scene, is_told) in [(SCAN, false), (&*with_wall, true)] {
         let folder = written(scene);
@@ -202,7 +204,8 @@ fn points_on_saturated_pixels_are_told_and_most_of_them_are_no_result() {
 
 #[test]
 fn height_maps_may_be_tiff_and_square() {
-    let scan = "[scan]\npitch = \"0.3 mm\"\nraw = \"tiff\"\naverage = { frames = 2, columns = 2 }\n[render]";
+    let scan = "[scan]\npitch = \"0.3 mm\"\nraw = \"tiff\"\n\
+                average = { frames = 2, columns = 2 }\n[render]";
     let folder = written(&replaced(SCAN, "[render]", scan));
     said(folder.path(), "triangulate a.toml", 0);
     let results = folder.path().join("out/a");

@@ -224,8 +224,8 @@ fn autocovariance(d: &SetupDescription, line: &ImagedLine) -> Option<PixelAutoco
     .ok()
 }
 
-/// Returns the shift of a line by light from below the surface, as the detector finds it, in pixels:
-/// 0 without such light, and `None` if the detector finds no line.
+/// Returns the shift of a line by light from below the surface, as the detector finds it, in
+/// pixels: 0 without such light, and `None` if the detector finds no line.
 pub(super) fn subsurface_shift(setup: &Setup, line: &ImagedLine) -> Option<f64> {
     if !line.is_spread() {
         return Some(0.0);

@@ -255,8 +255,8 @@ impl<'a> Simulator<'a> {
     }
 
     /// Returns how far the positions that are found in exposed frames are from the place where the
-    /// line enters the part, averaged over columns and frames, in pixels, and the fraction of the columns without a line
-    /// that can be trusted.
+    /// line enters the part, averaged over columns and frames, in pixels, and the fraction of the
+    /// columns without a line that can be trusted.
     pub(crate) fn deviations(&self, seed: u64) -> Result<(Vec<f64>, f64), TriangulationError> {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let frames = self.frames(phase(&mut random), random.next_u64());

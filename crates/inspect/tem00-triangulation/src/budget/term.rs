@@ -29,11 +29,12 @@ impl UncertaintySource {
     pub const fn remedy(self) -> &'static str {
         match self {
             Self::Speckle => {
-                "a larger pupil (smaller f-number), a narrower line, a larger angle, or averages over \
-                 columns or frames of a moving part lower it; more light does not"
+                "a larger pupil (smaller f-number), a narrower line, a larger angle, or averages \
+                 over columns or frames of a moving part lower it; more light does not"
             }
             Self::ShotNoise => {
-                "more light lowers it: power, exposure or pupil, or a sensor with a larger full well"
+                "more light lowers it: power, exposure or pupil, or a sensor with a larger full \
+                 well"
             }
             Self::DarkNoise => "more light, a shorter window or a quieter sensor lowers it",
             Self::Quantisation => "more bits, or more light per grey value, lower it",

@@ -58,7 +58,9 @@ mod tests {
                 prop_assert!(!bettered, "{:?} is on the front", points[index]);
             }
             for (index, &point) in points.iter().enumerate() {
-                let reached = front.iter().any(|&f| same(points[f], point) || betters(points[f], point));
+                let reached = front
+                    .iter()
+                    .any(|&f| same(points[f], point) || betters(points[f], point));
                 prop_assert!(reached, "{point:?} at {index} is bettered or on the front");
             }
             for pair in front.windows(2) {

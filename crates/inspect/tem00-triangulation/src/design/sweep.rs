@@ -133,7 +133,8 @@ mod tests {
     fn values_that_are_no_sizes_are_refused() {
         refuses!(angle = 0.5 => Sweep::list(SetupQuantity::Angle, vec![0.5, angle]);
             angle: [0.0, -1.0, f64::NAN, f64::INFINITY]);
-        refuses!(steps = 2 => Sweep::between(SetupQuantity::Angle, (0.1, 0.2), steps, Spacing::Linear);
+        refuses!(steps = 2
+            => Sweep::between(SetupQuantity::Angle, (0.1, 0.2), steps, Spacing::Linear);
             steps: [0, 1]);
         let none = Sweep::list(SetupQuantity::Angle, Vec::new());
         assert!(

@@ -135,8 +135,8 @@ impl Derivatives {
     /// With the unit normal n, the eigenvector of the most negative second derivative:
     ///
     /// ```text
-    /// t = −(r_x n_x + r_y n_y) / (r_xx n_x² + 2 r_xy n_x n_y + r_yy n_y²)      to the ridge, along n
-    /// y = t / n_y                                                              along the column
+    /// t = −(r_x n_x + r_y n_y) / (r_xx n_x² + 2 r_xy n_x n_y + r_yy n_y²)   to the ridge, along n
+    /// y = t / n_y                                                           along the column
     /// ```
     ///
     /// The ridge belongs to this pixel if it crosses the column there.

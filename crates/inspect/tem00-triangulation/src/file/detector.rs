@@ -21,7 +21,8 @@ const KEYS: &[&str] = &[
 /// ```toml
 /// [detector]
 /// method = "thresholded_centre_of_gravity"
-/// threshold = 0.2        # of that method; `order` = 2, 4 or 8 is of "blais_rioux", `sigma` of "steger"
+/// threshold = 0.2        # of that method; `order` = 2, 4 or 8 is of "blais_rioux",
+///                        # `sigma` of "steger"
 /// window = 31            # pixels, odd
 /// min_peak = 10        # grey values
 /// max_lines = 1

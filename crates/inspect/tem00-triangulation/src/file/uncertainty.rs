@@ -88,8 +88,8 @@ fn read_quantity(
     let input = input.with_degrees_of_freedom(freedom).map_err(rejected)?;
     if input.standard_deviation().is_infinite() {
         let message = format!(
-            "`degrees_of_freedom` must be above 2, got {freedom}: a t distribution of fewer has no variance; \
-             pool more readings, or state another `distribution`"
+            "`degrees_of_freedom` must be above 2, got {freedom}: a t distribution of fewer has no \
+             variance; pool more readings, or state another `distribution`"
         );
         return Err(table.problem_with("degrees_of_freedom", message));
     }
@@ -177,12 +177,14 @@ fn check(
         UncertaintyError::NotNormal { input } => {
             let (quantity, _) = quantities[*input];
             format!(
-                "`between` must name normal quantities without degrees of freedom, {quantity} is none"
+                "`between` must name normal quantities without degrees of freedom, {quantity} is \
+                 none"
             )
         }
         UncertaintyError::Contradiction { .. } if !is_all => return Ok(()),
         UncertaintyError::Contradiction { .. } => {
-            "`coefficient` contradicts other correlations: their matrix is not positive semi-definite"
+            "`coefficient` contradicts other correlations: their matrix is not positive \
+             semi-definite"
                 .into()
         }
         UncertaintyError::Between { .. } => "`between` must name two different quantities".into(),

@@ -27,11 +27,12 @@ const STEP: f64 = 1e-5;
 ///
 /// ```text
 /// W² = W_line² + W_lens² + b² + W_body²
-/// W_line   the projection of the line on the part, m · line_thickness √(1 + z²/z_R²) · cos θ to first order
+/// W_line   the projection of the line on the part, m · line_thickness √(1 + z²/z_R²) · cos θ to
+///          first order
 /// W_lens   = 4√2 h / π, the Gaussian of the same curvature as the peak of the lens's Airy disc
 /// b        = D s |1/Z_focus − 1/Z|, the diameter of the disc of defocus, whose 4σ across is b
-/// W_body   by light from below the surface: what the width of the Gaussian with the full width at half
-///          maximum of the whole profile has more
+/// W_body   by light from below the surface: what the width of the Gaussian with the full width at
+///          half maximum of the whole profile has more
 /// ```
 ///
 /// Light from below the surface spreads the line to one side; the profile has its whole shape.

@@ -26,17 +26,18 @@ impl LightLevel {
     pub const fn advice(self) -> &'static str {
         match self {
             Self::Dark => {
-                "the line hardly stands out of the noise: raise the exposure, the power or the pupil \
-                 (smaller f-number), or lower `min_peak` in [detector]"
+                "the line hardly stands out of the noise: raise the exposure, the power or the \
+                 pupil (smaller f-number), or lower `min_peak` in [detector]"
             }
             Self::Good => "the line uses the range of the sensor without leaving it",
             Self::SaturatedGrains => {
-                "pixels of bright grains are cut off, and their columns do not count as valid: lower \
-                 the exposure or the power by as much as the brightest grains exceed the range"
+                "pixels of bright grains are cut off, and their columns do not count as valid: \
+                 lower the exposure or the power by as much as the brightest grains exceed the \
+                 range"
             }
             Self::Saturated => {
-                "the crest of the line is cut off and its position is wrong: lower the exposure or the \
-                 power, or raise the f-number"
+                "the crest of the line is cut off and its position is wrong: lower the exposure or \
+                 the power, or raise the f-number"
             }
         }
     }

@@ -271,7 +271,8 @@ quantities! {
                         false => body.range(body.absorption, [1e-6, 1e10]),
                     }
                 },
-                "from 1e-6 to 100 per `transport_length` (in 1/m), and stated beside it or a `material`",
+                "from 1e-6 to 100 per `transport_length` (in 1/m), and stated beside it or a \
+                 `material`",
             )
             .or("that of the `material`; else required beside `transport_length`")
             .written_if(|d| d.surface.subsurface.absorption > 0.0)
@@ -295,7 +296,8 @@ quantities! {
         /// hold
         TemperatureChange: temperature_change =
             Row::new(field!(environment.temperature_change), &KELVINS)
-            .within(|_| (-200.0, 200.0), "from -200 to 200 K").note("kelvins since the calibration");
+            .within(|_| (-200.0, 200.0), "from -200 to 200 K")
+            .note("kelvins since the calibration");
         /// number from -0.001 to 0.001, per kelvin: of the base between camera and laser; it moves
         /// the laser plane away by that part of $L \sin\theta$
         BaseExpansion: base_expansion = Row::new(field!(environment.base_expansion), &PER_KELVIN)

@@ -246,8 +246,9 @@ fn normals_without_direction_have_no_angles() {
 }
 
 prop_compose! {
-    fn emitters()(x in -0.9_f64..0.9, y in -0.9_f64..0.9, z in 0.1_f64..1.0, curvature in -20.0_f64..20.0)
-        -> Emitter {
+    fn emitters()(
+        x in -0.9_f64..0.9, y in -0.9_f64..0.9, z in 0.1_f64..1.0, curvature in -20.0_f64..20.0,
+    ) -> Emitter {
         Emitter { direction: DVec3::new(x, y, z).normalize(), distance: 1.0 / curvature }
     }
 }

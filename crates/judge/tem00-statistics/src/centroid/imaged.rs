@@ -78,7 +78,8 @@ pub fn imaged_line_centroid_deviation(radius: f64, row_height: f64) -> f64 {
 /// use tem00_statistics::laws::{defocused_line_centroid_deviation, imaged_line_centroid_deviation};
 ///
 /// // A line four speckles in full width, blurred by as much: 1.44 times the noise.
-/// let ratio = defocused_line_centroid_deviation(2.0, 0.0, 4.0) / imaged_line_centroid_deviation(2.0, 0.0);
+/// let blurred = defocused_line_centroid_deviation(2.0, 0.0, 4.0);
+/// let ratio = blurred / imaged_line_centroid_deviation(2.0, 0.0);
 /// assert!((ratio - 1.4427).abs() < 1e-4, "{ratio}");
 /// ```
 ///

@@ -287,8 +287,8 @@ pub fn decorrelated_samples(grid: &Grid<f32>, stride: usize) -> Result<Vec<f64>,
         .collect())
 }
 
-/// Returns the squared magnitudes of the Fourier transform of an image's fluctuations, in a periodic
-/// array of zeros of the given size; per pixel, where the variance is 1.
+/// Returns the squared magnitudes of the Fourier transform of an image's fluctuations, in a
+/// periodic array of zeros of the given size; per pixel, where the variance is 1.
 fn power(image: &Grid<f32>, width: usize, height: usize) -> Result<Grid<f32>, StatisticsError> {
     let scaled = Scaled::new(image.values())?;
     scaled.check_varies()?;

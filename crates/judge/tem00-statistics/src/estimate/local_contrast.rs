@@ -21,7 +21,7 @@ use crate::{
 /// The expectation of s² is
 ///
 /// ```text
-/// σ² (1 − c̄) n / (n − 1)         c̄ the mean autocovariance of two pixels of the window, n = window²
+/// σ² (1 − c̄) n / (n − 1)     c̄ the mean autocovariance of two pixels of the window, n = window²
 /// ```
 ///
 /// where for pixels much smaller than a speckle c̄ is the squared

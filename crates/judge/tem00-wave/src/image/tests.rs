@@ -210,7 +210,11 @@ proptest! {
         };
         if let Ok(window) = ImageWindow::new(&camera, &sampling) {
             let image = window.image(&points(&[DVec3::new(1e-5, 0.0, -0.3), DVec3::Z]));
-            prop_assert!(image.amplitude().values().iter().all(|u| u.is_finite()), "{:?}", sampling);
+            prop_assert!(
+                image.amplitude().values().iter().all(|u| u.is_finite()),
+                "{:?}",
+                sampling
+            );
         }
     }
 }

@@ -182,7 +182,11 @@ proptest! {
             )
         };
         if let Ok(surface) = RoughSurface::patch(&patch) {
-            prop_assert!(surface.scatterers().iter().all(|s| s.position.is_finite()), "{:?}", patch);
+            prop_assert!(
+                surface.scatterers().iter().all(|s| s.position.is_finite()),
+                "{:?}",
+                patch
+            );
         }
     }
 }

@@ -35,7 +35,7 @@ pub trait Fan {
 /// Returns the marginal density of the position on the aperture plane, per m², over all directions.
 ///
 /// ```text
-/// ∫ δ(x − z_a tan θ − b sec θ) f(θ) G(b) dθ db = (f * G(σ_b/r)) cos² θ / z_a     at tan θ = x / z_a
+/// ∫ δ(x − z_a tan θ − b sec θ) f(θ) G(b) dθ db = (f * G(σ_b/r)) cos² θ / z_a    at tan θ = x / z_a
 /// ```
 ///
 /// to second order in `σ_b/r`, the angular spread of the rays through a point, and to first order

@@ -19,8 +19,8 @@ use crate::{AngularKnot, LaserLine, LineProfile, Refusal};
 ///
 /// ```
 /// use tem00_beam::{
-///     AngularProfile, DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineProfile,
-///     Placement, TabulatedLineLight,
+///     AngularProfile, DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine,
+///     LineProfile, Placement, TabulatedLineLight,
 /// };
 ///
 /// let fan = FanGeometry {

@@ -74,7 +74,9 @@ fn pixels_see_the_solid_angle_of_the_sensor() {
 
 proptest! {
     #[test]
-    fn projection_inverts_the_ray(x in 0.0_f64..640.0, y in 0.0_f64..480.0, depth in 0.01_f64..10.0) {
+    fn projection_inverts_the_ray(
+        x in 0.0_f64..640.0, y in 0.0_f64..480.0, depth in 0.01_f64..10.0,
+    ) {
         let camera = Camera::new(description()).unwrap();
         let ray = camera.ray(DVec2::new(x, y));
         let image = camera.project(ray.origin + depth * ray.direction).unwrap();

@@ -102,8 +102,8 @@ fn far_out_of_focus_a_tilt_acts_by_the_blur() {
 proptest! {
     #[test]
     fn correlations_are_one_at_most(
-        angles in prop::array::uniform2(-80.0..80.0_f64), height in 0.0..1e-4_f64, kappa in -1e6..1e6_f64,
-        defocus in -1e-3..1e-3_f64,
+        angles in prop::array::uniform2(-80.0..80.0_f64), height in 0.0..1e-4_f64,
+        kappa in -1e6..1e6_f64, defocus in -1e-3..1e-3_f64,
     ) {
         let cell = ResolutionCell::new(CellGeometry {
             to_source: direction(angles[0]),

@@ -187,7 +187,8 @@ fn the_effective_spread_of_a_gaussian_is_its_spread() {
 proptest! {
     #[test]
     fn coherence_is_one_at_most(
-        linewidth in 0.0..60e-9_f64, shape in 0..3_usize, count in 1..30_usize, path in -1e3..1e3_f64,
+        linewidth in 0.0..60e-9_f64, shape in 0..3_usize, count in 1..30_usize,
+        path in -1e3..1e3_f64,
     ) {
         let line = SpectralLine::comb(650e-9, linewidth, count).unwrap();
         let line = line.with_linewidth(0.1 * linewidth, SHAPES[shape]).unwrap();

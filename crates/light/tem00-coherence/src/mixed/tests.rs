@@ -32,7 +32,8 @@ proptest! {
     /// For unpolarised light each of the two components is an independent mixture.
     #[test]
     fn components_add_as_independent_patterns(
-        multiple in 0.0..1.0, c in prop::array::uniform3(0.0..1.0), degrees in prop::array::uniform2(0.0..1.0)
+        multiple in 0.0..1.0, c in prop::array::uniform3(0.0..1.0),
+        degrees in prop::array::uniform2(0.0..1.0)
     ) {
         let light = MixedLight {
             multiple,

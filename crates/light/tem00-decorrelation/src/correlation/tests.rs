@@ -190,7 +190,9 @@ proptest! {
     }
 
     #[test]
-    fn any_finite_input_has_a_correlation(s in proptest::num::f64::NORMAL, x in proptest::num::f64::NORMAL) {
+    fn any_finite_input_has_a_correlation(
+        s in proptest::num::f64::NORMAL, x in proptest::num::f64::NORMAL,
+    ) {
         for (law, _) in INTEGRALS {
             prop_assert!((0.0..=1.0).contains(&law.correlation(s, x)));
         }

@@ -290,7 +290,11 @@ proptest! {
         let second = moved.and_then(|state| state.with_wavelength(wavelengths[0]));
         prop_assume!(second.is_ok());
         let second = second.unwrap();
-        let moved = second.moved(&RigidMotions { surface: camera, camera: source, source: surface });
+        let moved = second.moved(&RigidMotions {
+            surface: camera,
+            camera: source,
+            source: surface,
+        });
         let third = moved.and_then(|state| state.with_wavelength(wavelengths[1]));
         prop_assume!(third.is_ok());
         let third = third.unwrap();
@@ -311,7 +315,9 @@ proptest! {
     #[test]
     fn no_change_yields_anything_but_numbers(
         data in scenes(),
-        exponents in [-30.0_f64..30.0, -30.0..30.0, -30.0..30.0, -30.0..30.0, -30.0..30.0, -30.0..30.0],
+        exponents in [
+            -30.0_f64..30.0, -30.0..30.0, -30.0..30.0, -30.0..30.0, -30.0..30.0, -30.0..30.0,
+        ],
         f_number in 0.5_f64..1e3,
         units in [vectors(1.0), vectors(1.0), vectors(1.0)],
         axis in directions(),

@@ -34,7 +34,8 @@ pub(super) fn aligned(values: &mut Vec<Complex<f32>>, length: usize) -> &mut [Co
     &mut values[skipped..skipped + length]
 }
 
-/// Zeros; many are written by all threads, since the system clears memory where it is first written.
+/// Zeros; many are written by all threads, since the system clears memory where it is first
+/// written.
 fn zeros(length: usize) -> Vec<Complex<f32>> {
     #[cfg(feature = "parallel")]
     if length > 1 << 20 {

@@ -69,7 +69,13 @@ fn light() {
     refuses!(patterns = 1024 => field.independent(patterns); patterns: [0, 1025, usize::MAX]);
     let pattern = |size| PupilField::new(size, 16, 5).unwrap().pattern();
     refuses!(patterns = vec![pattern(32); 2] => SpecklePattern::weighted_mean(&[1.0; 2], patterns);
-        patterns: [vec![], vec![pattern(32)], vec![pattern(32); 3], vec![pattern(32), pattern(64)]]);
+        patterns: [
+            vec![],
+            vec![pattern(32)],
+            vec![pattern(32); 3],
+            vec![pattern(32), pattern(64)],
+        ],
+    );
 }
 
 #[test]

@@ -25,7 +25,8 @@ const ZERO: Complex<f32> = Complex::new(0.0, 0.0);
 /// The value at column i and row j of the box is
 ///
 /// ```text
-/// A(i, j) = t(i, j) P(start + (i, j)) factors[0][i] factors[1][j]     inside the spans of row j, else 0
+/// A(i, j) = t(i, j) P(start + (i, j)) factors[0][i] factors[1][j]
+///           inside the spans of row j, else 0
 /// ```
 ///
 /// with the [`transmission`](Self::transmission) t, or 1, and the phasor P of word kx of the
@@ -35,7 +36,7 @@ const ZERO: Complex<f32> = Complex::new(0.0, 0.0);
 /// pattern and, centred on zero frequency, to the amplitude:
 ///
 /// ```text
-/// I(x, y) = |F(x, y)|² / power                                        F = Σ A(i, j) exp(−2πi (i x / W + j y / H))
+/// I(x, y) = |F(x, y)|² / power          F = Σ A(i, j) exp(−2πi (i x / W + j y / H))
 /// U(x, y) = F(x, y) exp(−2πi (corner[0] x / W + corner[1] y / H)) / √power
 /// ```
 ///

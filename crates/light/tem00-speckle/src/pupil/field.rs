@@ -162,7 +162,8 @@ impl PupilField {
     /// assert_eq!(field.diameter(), [200.0, 150.0]);
     /// assert_eq!(field.pattern().values().height(), 480);
     ///
-    /// // A red laser spot of 1 mm on a wall, at 2 m on pixels of 0.5 mm, before and after the wall moved by 0.1 mm.
+    /// // A red laser spot of 1 mm on a wall, at 2 m on pixels of 0.5 mm, before and after the wall
+    /// // moved by 0.1 mm.
     /// let speckle_size = 650e-9 * 2.0 / 1e-3;
     /// let wall = PupilField::from_speckle_size([256, 192], speckle_size / 0.5e-3, 1)?;
     /// let (before, after) = (wall.pattern(), wall.pattern_at([-0.1, 0.0], 0.0));

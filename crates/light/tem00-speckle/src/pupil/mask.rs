@@ -243,7 +243,8 @@ fn shared_points(a: Row, b: Row, shift: i64) -> usize {
         let end = to_signed(a.end).min(to_signed(b.end).saturating_add(shift));
         usize::try_from(end.saturating_sub(start)).unwrap_or(0)
     };
-    // |A∖a ∩ B∖b| = |AB| − |Ab| − |aB| + |ab|; the subtractions never pass below zero in this order.
+    // |A∖a ∩ B∖b| = |AB| − |Ab| − |aB| + |ab|; the subtractions never pass below zero in this
+    // order.
     shared(a.outer, b.outer) + shared(a.hole, b.hole)
         - shared(a.outer, b.hole)
         - shared(a.hole, b.outer)

@@ -57,7 +57,8 @@ impl Pupil {
     ///
     /// ```text
     /// circle:     chat(ρ)                                       ρ = |shift|
-    /// annulus:    [A(1, 1) − 2 A(1, ε) + A(ε, ε)] / (1 − ε²)    A: common area of two discs over π/4
+    /// annulus:    [A(1, 1) − 2 A(1, ε) + A(ε, ε)] / (1 − ε²)    A: common area of two discs over
+    ///                                                           π/4
     /// rectangle:  (1 − |x|)₊ (1 − |y| / height)₊
     /// Gaussian:   exp(−ρ²/2R²) ∫lens exp(−2q²/R²) d²q / ∫disc   R = radius, by quadrature
     /// sampled:    |∫ t(p) t*(p − shift) d²p| / ∫ |t|² d²p       exact

@@ -59,7 +59,8 @@ impl SpeckleStack {
     /// slice to slice.
     ///
     /// ```text
-    /// ramp = 2π (x c_x / Q_x + y c_y / Q_y)     c the lattice point about which the pupil of the slice stands
+    /// ramp = 2π (x c_x / Q_x + y c_y / Q_y)     c the lattice point about which the pupil of the
+    ///                                           slice stands
     /// ```
     ///
     /// The phase is 0 if a coordinate is not finite.

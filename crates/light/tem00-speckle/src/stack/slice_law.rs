@@ -35,7 +35,8 @@ use crate::{
 /// let stack = SpeckleStack::generate(&field, SlicePath::Circle { half_period: 4 })?;
 /// let law = stack.slice_law(3);
 ///
-/// // At a sample only the terms without p are left: near 1, and near the overlap of the two pupils.
+/// // At a sample only the terms without p are left: near 1, and near the overlap of the two
+/// // pupils.
 /// let overlap = stack.correlation_between(3.0, 4.0).sqrt();
 /// assert!((law.mean_square[0][0] - 1.0).abs() < 2e-3);
 /// assert!((f64::from(law.covariance[0][0]) - overlap).abs() < 2e-3);
@@ -71,7 +72,8 @@ impl SliceLaw {
     /// 0 to 3     mean_square[ny]
     /// 4 to 9     covariance[ny], nx = 0 to 3
     /// 10 to 12   covariance[ny], nx = 4 and 5, of ny = 0 and 1, 2 and 3, 4 and 5
-    /// 13         the step −turns · size in lattice points along x and y, 1 if a term with an odd shape is not 0, 0
+    /// 13         the step −turns · size in lattice points along x and y, 1 if a term with an odd
+    ///            shape is not 0, 0
     /// ```
     pub fn rows(&self, size: [usize; 2]) -> [[f32; 4]; Self::ROWS] {
         let table = &self.covariance;

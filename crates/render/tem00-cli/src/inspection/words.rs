@@ -16,7 +16,8 @@ pub(super) fn seen(scene: &Scene, laser: usize, found: &LaserInspection) -> Stri
     let fraction: f64 = seen.iter().map(|part| part.fraction).sum();
     if seen.is_empty() {
         return format!(
-            "laser {laser}: the camera sees its light in a mirror or through glass, {} of its power",
+            "laser {laser}: the camera sees its light in a mirror or through glass, {} of its \
+             power",
             percent(found.fraction_in_image)
         );
     }
@@ -63,8 +64,8 @@ fn why(scene: &Scene, part: &LightPart) -> String {
     match part.fate {
         LightFate::Misses => format!("{fraction} misses every surface: `look_at` aims the laser"),
         LightFate::MeetsBack => format!(
-            "{fraction} meets the back of {name} at {place}, and {name} is one-sided: turn it round, or \
-             leave out `one_sided`"
+            "{fraction} meets the back of {name} at {place}, and {name} is one-sided: turn it \
+             round, or leave out `one_sided`"
         ),
         LightFate::LightsFarSide => lit + " on the side away from the camera",
         LightFate::BehindCamera => lit + ", behind the camera",
@@ -116,8 +117,8 @@ fn shown(scene: &Scene, part: &LightPart) -> String {
         [camera.width(), camera.height()].map(|pixels| 1e3 * pitch * pixels as f64);
     let middle = camera.position() - distance * camera.axes().z_axis;
     format!(
-        "at a distance of {:.1} mm the image shows {width:.1} × {height:.1} mm about {}: `look_at` in \
-         [camera] aims it",
+        "at a distance of {:.1} mm the image shows {width:.1} × {height:.1} mm about {}: `look_at` \
+         in [camera] aims it",
         1e3 * distance,
         millimetres(middle)
     )

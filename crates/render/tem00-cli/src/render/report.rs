@@ -34,8 +34,8 @@ pub(super) fn note_roughness(notes: &[RoughnessNote]) {
 pub(super) fn note_missing_light(scene: &Scene) {
     if scene.has_specular_surfaces() && scene.render.laser_events == LaserEvents::Beam {
         note(
-            "mirrors and glass: laser light that meets them both before and behind a rough surface is \
-             left out; laser_events = \"sampled\" finds it, with more noise",
+            "mirrors and glass: laser light that meets them both before and behind a rough surface \
+             is left out; laser_events = \"sampled\" finds it, with more noise",
         );
     }
 }

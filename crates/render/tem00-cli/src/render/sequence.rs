@@ -60,8 +60,8 @@ impl Render<'_> {
         let progress = FrameProgress::new(count, self.samples_per_frame());
         if needs_first {
             note(
-                "exposure: frame 0, which sets that of all, is rendered for it; --white-level saves \
-                 the time",
+                "exposure: frame 0, which sets that of all, is rendered for it; --white-level \
+                 saves the time",
             );
             let frame = self.frame(0, model.as_ref(), &progress)?;
             *exposure = Some(automatic_exposure(&frame));
@@ -88,8 +88,8 @@ impl Render<'_> {
         {
             return Err(Failure::input(
                 format!(
-                    "cannot go on: {} belongs to another render; the scene, a file of it, the options \
-                     or the program have changed",
+                    "cannot go on: {} belongs to another render; the scene, a file of it, the \
+                     options or the program have changed",
                     path.display()
                 ),
                 "leave out --resume to begin anew, or name another folder with -o",

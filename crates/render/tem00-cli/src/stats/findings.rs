@@ -121,8 +121,9 @@ impl Findings<'_> {
             return Ok(());
         }
         self.warnings.push(format!(
-            "the darkest thousandth of the pixels begins at {:.0} % of the mean: if that is darkness, --black-level \
-             {} subtracts it, and the contrast is {}; light without speckle does the same",
+            "the darkest thousandth of the pixels begins at {:.0} % of the mean: if that is \
+             darkness, --black-level {} subtracts it, and the contrast is {}; light without \
+             speckle does the same",
             100.0 * darkest / mean,
             number(darkest / unit),
             number(without)
@@ -139,13 +140,14 @@ impl Findings<'_> {
         if let Some(flat) = self.flat {
             let lost = 100.0 * flat.lost_share(size.map_or(1.0, |size| size.mean()));
             self.assume(format!(
-                "the image is divided by its local mean, which takes {lost:.2} % of the variance: contrast \
-                 and speckle size are corrected for it, to first order, and no other number is"
+                "the image is divided by its local mean, which takes {lost:.2} % of the variance: \
+                 contrast and speckle size are corrected for it, to first order, and no other \
+                 number is"
             ));
             if flat.darkest() < DARK {
                 self.assume(format!(
-                    "the local mean falls to {:.2} % of its largest value: noise counts as contrast there; \
-                     take a brighter part with --crop",
+                    "the local mean falls to {:.2} % of its largest value: noise counts as \
+                     contrast there; take a brighter part with --crop",
                     100.0 * flat.darkest()
                 ));
             }
@@ -161,8 +163,8 @@ impl Findings<'_> {
                 if self.contrast.value() <= theory + SIGMAS * self.spread(theory, size)? =>
             {
                 self.assume(format!(
-                    "the autocovariance falls to zero: the light counts as even over the image, and its shape \
-                     makes less than {:.0} % of the variance",
+                    "the autocovariance falls to zero: the light counts as even over the image, \
+                     and its shape makes less than {:.0} % of the variance",
                     100.0 * limit
                 ));
                 return Ok(());
@@ -171,25 +173,27 @@ impl Findings<'_> {
                 "its contrast is higher than that of speckle in even light".to_owned()
             }
             Evenness::Uneven(uneven) => format!(
-                "{:.0} to {:.0} pixels apart the autocovariance is {:.3}, where speckle in even light has less \
-                 than {:.3}",
+                "{:.0} to {:.0} pixels apart the autocovariance is {:.3}, where speckle in even \
+                 light has less than {:.3}",
                 scale * uneven.lags[0],
                 scale * uneven.lags[1],
                 uneven.covariance,
                 uneven.limit
             ),
             Evenness::FewSpeckles { across: [x, y] } => format!(
-                "the image is only {x:.1} × {y:.1} speckle sizes large, so that the size may be that of the light"
+                "the image is only {x:.1} × {y:.1} speckle sizes large, so that the size may be \
+                 that of the light"
             ),
             Evenness::FinerGrains { share, lag } => format!(
-                "grains finer than {lag} pixels make {:.1} % of the variance, noise or the speckle itself, \
-                 where the size is that of the light",
+                "grains finer than {lag} pixels make {:.1} % of the variance, noise or the speckle \
+                 itself, where the size is that of the light",
                 100.0 * share
             ),
         };
         self.is_even = false;
         self.warnings.push(format!(
-            "the light does not count as even over the image, and nothing is compared with theory: {found}; {help}"
+            "the light does not count as even over the image, and nothing is compared with theory: \
+             {found}; {help}"
         ));
         Ok(())
     }
@@ -340,8 +344,8 @@ impl Findings<'_> {
         let fit = match GammaFit::by_likelihood(spread.as_deref().unwrap_or(samples)) {
             Err(StatisticsError::NotPositive { .. }) => {
                 self.assume(
-                    "some samples are 0 or less, which no Gamma law expects: its shape is 1/C² of the \
-                     samples",
+                    "some samples are 0 or less, which no Gamma law expects: its shape is 1/C² of \
+                     the samples",
                 );
                 GammaFit::by_moments(samples)?
             }

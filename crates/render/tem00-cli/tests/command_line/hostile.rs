@@ -284,7 +284,8 @@ fn what_a_terminal_obeys_is_never_printed() {
     // A surface without light, whose name is told.
     let away = SCENE.replace("centre = [0, 0, 0]", "centre = [\"70 mm\", 0, 0]");
     let named = format!(
-        "{away}\n[[surface]]\nname = \"{quoted}\"\nsphere = {{ radius = 1e-3, centre = [0, 0, -1] }}\n"
+        "{away}\n[[surface]]\nname = \"{quoted}\"\n\
+         sphere = {{ radius = 1e-3, centre = [0, 0, -1] }}\n"
     );
     for (name, content) in [
         ("key.toml", format!("\"{quoted}\" = 1\n")),

@@ -60,7 +60,8 @@ fn messages_come_back_in_the_unit_that_was_typed() {
 
 #[test]
 fn anything_else_is_no_quantity() {
-    let not_lengths = "|mm|5|5 deg|5 mW|5 MM|1 2 mm|nan mm|inf m|0x10 mm|1,5 mm|5 mm wide|--5 mm|5 m m|e5 m|5e mm";
+    let not_lengths = "|mm|5|5 deg|5 mW|5 MM|1 2 mm|nan mm|inf m|0x10 mm|1,5 mm|5 mm wide|\
+                       --5 mm|5 m m|e5 m|5e mm";
     for text in not_lengths.split('|') {
         assert_eq!(LENGTH.parse(text), None, "{text:?}");
     }

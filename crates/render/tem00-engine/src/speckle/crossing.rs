@@ -39,8 +39,8 @@ impl fmt::Display for CorrelationNote {
         let (rendered, law) = (self.rendered, self.law);
         write!(
             f,
-            "surface `{surface}`, laser {laser}: speckle of frames {first} and {second} correlates by {rendered:.2} where \
-             the law has {law:.2}; slices cannot follow its change"
+            "surface `{surface}`, laser {laser}: speckle of frames {first} and {second} correlates \
+             by {rendered:.2} where the law has {law:.2}; slices cannot follow its change"
         )
     }
 }

@@ -42,8 +42,9 @@ impl fmt::Display for CascadeNote {
         let (surface, laser, contrast) = (&self.surface, self.laser, self.contrast);
         write!(
             f,
-            "surface `{surface}` gets light of laser {laser} from a small part of another surface, whose own speckle would \
-             raise the contrast to {contrast:.2}; it is rendered as 1 at most"
+            "surface `{surface}` gets light of laser {laser} from a small part of another surface, \
+             whose own speckle would raise the contrast to {contrast:.2}; it is rendered as 1 at \
+             most"
         )
     }
 }

@@ -125,7 +125,10 @@ pub enum ImageError {
     Pixels(String),
     #[error("--bits {expected}: grey values of the file have {found} bits; leave --bits out")]
     FewerBits { expected: u32, found: u32 },
-    #[error("--bits {expected}: grey values are then at most {}, but there is one of {found}", (1_u32 << .expected) - 1)]
+    #[error(
+        "--bits {expected}: grey values are then at most {}, but there is one of {found}",
+        (1_u32 << .expected) - 1
+    )]
     Bits { expected: u32, found: f32 },
     #[error(
         "the file names the transfer function {0} of ITU-T H.273, which is not supported: \
@@ -150,7 +153,8 @@ pub enum ImageError {
     #[error("the array has the shape {0:?}; two dimensions, height × width, are needed")]
     Shape(Vec<u64>),
     #[error(
-        "values of the type {0} are not supported: use integers, floating-point or complex numbers, or bool"
+        "values of the type {0} are not supported: use integers, floating-point or complex \
+         numbers, or bool"
     )]
     ValueType(String),
     #[error("there is no channel {wanted}; the file has {}", available.join(", "))]

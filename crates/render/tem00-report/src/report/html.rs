@@ -35,9 +35,12 @@ impl Report {
         };
         format!(
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-             <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; \
-             style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'{policy}\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-             <title>{title}</title>\n<style>\n{style}{dark}</style>\n</head>\n<body>\n<main>\n{body}\
+             <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; \
+             img-src data:; style-src 'unsafe-inline'; base-uri 'none'; \
+             form-action 'none'{policy}\">\n\
+             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+             <title>{title}</title>\n<style>\n{style}{dark}</style>\n</head>\n\
+             <body>\n<main>\n{body}\
              <footer>tem00 {version}</footer>\n</main>\n{script}</body>\n</html>\n"
         )
     }

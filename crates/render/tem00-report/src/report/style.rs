@@ -10,8 +10,9 @@ pub(super) const CSS: &str = include_str!("page.css");
 /// Returns the styles that differ on a dark screen: the page, and every colour of a drawing.
 pub(super) fn dark() -> String {
     let mut css = String::from(
-        "@media screen and (prefers-color-scheme: dark) { :root { --ink: #e4e4e4; --paper: #17191c; \
-         --faint: #a8a8a8; --rule: #3a3d42; --shade: #22262b; --accent: #7fb2ea; }\n",
+        "@media screen and (prefers-color-scheme: dark) { :root { --ink: #e4e4e4; \
+         --paper: #17191c; --faint: #a8a8a8; --rule: #3a3d42; --shade: #22262b; \
+         --accent: #7fb2ea; }\n",
     );
     let frame = [
         ("#000000", "#c8c8c8"),
@@ -25,7 +26,8 @@ pub(super) fn dark() -> String {
         // Writing to memory never fails.
         let _ = writeln!(
             css,
-            "svg [fill=\"{light}\"] {{ fill: {dark}; }} svg [stroke=\"{light}\"] {{ stroke: {dark}; }}"
+            "svg [fill=\"{light}\"] {{ fill: {dark}; }} \
+             svg [stroke=\"{light}\"] {{ stroke: {dark}; }}"
         );
     }
     // Dark heights need brighter paper, and bright heights darker paper.

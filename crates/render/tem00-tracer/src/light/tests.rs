@@ -44,7 +44,9 @@ fn points() -> impl Strategy<Value = DVec3> {
 
 proptest! {
     #[test]
-    fn near_rectangles_are_drawn_over_their_solid_angle(from in points(), u in [0.0_f64..1.0, 0.0_f64..1.0]) {
+    fn near_rectangles_are_drawn_over_their_solid_angle(
+        from in points(), u in [0.0_f64..1.0, 0.0_f64..1.0],
+    ) {
         // The diagonal is 0.94 m long.
         let from = panel().centre() + (from - panel().centre()).clamp_length_max(0.94);
         let light = Light::area(panel(), 2.0).unwrap();

@@ -81,7 +81,9 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
     #[test]
-    fn any_column_gives_finite_points_inside_of_it(column in prop::collection::vec(any_value(), 0..80)) {
+    fn any_column_gives_finite_points_inside_of_it(
+        column in prop::collection::vec(any_value(), 0..80),
+    ) {
         for method in methods() {
             let detector = finder(method);
             for point in detector.detect_column(&column) {
@@ -91,13 +93,18 @@ proptest! {
                 let inside = 0.0..=column.len() as f64;
                 prop_assert!(inside.contains(&point.position), "{method}: {point:?}");
                 let sensitivities = detector.sensitivities(&column, &point);
-                prop_assert!(sensitivities.iter().all(|g| g.is_finite()), "{method}: {sensitivities:?}");
+                prop_assert!(
+                    sensitivities.iter().all(|g| g.is_finite()),
+                    "{method}: {sensitivities:?}"
+                );
             }
         }
     }
 
     #[test]
-    fn any_image_gives_finite_points_inside_of_it(values in prop::collection::vec(any_value(), 12 * 40)) {
+    fn any_image_gives_finite_points_inside_of_it(
+        values in prop::collection::vec(any_value(), 12 * 40),
+    ) {
         let image = Grid::from_vec(12, 40, values).unwrap();
         for method in [LineMethod::CentreOfGravity, LineMethod::Steger { sigma: 1.0 }] {
             for point in finder(method).detect(&image).into_iter().flatten() {
@@ -117,7 +124,10 @@ proptest! {
             prop_assert_eq!(here.len(), there.len());
             for (a, b) in here.iter().zip(&there) {
                 // Rounding of the number 100 and, of the widest fit, a part of 1e−9.
-                prop_assert!((b.position - a.position - 17.0).abs() < 1e-8, "{method}: {a:?} {b:?}");
+                prop_assert!(
+                    (b.position - a.position - 17.0).abs() < 1e-8,
+                    "{method}: {a:?} {b:?}"
+                );
                 prop_assert_eq!(a.validity, b.validity);
             }
         }

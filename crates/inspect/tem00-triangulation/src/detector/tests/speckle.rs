@@ -69,8 +69,8 @@ fn under_speckle_a_wide_centre_of_gravity_is_best_and_three_points_are_two_to_th
     for (radius, min, max) in [(3.0, 2.0, 2.6), (6.0, 2.8, 3.5)] {
         let columns = columns(radius);
         let gravity = scatter(LineMethod::CentreOfGravity, &columns);
-        // 6144 columns, of which neighbours share a few percent: 1.0 % of standard error. The law is for
-        // w ≫ h and 6 % too high for 3 h.
+        // 6144 columns, of which neighbours share a few percent: 1.0 % of standard error. The law
+        // is for w ≫ h and 6 % too high for 3 h.
         let ratio = gravity / law(radius);
         assert!(
             (0.91..1.04).contains(&ratio),

@@ -34,8 +34,8 @@ fn two_keys_make_a_typical_sensor() {
 #[test]
 fn every_key_is_read() {
     let text = "[sensor]\nquantum_efficiency = 0.6\nexposure = 0.5\nbit_depth = 10\ngain = 0.07\n\
-                black_level = 20\nfull_well = 12000\ndark_noise = 5\ndark_current = 7\nprnu = 0.01\n\
-                dsnu = 2\nfill_factor = 0.8\nserial_number = 4711";
+                black_level = 20\nfull_well = 12000\ndark_noise = 5\ndark_current = 7\n\
+                prnu = 0.01\ndsnu = 2\nfill_factor = 0.8\nserial_number = 4711";
     let expected = SensorDescription {
         quantum_efficiency: 0.6,
         gain: 0.07,
@@ -56,8 +56,8 @@ fn every_key_is_read() {
 
 #[test]
 fn a_gain_that_is_not_told_makes_a_full_well_the_largest_value() {
-    let text = "[sensor]\nquantum_efficiency = 0.6\nexposure = 0.5\nbit_depth = 8\nfull_well = 20000\n\
-                black_level = 5";
+    let text = "[sensor]\nquantum_efficiency = 0.6\nexposure = 0.5\nbit_depth = 8\n\
+                full_well = 20000\nblack_level = 5";
     let gain = read(text).unwrap().gain;
     assert!((gain * 20_000.0 - 250.0).abs() < 1e-9, "gain {gain}");
 }

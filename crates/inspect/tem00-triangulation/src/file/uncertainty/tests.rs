@@ -80,8 +80,8 @@ height = "5 mm"
 
 #[test]
 fn every_quantity_may_be_uncertain() {
-    // What a file need not say. A body below the surface, a linewidth, an extended source or a relief
-    // takes long to read: each is written for its own quantities alone.
+    // What a file need not say. A body below the surface, a linewidth, an extended source or a
+    // relief takes long to read: each is written for its own quantities alone.
     let everywhere = [
         (SetupQuantity::LaserOffset, 1e-3),
         (SetupQuantity::LaserTilt, 5_f64.to_radians()),
@@ -216,8 +216,10 @@ fn correlations_and_heights_that_cannot_be_are_refused_where_they_stand() {
     );
     let three = |coefficient: &str| {
         let section = format!(
-            "{more}[[correlation]]\nbetween = [\"camera.angle\", \"camera.focal_length\"]\ncoefficient = 1\n\
-             [[correlation]]\nbetween = [\"camera.distance\", \"camera.focal_length\"]\ncoefficient = {coefficient}\n"
+            "{more}[[correlation]]\nbetween = [\"camera.angle\", \"camera.focal_length\"]\n\
+             coefficient = 1\n\
+             [[correlation]]\nbetween = [\"camera.distance\", \"camera.focal_length\"]\n\
+             coefficient = {coefficient}\n"
         );
         text(&[ANGLE, DISTANCE, focal], &section)
     };

@@ -117,7 +117,9 @@ fn means_take_whatever_makes_a_pattern_of_a_field() {
 
 proptest! {
     #[test]
-    fn fractions_of_any_weights_sum_to_one(exponents in prop::collection::vec(-300.0..300.0_f64, 1..20)) {
+    fn fractions_of_any_weights_sum_to_one(
+        exponents in prop::collection::vec(-300.0..300.0_f64, 1..20),
+    ) {
         let weights: Vec<f64> = exponents.iter().map(|&e| 10.0_f64.powf(e)).collect();
         let total: f64 = incoherent_fractions(2, 0.3, &weights).unwrap().iter().sum();
         prop_assert!((total - 1.0).abs() < 1e-14, "{}", total);

@@ -108,7 +108,8 @@ proptest! {
         let periods = [width, height, stack.slice_count()];
         let [x, y, u] = [x, y, u].map(|n| n as f64 / 1_048_576.0);
         let [nx, ny, nu] = [0, 1, 2].map(|i| turns[i] as f64 * periods[i] as f64);
-        let (here, there) = (stack.intensity_at(x, y, u), stack.intensity_at(x + nx, y + ny, u + nu));
+        let here = stack.intensity_at(x, y, u);
+        let there = stack.intensity_at(x + nx, y + ny, u + nu);
         prop_assert_eq!(here.to_bits(), there.to_bits(), "{} and {}", here, there);
     }
 

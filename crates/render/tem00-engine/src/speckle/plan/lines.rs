@@ -58,8 +58,8 @@ impl PatternPlan {
         let [width, height] = needs.region;
         write!(
             f,
-            "speckles of {:.3} pixels at {:.1} nm; C = {}, {} the {:.1} × {:.1} speckles ({width:.0} \
-             × {height:.0} pixels) of the image{}; Q = {}; ",
+            "speckles of {:.3} pixels at {:.1} nm; C = {}, {} the {:.1} × {:.1} speckles \
+             ({width:.0} × {height:.0} pixels) of the image{}; Q = {}; ",
             needs.speckle_size,
             self.wavelength * 1e9,
             Sides(stack.diameter()),

@@ -266,7 +266,8 @@ impl Sum {
             _ => TracerError::OutOfRange {
                 parameter: "patterns",
                 value: f64::from(speckle.patterns),
-                allowed: "few enough for at most 1024 in total with the patterns of linewidth and extent of the laser",
+                allowed: "few enough for at most 1024 in total with the patterns of linewidth and \
+                    extent of the laser",
             },
         })?;
         let components = if speckle.polarisation < 1.0 { 2 } else { 1 };

@@ -56,7 +56,8 @@ proptest! {
                 * direction(10.0_f64.powf(exponent), azimuth);
             let next = alone.intersect(&ray(alone.leave(hit.position, normal), goes));
             // From inside, a ball is met again, on its other side.
-            let through = next.is_none_or(|next| next.distance > 1e-13 && next.normal.dot(normal) < 1.0);
+            let through = next
+                .is_none_or(|next| next.distance > 1e-13 && next.normal.dot(normal) < 1.0);
             prop_assert!(if flat { next.is_none() } else { through }, "met again: {next:?}");
             prop_assert!(alone.visible(hit.position, hit.normal, hit.position + 2.0 * goes)
                 == (flat || !below), "visible from the surface");

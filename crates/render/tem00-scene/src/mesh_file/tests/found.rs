@@ -260,8 +260,9 @@ fn extensions_of_what_is_not_read_do_not_matter() {
     let text = embedded(
         r#"[{ "children": [1, 2], "camera": 7 }, { "mesh": 0 }, { "mesh": 1, "skin": 9 }]"#,
     );
-    let passed_over = "KHR_materials_ior KHR_materials_variants KHR_texture_basisu EXT_texture_webp KHR_lights_punctual \
-                       KHR_xmp_json_ld ADOBE_materials_clearcoat_specular KHR_animation_pointer";
+    let passed_over = "KHR_materials_ior KHR_materials_variants KHR_texture_basisu \
+                       EXT_texture_webp KHR_lights_punctual KHR_xmp_json_ld \
+                       ADOBE_materials_clearcoat_specular KHR_animation_pointer";
     for extension in passed_over.split(' ') {
         let required = format!(
             r#""scene": 0, "extensionsUsed": ["{extension}"], "extensionsRequired": ["{extension}"],

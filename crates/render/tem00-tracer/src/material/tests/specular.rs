@@ -96,7 +96,8 @@ proptest! {
     /// Snell's law in vectors: `n wo × z` is the same on both sides, but for its sign.
     #[test]
     fn refraction_keeps_the_tangential_wave_vector(
-        index in 1.0_f64..=4.0, cosine in 1e-6_f64..=1.0, azimuth in 0.0_f64..6.3, below in any::<bool>(),
+        index in 1.0_f64..=4.0, cosine in 1e-6_f64..=1.0, azimuth in 0.0_f64..6.3,
+        below in any::<bool>(),
     ) {
         let wo = direction(cosine, azimuth) * if below { -1.0 } else { 1.0 };
         let material = Material::dielectric(index).unwrap();
@@ -149,7 +150,8 @@ proptest! {
     fn glass_reflects_like_a_metal_that_absorbs_nothing(
         index in 1.01_f64..=4.0, cosine in 0.0_f64..=1.0,
     ) {
-        let (got, want) = (refraction(cosine, index).reflectance, fresnel_reflectance(cosine, (index, 0.0)));
+        let got = refraction(cosine, index).reflectance;
+        let want = fresnel_reflectance(cosine, (index, 0.0));
         prop_assert!((got - want).abs() < 1e-12, "{got}, not {want}");
     }
 }

@@ -1,6 +1,6 @@
 """Speckle in the light of a laser that is not of one wavelength.
 
-What a surface makes of it, and its pattern.
+It depends on the tilt and the relief of each surface, which has a pattern of its own.
 """
 
 from __future__ import annotations

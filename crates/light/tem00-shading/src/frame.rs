@@ -384,7 +384,7 @@ impl SpeckleFrame {
         };
         let line = self.speckle.laser.spectral_line();
         let axis = bandwidth.axis;
-        let covariance = |way: DVec2| bandwidth.covariance(line, way, axis);
+        let covariance = |shift: DVec2| bandwidth.covariance(line, shift, axis);
         let held = covariance(self.side * shift.pupil * axis);
         let error = (held - covariance(shift.pupil_vector())) / covariance(DVec2::ZERO);
         if error.abs() <= MAX_ERROR {

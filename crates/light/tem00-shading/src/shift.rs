@@ -78,7 +78,7 @@ impl SpeckleShift {
     /// Returns the path of the pupil over the speckle: across it, in pupil diameters, and along the
     /// axis, in axial decorrelation lengths. Paths on opposite sides of the reference have a
     /// negative scalar product.
-    pub const fn way(&self) -> DVec3 {
+    pub const fn pupil_path(&self) -> DVec3 {
         DVec3::new(self.across.x, self.across.y, self.axial)
     }
 }

@@ -258,7 +258,7 @@ impl Speckle {
         let largest = largest.filter(|(_, (_, shift))| shift.pupil.is_finite());
         let largest = largest.max_by(|(_, a), (_, b)| a.1.pupil.total_cmp(&b.1.pupil));
         demand.farthest =
-            largest.map(|(state, (point, shift))| state.reference_point(point, shift.way()));
+            largest.map(|(state, (point, shift))| state.reference_point(point, shift.pupil_path()));
         for (state, seen) in states.iter().zip(&seen) {
             let side = state.side(geometry, demand.farthest.as_ref());
             for (point, shift) in seen {
@@ -329,8 +329,11 @@ impl Demand {
         // The region is rotated so that the slices lie along the axis.
         let size = (high - low).max(turned((high - low).abs(), bandwidth.axis.abs()));
         self.region = [low, low + size];
-        let way = self.farthest.as_ref().map(ReferencePoint::way_across);
-        bandwidth.beside(way.unwrap_or(DVec2::ZERO))
+        let path = self
+            .farthest
+            .as_ref()
+            .map(ReferencePoint::pupil_path_across);
+        bandwidth.beside(path.unwrap_or(DVec2::ZERO))
     }
 
     fn needs(&self, frames: usize, speckle_size: f64, memory: u64) -> StackNeeds {

@@ -211,9 +211,9 @@ impl Bandwidth {
     /// Returns the same bandwidth with the axis on the side of a path of the pupil over the
     /// speckle, to the right and up.
     #[must_use]
-    pub fn beside(&self, way: DVec2) -> Self {
+    pub fn beside(&self, path: DVec2) -> Self {
         let axis = self.axis;
-        self.along(if way.dot(axis) < 0.0 { -axis } else { axis })
+        self.along(if path.dot(axis) < 0.0 { -axis } else { axis })
     }
 
     /// Returns the same bandwidth with another axis, along which a motion is followed.

@@ -25,13 +25,13 @@ pub(crate) struct State {
 pub(crate) struct ReferencePoint {
     position: DVec3,
     normal: DVec3,
-    way: DVec3,
+    pupil_path: DVec3,
 }
 
 impl ReferencePoint {
     /// Returns the path of the pupil across the line of sight, to the right and up.
-    pub(crate) fn way_across(&self) -> DVec2 {
-        self.way.truncate()
+    pub(crate) fn pupil_path_across(&self) -> DVec2 {
+        self.pupil_path.truncate()
     }
 }
 
@@ -134,12 +134,12 @@ impl State {
 
     /// Returns the position of a point in the reference state, with the path of the pupil over its
     /// speckle.
-    pub(crate) fn reference_point(&self, point: &SeenPoint, way: DVec3) -> ReferencePoint {
+    pub(crate) fn reference_point(&self, point: &SeenPoint, pupil_path: DVec3) -> ReferencePoint {
         let back = self.motion.surface.inverse();
         ReferencePoint {
             position: back.point(point.position),
             normal: back.direction(point.normal),
-            way,
+            pupil_path,
         }
     }
 
@@ -155,7 +155,11 @@ impl State {
             let surface = &self.motion.surface;
             let (position, normal) = (farthest.position, farthest.normal);
             let point = self.seen(surface.point(position), surface.direction(normal))?;
-            Some(self.shift(geometry, point)?.way().dot(farthest.way))
+            Some(
+                self.shift(geometry, point)?
+                    .pupil_path()
+                    .dot(farthest.pupil_path),
+            )
         });
         if along.is_some_and(|along| along < 0.0) {
             -1.0

@@ -2,7 +2,7 @@
 
 mod from_camera;
 mod from_laser;
-mod way;
+mod path;
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use tem00_camera::Ray;
 use tem00_geometry::Intersector;
 use tem00_tracer::{RenderOptions, Scene, TracerError};
 
-use self::way::WayPoint;
+use self::path::PathPoint;
 use crate::{
     SpecklePlan,
     integrator::is_plate,
@@ -100,13 +100,13 @@ const PROBE: usize = 4;
 /// Paths that start at the camera miss a beam that is narrow compared with the visible surface, and
 /// paths that start at the laser miss small objects in a wide beam.
 #[derive(Clone, Copy)]
-enum Way {
-    FromLaser,
-    FromCamera,
+enum PathStart {
+    Laser,
+    Camera,
 }
 
 /// Rough surfaces along paths, by laser, group and path.
-type WayPoints<'a> = Vec<Vec<Vec<Vec<WayPoint<'a>>>>>;
+type PathPoints<'a> = Vec<Vec<Vec<Vec<PathPoint<'a>>>>>;
 
 /// Returns a note for each laser and surface where multiple light comes from so small a part of
 /// another surface that the speckle of that part is as coarse as the resolution of the camera: this
@@ -173,11 +173,11 @@ impl<'a> Survey<'a> {
     /// camera sees, and returns the multiple light found there, if any.
     pub(crate) fn map(&self) -> Option<MultipleMap> {
         let camera = self.change.camera();
-        let lit = self.way_points();
+        let lit = self.path_points();
         let lattice = Lattice::over([camera.width(), camera.height()], self.cells);
         let lasers = (0..self.scene.lasers.len()).into_par_iter();
-        let ways: Vec<Way> = lasers
-            .map(|laser| self.better_way(laser, &lit[laser], lattice))
+        let starts: Vec<PathStart> = lasers
+            .map(|laser| self.better_start(laser, &lit[laser], lattice))
             .collect();
         let cells = (0..lattice.columns * lattice.rows).into_par_iter();
         let sums: Vec<CellSums> = cells
@@ -185,10 +185,10 @@ impl<'a> Survey<'a> {
                 let Some(seen) = self.seen(lattice, cell) else {
                     return CellSums::new();
                 };
-                let lasers = ways.iter().zip(&lit).enumerate();
+                let lasers = starts.iter().zip(&lit).enumerate();
                 lasers
-                    .map(|(laser, (&way, groups))| {
-                        let sums = self.sums(laser, way, groups, (lattice, cell, &seen));
+                    .map(|(laser, (&start, groups))| {
+                        let sums = self.sums(laser, start, groups, (lattice, cell, &seen));
                         ((laser, seen.point.surface), sums)
                     })
                     .collect()
@@ -199,7 +199,12 @@ impl<'a> Survey<'a> {
 
     /// Chooses the starting point from which more paths find the light of a laser, in one of
     /// `PROBE`² cells.
-    fn better_way(&self, laser: usize, groups: &[Vec<Vec<WayPoint<'_>>>], lattice: Lattice) -> Way {
+    fn better_start(
+        &self,
+        laser: usize,
+        groups: &[Vec<Vec<PathPoint<'_>>>],
+        lattice: Lattice,
+    ) -> PathStart {
         let probed = |cell: &usize| {
             let place = [cell % lattice.columns, cell / lattice.columns];
             place.map(|i| i % PROBE) == [PROBE / 2; 2]
@@ -209,15 +214,15 @@ impl<'a> Survey<'a> {
             let Some(seen) = self.seen(lattice, cell) else {
                 continue;
             };
-            for (found, way) in found.iter_mut().zip([Way::FromLaser, Way::FromCamera]) {
-                let sums = self.sums(laser, way, groups, (lattice, cell, &seen));
+            for (found, start) in found.iter_mut().zip([PathStart::Laser, PathStart::Camera]) {
+                let sums = self.sums(laser, start, groups, (lattice, cell, &seen));
                 *found += sums.effective_paths();
             }
         }
         if found[1] > found[0] {
-            Way::FromCamera
+            PathStart::Camera
         } else {
-            Way::FromLaser
+            PathStart::Laser
         }
     }
 
@@ -225,14 +230,14 @@ impl<'a> Survey<'a> {
     fn sums(
         &self,
         laser: usize,
-        way: Way,
-        groups: &[Vec<Vec<WayPoint<'_>>>],
+        start: PathStart,
+        groups: &[Vec<Vec<PathPoint<'_>>>],
         (lattice, cell, seen): (Lattice, usize, &SeenPoint<'_>),
     ) -> MultipleSums {
         let number = 2 * (cell % lattice.columns + 3 * (cell / lattice.columns));
-        let paths = [0, 1].map(|i| match way {
-            Way::FromLaser => self.multiple(laser, seen, &groups[(number + i) % GROUPS]),
-            Way::FromCamera => {
+        let paths = [0, 1].map(|i| match start {
+            PathStart::Laser => self.multiple(laser, seen, &groups[(number + i) % GROUPS]),
+            PathStart::Camera => {
                 let first = (2 * cell + i) * PATHS + 1;
                 self.multiple_from_camera(laser, seen, first as u64)
             }
@@ -306,7 +311,7 @@ impl<'a> Survey<'a> {
         &self,
         laser: usize,
         seen: &SeenPoint<'_>,
-        group: &[Vec<WayPoint<'_>>],
+        group: &[Vec<PathPoint<'_>>],
     ) -> Vec<MultiplePath> {
         let (position, surface) = (seen.point.position, seen.point.surface);
         let origin = self.change.origin(surface, position);
@@ -321,18 +326,18 @@ impl<'a> Survey<'a> {
             (radiance > 0.0).then_some((lit, wi, radiance))
         });
         let arriving: Vec<_> = arriving.collect();
-        let ways = arriving.iter().map(|(lit, ..)| lit.segment_to(position));
+        let segments = arriving.iter().map(|(lit, ..)| lit.segment_to(position));
         let mut free = vec![false; arriving.len()];
         self.intersector
-            .visible_batch(&ways.collect::<Vec<_>>(), &mut free);
+            .visible_batch(&segments.collect::<Vec<_>>(), &mut free);
         let paths = arriving.into_iter().zip(free).filter(|(_, free)| *free);
         let paths = paths.map(|((lit, wi, radiance), _)| {
-            let way = lit.way_to(position, origin);
+            let path = lit.path_to(position, origin);
             MultiplePath {
                 radiance,
-                delay: way.length - now,
-                added: way.change - (now - before),
-                polarisation: way.polarisation * self.polarisation_of(surface),
+                delay: path.length - now,
+                added: path.change - (now - before),
+                polarisation: path.polarisation * self.polarisation_of(surface),
                 pupil: seen.pupil_of(wi),
             }
         });

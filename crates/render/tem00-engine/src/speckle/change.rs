@@ -50,7 +50,7 @@ pub(super) struct ReferencePoint {
     /// Its unit normal there.
     normal: DVec3,
     /// The displacement of the pupil over its speckle.
-    way: DVec3,
+    pupil_path: DVec3,
 }
 
 /// Returns whether anything that matters to speckle moves.
@@ -142,7 +142,10 @@ impl Change {
     ) -> f64 {
         let along = reference_point.and_then(|reference_point| {
             let point = self.carried(reference_point)?;
-            Some(self.way(laser, geometry, &point)?.dot(reference_point.way))
+            Some(
+                self.pupil_path(laser, geometry, &point)?
+                    .dot(reference_point.pupil_path),
+            )
         });
         match along {
             Some(along) if along > 0.0 => 1.0,
@@ -160,14 +163,14 @@ impl Change {
         geometry: &ImagingGeometry,
         point: &SpecklePoint,
     ) -> Option<ReferencePoint> {
-        self.reference_point_along(point, self.way(laser, geometry, point)?)
+        self.reference_point_along(point, self.pupil_path(laser, geometry, point)?)
     }
 
     /// Returns the reference point for a given displacement of the pupil over its speckle.
     pub(super) fn reference_point_along(
         &self,
         point: &SpecklePoint,
-        way: DVec3,
+        pupil_path: DVec3,
     ) -> Option<ReferencePoint> {
         let body = self.surfaces.get(point.surface)?;
         Some(ReferencePoint {
@@ -175,7 +178,7 @@ impl Change {
             pixel: point.pixel,
             position: body.back.point(point.position),
             normal: body.back.direction(point.normal),
-            way,
+            pupil_path,
         })
     }
 
@@ -204,9 +207,14 @@ impl Change {
 
     /// Returns the displacement of the pupil over the speckle of a point, if the theory has a
     /// value.
-    fn way(&self, laser: usize, geometry: &ImagingGeometry, point: &SpecklePoint) -> Option<DVec3> {
+    fn pupil_path(
+        &self,
+        laser: usize,
+        geometry: &ImagingGeometry,
+        point: &SpecklePoint,
+    ) -> Option<DVec3> {
         let shift = self.known_shift(laser, geometry, point, LightPath::Direct)?;
-        Some(shift.way()).filter(|way| way.is_finite())
+        Some(shift.pupil_path()).filter(|path| path.is_finite())
     }
 
     /// Returns the shift of the speckle of a laser at a point since the reference frame.
@@ -328,8 +336,8 @@ impl Change {
 
 impl ReferencePoint {
     /// Returns the displacement of the pupil across the line of sight, to the right and up.
-    pub(super) fn way_across(&self) -> DVec2 {
-        self.way.truncate()
+    pub(super) fn pupil_path_across(&self) -> DVec2 {
+        self.pupil_path.truncate()
     }
 }
 

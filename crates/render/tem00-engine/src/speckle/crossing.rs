@@ -131,12 +131,12 @@ pub(super) struct Tracks {
     /// The axis along which the displacements in a frame differ most.
     axis: DVec2,
     /// The displacements of each point, in the frames that see it.
-    points: Vec<Vec<Way>>,
+    points: Vec<Vec<PupilShift>>,
 }
 
 /// The displacement of the pupil over the speckle of a point.
 #[derive(Clone, Copy, Debug)]
-struct Way {
+struct PupilShift {
     /// The index of the frame in the tracks.
     frame: usize,
     vector: DVec2,
@@ -167,28 +167,28 @@ impl Tracks {
             [scene.reference_frame, before].map(|from| Change::between(scene, [from, frame]))
         });
         let changes: Vec<_> = changes.collect();
-        let way = |point: &ReferencePoint, frame: usize| {
+        let shift = |point: &ReferencePoint, frame: usize| {
             let [change, since] = &changes[frame];
             let seen = change.seen(laser, point)?;
             let shift = change.speckle_shift(laser, geometry, &seen);
             let side = change.side(laser, geometry, prescan.reference_point.as_ref());
             let step = since.known_shift(laser, geometry, &seen, LightPath::Direct);
-            Some(Way {
+            Some(PupilShift {
                 frame,
                 vector: shift.pupil_vector(),
                 length: side * shift.pupil,
                 step: step.map(|shift| shift.pupil_vector()),
             })
         };
-        let ways = |point| (0..changes.len()).filter_map(|f| way(point, f)).collect();
+        let shifts = |point| (0..changes.len()).filter_map(|f| shift(point, f)).collect();
         let stride = prescan.points.len().div_ceil(POINTS).max(1);
-        let points = prescan.points.iter().step_by(stride).map(ways);
+        let points = prescan.points.iter().step_by(stride).map(shifts);
         let needs = frames.iter().map(|&f| &prescan.frames[f as usize]);
         let middle = needs.clone().zip(0..);
-        let middle = middle.filter_map(|(needs, frame)| Way::in_the_middle(needs, frame));
+        let middle = middle.filter_map(|(needs, frame)| PupilShift::in_the_middle(needs, frame));
         Self {
             points: points.chain([middle.collect()]).collect(),
-            middles: needs.map(|needs| needs.ways.middle()).collect(),
+            middles: needs.map(|needs| needs.pupil_shifts.middle()).collect(),
             axis: prescan.widest_axis(),
             frames,
         }
@@ -220,15 +220,15 @@ impl Tracks {
     /// Returns the two frames whose correlation errs most in some waves.
     fn worst(&self, following: Following, waves: &Waves<'_>) -> Option<FramePair> {
         let axis = following.axis().unwrap_or(waves.axis());
-        let place = |way: &Way| match following {
-            Following::Length => way.length * axis,
+        let place = |shift: &PupilShift| match following {
+            Following::Length => shift.length * axis,
             Following::Axis(_) => {
-                let middle = self.middles[way.frame].dot(axis.perp());
-                way.vector.dot(axis) * axis + middle * axis.perp()
+                let middle = self.middles[shift.frame].dot(axis.perp());
+                shift.vector.dot(axis) * axis + middle * axis.perp()
             }
         };
-        let pair = |one: &Way, other: &Way| {
-            let frames = [one, other].map(|way| self.frames[way.frame]);
+        let pair = |one: &PupilShift, other: &PupilShift| {
+            let frames = [one, other].map(|shift| self.frames[shift.frame]);
             let step = other.step.filter(|_| frames[1] == frames[0] + 1);
             FramePair {
                 surface: waves.surface,
@@ -237,10 +237,10 @@ impl Tracks {
                 law: waves.correlation(step.unwrap_or(other.vector - one.vector), waves.axis()),
             }
         };
-        let ways = self.points.iter();
-        let pairs = ways.flat_map(|ways| {
-            let firsts = ways.iter().enumerate();
-            firsts.flat_map(move |(i, one)| ways[i + 1..].iter().map(move |other| (one, other)))
+        let shifts = self.points.iter();
+        let pairs = shifts.flat_map(|shifts| {
+            let firsts = shifts.iter().enumerate();
+            firsts.flat_map(move |(i, one)| shifts[i + 1..].iter().map(move |other| (one, other)))
         });
         pairs
             .map(|(one, other)| pair(one, other))
@@ -262,14 +262,14 @@ fn compared(prescan: &MotionPrescan, count: u32) -> Vec<u32> {
 /// Returns two frames in which the pupil has moved about as far, but to different places.
 fn most_confused(prescan: &MotionPrescan, count: u32) -> [u32; 2] {
     let middle = |frame: u32| {
-        let middle = Way::in_the_middle(&prescan.frames[frame as usize], 0);
+        let middle = PupilShift::in_the_middle(&prescan.frames[frame as usize], 0);
         Some((frame, middle?))
     };
-    let mut ways: Vec<_> = (0..count).filter_map(middle).collect();
-    ways.sort_by(|(_, a), (_, b)| a.length.total_cmp(&b.length));
+    let mut shifts: Vec<_> = (0..count).filter_map(middle).collect();
+    shifts.sort_by(|(_, a), (_, b)| a.length.total_cmp(&b.length));
     let mut max = ([0; 2], 0.0);
-    for (i, (first, one)) in ways.iter().enumerate() {
-        let near = ways[i + 1..].iter().take(NEIGHBOURS);
+    for (i, (first, one)) in shifts.iter().enumerate() {
+        let near = shifts[i + 1..].iter().take(NEIGHBOURS);
         for (second, other) in near.take_while(|(_, other)| other.length - one.length < 1.0) {
             let rendered = pupil_overlap_correlation(other.length - one.length);
             let law = pupil_overlap_correlation((other.vector - one.vector).length());
@@ -281,14 +281,14 @@ fn most_confused(prescan: &MotionPrescan, count: u32) -> [u32; 2] {
     max.0
 }
 
-impl Way {
+impl PupilShift {
     /// Returns the displacement in the middle of the range of a frame, if all its points move about
     /// alike.
     fn in_the_middle(needs: &FrameNeeds, frame: usize) -> Option<Self> {
-        let is_alike = needs.ways.size().length() < ALIKE;
+        let is_alike = needs.pupil_shifts.size().length() < ALIKE;
         is_alike.then(|| Self {
             frame,
-            vector: needs.ways.middle(),
+            vector: needs.pupil_shifts.middle(),
             length: 0.5 * (needs.span[0] + needs.span[1]),
             step: None,
         })

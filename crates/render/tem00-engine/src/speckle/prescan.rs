@@ -69,7 +69,7 @@ pub(super) struct FrameNeeds {
     /// negative on the other side of the reference frame.
     pub span: [f64; 2],
     /// The displacements of the pupil over the speckle, to the right and up, in pupil diameters.
-    pub ways: Region,
+    pub pupil_shifts: Region,
 }
 
 /// Points of a group of surfaces that were seen in some frames.
@@ -100,7 +100,7 @@ impl MotionPrescan {
     /// Returns the axis of the pupil along which the displacements of the points of a frame differ
     /// most.
     pub(super) fn widest_axis(&self) -> DVec2 {
-        let sizes = self.frames.iter().map(|frame| frame.ways.size());
+        let sizes = self.frames.iter().map(|frame| frame.pupil_shifts.size());
         let size = sizes.fold(DVec2::ZERO, DVec2::max);
         if size.y > size.x { DVec2::Y } else { DVec2::X }
     }
@@ -272,7 +272,7 @@ impl MotionPrescan {
         let before = self.frames.last().copied().unwrap_or(FrameNeeds {
             region: Region::NONE,
             span: [0.0; 2],
-            ways: Region::of(DVec2::ZERO),
+            pupil_shifts: Region::of(DVec2::ZERO),
         });
         let needs = needs.unwrap_or(FrameNeeds {
             region: Region::NONE,

@@ -1,7 +1,7 @@
 use glam::DVec3;
 use tem00_geometry::Hit;
 
-use super::{PATHS, SEED, SeenPoint, Survey, way::Way};
+use super::{PATHS, SEED, SeenPoint, Survey, path::SurveyedPath};
 use crate::{
     sampler::{pixel_key, point_in_square},
     speckle::MultiplePath,
@@ -20,7 +20,7 @@ struct Sight<'s, 'a> {
     seen: &'s SeenPoint<'a>,
     /// The key of the first path.
     first: u64,
-    ways: Vec<Way>,
+    paths: Vec<SurveyedPath>,
     /// Displacement of the field in the pupil per change of the first direction of each path.
     pupils: Vec<DVec3>,
     found: Vec<Vec<MultiplePath>>,
@@ -42,7 +42,7 @@ impl<'a> Survey<'a> {
             .change
             .paths_to(laser, surface, position)
             .unwrap_or_default();
-        let start = Way {
+        let start = SurveyedPath {
             length: -now,
             change: before - now,
             polarisation: self.polarisation_of(surface),
@@ -53,7 +53,7 @@ impl<'a> Survey<'a> {
             laser,
             seen,
             first,
-            ways: vec![start; PATHS],
+            paths: vec![start; PATHS],
             pupils: vec![DVec3::ZERO; PATHS],
             found: vec![Vec::new(); PATHS],
         };
@@ -79,10 +79,10 @@ impl<'a> Visitor<'a> for Sight<'_, 'a> {
             if depth == 2 {
                 self.pupils[number] = self.seen.pupil_of(walker.ray.direction);
             }
-            let way = &mut self.ways[number];
-            *way = way.on_to(self.survey.places(vertex), walker.index());
+            let path = &mut self.paths[number];
+            *path = path.on_to(self.survey.places(vertex), walker.index());
             if !vertex.is_specular() {
-                way.polarisation *= self.survey.polarisation_of(vertex.hit.surface);
+                path.polarisation *= self.survey.polarisation_of(vertex.hit.surface);
                 let found = self.lit(number, walker.carries, vertex);
                 self.found[number].extend(found);
             }
@@ -114,12 +114,12 @@ impl Sight<'_, '_> {
         } = vertex.hit;
         let radiance = carries * self.survey.single(self.laser, vertex);
         let [now, before] = self.survey.change.paths_to(self.laser, surface, position)?;
-        let way = &self.ways[number];
+        let path = &self.paths[number];
         (radiance > 0.0).then_some(MultiplePath {
             radiance,
-            delay: way.length + now,
-            added: way.change + now - before,
-            polarisation: way.polarisation,
+            delay: path.length + now,
+            added: path.change + now - before,
+            polarisation: path.polarisation,
             pupil: self.pupils[number],
         })
     }

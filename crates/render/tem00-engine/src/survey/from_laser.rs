@@ -1,23 +1,23 @@
 use super::{
-    GROUPS, PATHS, SEED, Survey, WayPoints,
-    way::{Way, WayPoint},
+    GROUPS, PATHS, PathPoints, SEED, Survey,
+    path::{PathPoint, SurveyedPath},
 };
 use crate::{light_tracer::LightGroup, sampler::DrawKey, vertex::Vertex};
 use rayon::prelude::*;
 
 impl<'a> Survey<'a> {
     /// Follows light from the lasers, and returns the rough surfaces that each path meets.
-    pub(super) fn way_points(&self) -> WayPoints<'a> {
+    pub(super) fn path_points(&self) -> PathPoints<'a> {
         let groups = |laser: usize| {
             let groups = (0..GROUPS as u64).into_par_iter();
             groups
-                .map(|group| self.way_points_of(laser, group))
+                .map(|group| self.path_points_of(laser, group))
                 .collect()
         };
         (0..self.scene.lasers.len()).map(groups).collect()
     }
 
-    fn way_points_of(&self, laser: usize, group: u64) -> Vec<Vec<WayPoint<'a>>> {
+    fn path_points_of(&self, laser: usize, group: u64) -> Vec<Vec<PathPoint<'a>>> {
         let group = LightGroup {
             scene: self.scene,
             intersector: self.intersector,
@@ -32,17 +32,17 @@ impl<'a> Survey<'a> {
             },
             paths: PATHS,
         };
-        let mut ways: Vec<Option<Way>> = vec![None; PATHS];
+        let mut paths: Vec<Option<SurveyedPath>> = vec![None; PATHS];
         let mut points = vec![Vec::new(); PATHS];
         group.follow(|_, met, _| {
             for &met in &*met {
-                let last = &mut ways[met.walker.number];
-                let Some(way) = self.way_on(*last, &met.vertex, met.walker.index(), laser) else {
+                let last = &mut paths[met.walker.number];
+                let Some(path) = self.path_on(*last, &met.vertex, met.walker.index(), laser) else {
                     continue;
                 };
-                *last = Some(way);
+                *last = Some(path);
                 if !met.vertex.is_specular() {
-                    points[met.walker.number].push(WayPoint { met, way });
+                    points[met.walker.number].push(PathPoint { met, path });
                 }
             }
         });
@@ -51,13 +51,13 @@ impl<'a> Survey<'a> {
 
     /// Returns the path of light to a surface, continued from the last surface, or from the phase
     /// of the beam itself.
-    fn way_on(
+    fn path_on(
         &self,
-        last: Option<Way>,
+        last: Option<SurveyedPath>,
         vertex: &Vertex<'_>,
         index: f64,
         laser: usize,
-    ) -> Option<Way> {
+    ) -> Option<SurveyedPath> {
         let here = self.places(vertex);
         let polarisation = match vertex.is_specular() {
             true => 1.0,
@@ -66,17 +66,17 @@ impl<'a> Survey<'a> {
         let Some(last) = last else {
             let hit = &vertex.hit;
             let [now, before] = self.change.paths_to(laser, hit.surface, hit.position)?;
-            return Some(Way {
+            return Some(SurveyedPath {
                 length: now,
                 change: now - before,
                 polarisation,
                 last: here,
             });
         };
-        let way = last.on_to(here, index);
-        Some(Way {
+        let path = last.on_to(here, index);
+        Some(SurveyedPath {
             polarisation: last.polarisation * polarisation,
-            ..way
+            ..path
         })
     }
 }

@@ -119,7 +119,7 @@ impl Planner<'_> {
         let surfaces = self.surfaces_of(group);
         let waves = surfaces.iter().filter_map(|&surface| {
             let bandwidth = self.lights[surface].bandwidth.as_ref()?;
-            let bandwidth = bandwidth.beside(way_across(prescan.reference_point.as_ref()));
+            let bandwidth = bandwidth.beside(pupil_path_across(prescan.reference_point.as_ref()));
             Some(Waves::of(line, surface, bandwidth))
         });
         let mut waves: Vec<_> = waves.collect();
@@ -172,14 +172,14 @@ impl Planner<'_> {
         let needs = prescan.frames.iter();
         let spans: Vec<_> = needs
             .clone()
-            .map(|frame| axis.map_or(frame.span, |axis| frame.ways.along(axis)))
+            .map(|frame| axis.map_or(frame.span, |axis| frame.pupil_shifts.along(axis)))
             .map(|[low, high]| {
                 let (middle, half) = (0.5 * (low + high), 0.5 * (high - low).min(widest));
                 [middle - half - reach, middle + half + reach]
             })
             .collect();
         let across = axis.map(|axis| {
-            let middles = needs.map(|frame| frame.ways.middle());
+            let middles = needs.map(|frame| frame.pupil_shifts.middle());
             middles.map(|middle| middle.dot(axis.perp())).collect()
         });
         Request {
@@ -226,7 +226,7 @@ impl Planner<'_> {
                 let bandwidth = light.bandwidth.as_ref();
                 let following = followed[group].following;
                 let bandwidth = bandwidth.map(|bandwidth| match following {
-                    Following::Length => bandwidth.beside(way_across(moving.as_ref())),
+                    Following::Length => bandwidth.beside(pupil_path_across(moving.as_ref())),
                     Following::Axis(axis) => bandwidth.along(axis),
                 });
                 SurfacePatterns {
@@ -284,8 +284,8 @@ impl Sum {
     }
 }
 
-fn way_across(moving: Option<&ReferencePoint>) -> DVec2 {
-    moving.map_or(DVec2::ZERO, ReferencePoint::way_across)
+fn pupil_path_across(moving: Option<&ReferencePoint>) -> DVec2 {
+    moving.map_or(DVec2::ZERO, ReferencePoint::pupil_path_across)
 }
 
 /// Returns the plan with the settings of the scene file.

@@ -16,7 +16,7 @@ pub(super) struct FrameSample {
     pub region: Region,
     /// The smallest and the largest motion of the pupil over the speckle, in pupil diameters.
     pub shifts: [f64; 2],
-    pub ways: Region,
+    pub pupil_shifts: Region,
     /// The point where it is largest.
     pub farthest: Option<SpecklePoint>,
     /// Sample in the reference frame, if the theory has a value.
@@ -36,7 +36,7 @@ pub(super) fn frame_samples(
     let none = FrameSample {
         region: Region::NONE,
         shifts: [f64::INFINITY, 0.0],
-        ways: Region::NONE,
+        pupil_shifts: Region::NONE,
         farthest: None,
         reference_point: None,
         kept: Vec::new(),
@@ -103,7 +103,7 @@ impl FrameSample {
     fn add(&mut self, change: &Change, point: &SpecklePoint, shift: &SpeckleShift) {
         let origin = change.perspective().point(point.pixel) - shift.displacement;
         self.region = self.region.joined(Region::of(origin));
-        self.ways = self.ways.joined(Region::of(shift.pupil_vector()));
+        self.pupil_shifts = self.pupil_shifts.joined(Region::of(shift.pupil_vector()));
         let [smallest, largest] = &mut self.shifts;
         *smallest = smallest.min(shift.pupil);
         if self.farthest.is_none() || shift.pupil > *largest {
@@ -124,7 +124,7 @@ impl FrameSample {
         self.farthest.map(|_| FrameNeeds {
             region: self.region,
             span,
-            ways: self.ways,
+            pupil_shifts: self.pupil_shifts,
         })
     }
 }

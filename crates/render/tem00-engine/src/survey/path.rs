@@ -6,7 +6,7 @@ use crate::walk::Met;
 
 /// The path of light between a laser and the camera, over surfaces that may have moved.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Way {
+pub(super) struct SurveyedPath {
     /// The optical length, in metres.
     pub length: f64,
     /// The length minus the length of the same path in the reference frame.
@@ -19,12 +19,12 @@ pub(super) struct Way {
 
 /// A point of a rough surface that the light of a laser has met, and its path there.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct WayPoint<'a> {
+pub(super) struct PathPoint<'a> {
     pub met: Met<'a>,
-    pub way: Way,
+    pub path: SurveyedPath,
 }
 
-impl Way {
+impl SurveyedPath {
     /// Continues to a point, now and in the reference frame, through a medium of this index.
     pub(super) fn on_to(self, here: [DVec3; 2], index: f64) -> Self {
         let [now, before] = self.distances(here);
@@ -42,27 +42,27 @@ impl Way {
     }
 }
 
-impl WayPoint<'_> {
+impl PathPoint<'_> {
     /// Returns the irradiance that the point sends to another across the direction between them, in
     /// W/m², as if its path were the only one, and the unit direction towards it.
     pub(super) fn irradiance_at(&self, point: DVec3, wavelength: f64) -> Option<(f64, DVec3)> {
         let hit = &self.met.vertex.hit;
-        let way = point - hit.position;
-        let out = way.try_normalize()?;
+        let between = point - hit.position;
+        let out = between.try_normalize()?;
         let axes = LocalFrame::from_normal(hit.normal_seen_from(out));
         let intensity = self.met.walker.carries * self.met.sent(out, &axes, wavelength);
-        let irradiance = intensity / way.length_squared();
+        let irradiance = intensity / between.length_squared();
         (irradiance > 0.0 && irradiance.is_finite()).then_some((irradiance, -out))
     }
 
     /// Returns the path of the light continued to a point, which stood at `origin` in the reference
     /// frame.
-    pub(super) fn way_to(&self, point: DVec3, origin: DVec3) -> Way {
-        let [now, before] = self.way.distances([point, origin]);
-        Way {
-            length: self.way.length + now,
-            change: self.way.change + now - before,
-            ..self.way
+    pub(super) fn path_to(&self, point: DVec3, origin: DVec3) -> SurveyedPath {
+        let [now, before] = self.path.distances([point, origin]);
+        SurveyedPath {
+            length: self.path.length + now,
+            change: self.path.change + now - before,
+            ..self.path
         }
     }
 

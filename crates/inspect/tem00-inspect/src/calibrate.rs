@@ -21,7 +21,7 @@ use tem00_report::{
 };
 use tem00_triangulation::{LineDetector, TriangulationError};
 
-use self::left_out::Found;
+use self::left_out::FoundPoints;
 use crate::{args::CalibrateArgs, calibration_file::write_calibration};
 
 /// The photographs of a board.
@@ -78,7 +78,7 @@ fn model(args: &CalibrateArgs, resolution: [usize; 2]) -> CameraModel {
     }
 }
 
-fn report(calibration: &Calibration, found: &Found) -> Report {
+fn report(calibration: &Calibration, found: &FoundPoints) -> Report {
     let mut report = Report::new("Calibration of a camera and a laser");
     report
         .section("Camera")
@@ -138,11 +138,11 @@ fn views(
     pairs: &[Pair],
     board: &Checkerboard,
     args: &CalibrateArgs,
-) -> Result<(Vec<BoardView>, Found, [usize; 2]), Failure> {
+) -> Result<(Vec<BoardView>, FoundPoints, [usize; 2]), Failure> {
     let settings = args.detector.settings().map_err(of_detector)?;
     let detector = LineDetector::new(settings).map_err(|error| of_detector(error.to_string()))?;
     let progress = Progress::of(pairs.len() as u64, "boards");
-    let (mut views, mut found) = (Vec::new(), Found::default());
+    let (mut views, mut found) = (Vec::new(), FoundPoints::default());
     let mut size = None;
     for pair in pairs {
         interrupt::check()?;

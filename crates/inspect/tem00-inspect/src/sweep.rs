@@ -18,7 +18,7 @@ use tem00_report::{
 
 use self::{
     grid::{Grid, HELP},
-    row::{Outcome, Row, cell, quoted},
+    row::{Outcome, TaskRow, cell, quoted},
     task::{Sweep, Worked},
 };
 use crate::args::SweepArgs;
@@ -127,7 +127,7 @@ fn line(first: &str, cells: impl Iterator<Item = String>) -> String {
 /// Writes the table of all rows.
 fn gather(sweep: &Sweep<'_>, out: &mut impl Write) -> Result<(), Failure> {
     let grid = sweep.grid;
-    let rows: Vec<Option<Row>> = (0..grid.count()).map(|task| sweep.find(task)).collect();
+    let rows: Vec<Option<TaskRow>> = (0..grid.count()).map(|task| sweep.find(task)).collect();
     let missing: Vec<usize> = (0..rows.len())
         .filter(|&task| rows[task].is_none())
         .collect();
@@ -139,7 +139,7 @@ fn gather(sweep: &Sweep<'_>, out: &mut impl Write) -> Result<(), Failure> {
         );
         return Err(Failure::running(message));
     }
-    let rows: Vec<Row> = rows.into_iter().flatten().collect();
+    let rows: Vec<TaskRow> = rows.into_iter().flatten().collect();
     let path = sweep.folder.join("sweep.csv");
     write_atomically(&path, |file| write_table(grid, &rows, file))
         .map_err(|error| Failure::writing(&path, error))?;
@@ -162,7 +162,7 @@ fn gather(sweep: &Sweep<'_>, out: &mut impl Write) -> Result<(), Failure> {
     }
 }
 
-fn write_table(grid: &Grid, rows: &[Row], file: &mut impl Write) -> std::io::Result<()> {
+fn write_table(grid: &Grid, rows: &[TaskRow], file: &mut impl Write) -> std::io::Result<()> {
     let headings = keys(grid).chain(grid.results.iter().map(|result| quoted(result)));
     let ends = ["outcome", "reason"].map(str::to_owned);
     writeln!(file, "{}", line("task", headings.chain(ends)))?;

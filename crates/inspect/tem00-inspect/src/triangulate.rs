@@ -20,7 +20,7 @@ use tem00_report::{
 };
 use tem00_scan::MeasurementScene;
 
-use self::job::{Job, Measured};
+use self::job::{Job, ScanResult};
 use crate::args::TriangulateArgs;
 
 /// The help for a file that is not a scene.
@@ -64,7 +64,7 @@ pub(crate) fn run(args: &TriangulateArgs, out: &mut impl Write) -> Result<(), Fa
 }
 
 /// Writes all files, and returns the report.
-fn write(job: &Job<'_>, measured: &Measured) -> Result<Report, Failure> {
+fn write(job: &Job<'_>, measured: &ScanResult) -> Result<Report, Failure> {
     let height = job.measurement.settings().height;
     job.files.write_profiles(&measured.profiles, height)?;
     job.files.write_point_clouds(&measured.profiles)?;

@@ -2,7 +2,7 @@ use std::borrow::Cow;
 
 use glam::{DMat3, DVec2, DVec3};
 use tem00_calibration::Calibration;
-use tem00_engine::{ReferencePoint, SpeckleChange};
+use tem00_engine::{FollowedPoint, SpeckleChange};
 use tem00_numerics::{Grid, cast::to_f32};
 use tem00_tracer::RigidMotion;
 use tem00_triangulation::{
@@ -32,7 +32,7 @@ pub struct MeasuredFrame {
     pub correlation: Vec<f64>,
     /// The point in the middle of the profile, whose speckle represents the speckle of all points;
     /// `None` without speckle or without points.
-    pub reference_point: Option<ReferencePoint>,
+    pub reference_point: Option<FollowedPoint>,
 }
 
 /// A measured point of a part and how well it is known.

@@ -4,7 +4,7 @@ use glam::DMat3;
 use glam::{DVec2, DVec3};
 use tem00_calibration::Calibration;
 use tem00_camera::Camera;
-use tem00_engine::{ReferencePoint, SpeckleChange, SpeckleModel, render_frame};
+use tem00_engine::{FollowedPoint, SpeckleChange, SpeckleModel, render_frame};
 use tem00_numerics::{
     cast::to_usize,
     check,
@@ -249,17 +249,13 @@ impl Measurement {
 
     /// The middle point of the profile in the world, with the normal that the render has seen
     /// there.
-    fn reference_point(
-        &self,
-        measured: &MeasuredFrame,
-        rendered: &Frame,
-    ) -> Option<ReferencePoint> {
+    fn reference_point(&self, measured: &MeasuredFrame, rendered: &Frame) -> Option<FollowedPoint> {
         let middle = middle(&measured.points)?;
         let row = to_usize(middle.seen.pixel.y).min(rendered.lights.height() - 1);
         let at = (middle.seen.column, row);
         let [x, y, z] = [0, 1, 2].map(|axis| f64::from(rendered.normal[axis][at]));
         let world = self.motion.head_at(measured.frame);
-        Some(ReferencePoint {
+        Some(FollowedPoint {
             surface: *self.motion.surfaces().first()?,
             position: world.point(middle.seen.point.position),
             normal: DVec3::new(x, y, z).try_normalize()?,

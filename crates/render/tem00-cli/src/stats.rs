@@ -12,7 +12,7 @@ use tem00_report::{
     image::{LoadedImage, Reading, read_image},
     kind::{Kind, wrong_or},
     output::{self, note},
-    plot::Format,
+    plot::PlotFormat,
     report::Report,
 };
 use tem00_statistics::{
@@ -119,8 +119,8 @@ fn cannot(args: &StatsArgs, error: &impl core::fmt::Display, help: &str) -> Fail
 }
 
 /// Returns the file of the page and its format, if it can be written.
-fn plot_file(path: &Path) -> Result<(&Path, Format), Failure> {
-    let format = Format::of_path(path).ok_or_else(|| {
+fn plot_file(path: &Path) -> Result<(&Path, PlotFormat), Failure> {
+    let format = PlotFormat::of_path(path).ok_or_else(|| {
         Failure::input(
             format!("{} names no known format of a page", path.display()),
             "end the name in .svg or .png",
@@ -130,7 +130,7 @@ fn plot_file(path: &Path) -> Result<(&Path, Format), Failure> {
     Ok((path, format))
 }
 
-fn draw(measurement: &Measurement, path: &Path, format: Format) -> Result<(), Failure> {
+fn draw(measurement: &Measurement, path: &Path, format: PlotFormat) -> Result<(), Failure> {
     let page = page::Page {
         title: &measurement.image,
         curves: &measurement.curves,

@@ -147,7 +147,7 @@ struct Inspector<'a> {
 
 /// The end of a ray.
 #[derive(Clone, Copy)]
-struct Arrival {
+struct RayEnd {
     /// The rough surface, unless it met none.
     hit: Option<Hit>,
     /// The direction in which it arrived.
@@ -160,7 +160,7 @@ struct Arrival {
 
 /// Rays that are followed over mirrors and through glass to their first rough surfaces.
 struct Arrivals {
-    rays: Vec<Arrival>,
+    rays: Vec<RayEnd>,
     /// The vertices of the paths of the first rays.
     ways: Vec<Vec<DVec3>>,
     far: f64,
@@ -233,7 +233,7 @@ impl Inspector<'_> {
 
     /// Follows rays over mirrors and through glass to their first rough surfaces.
     fn follow(&self, rays: &[Ray], wavelength: f64) -> Arrivals {
-        let start = |ray: &Ray| Arrival {
+        let start = |ray: &Ray| RayEnd {
             hit: None,
             direction: ray.direction,
             length: 0.0,
@@ -335,7 +335,7 @@ impl Inspector<'_> {
 
     /// Returns the power of a laser on the surface that a camera ray meets, per solid angle of the
     /// ray, in W/sr.
-    fn power_per_solid_angle(&self, laser: &Laser, seen: &Arrival) -> f64 {
+    fn power_per_solid_angle(&self, laser: &Laser, seen: &RayEnd) -> f64 {
         let Some(hit) = &seen.hit else {
             return 0.0;
         };

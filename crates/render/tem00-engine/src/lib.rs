@@ -26,7 +26,7 @@ pub use light_tracer::has_specular_surfaces_on_both_sides;
 pub use render::{render_frame, samples_per_frame};
 pub use sampler::mean_over_sample_displacements;
 pub use speckle::{
-    CascadeNote, CorrelationNote, PatternPlan, ReferencePoint, RoughnessNote, SpeckleChange,
+    CascadeNote, CorrelationNote, FollowedPoint, PatternPlan, RoughnessNote, SpeckleChange,
     SpeckleModel, SpecklePlan, roughness_notes,
 };
 pub use survey::cascade_notes;

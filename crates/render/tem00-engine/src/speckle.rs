@@ -11,13 +11,13 @@ mod notes;
 mod plan;
 mod prescan;
 
-pub use between_frames::{ReferencePoint, SpeckleChange};
+pub use between_frames::{FollowedPoint, SpeckleChange};
 pub(crate) use change::{Change, moves};
 pub use crossing::CorrelationNote;
 use glam::{DVec2, DVec3};
 pub(crate) use model::SpeckleFrame;
 pub use model::SpeckleModel;
-pub(crate) use multiple::{Lattice, LightKey, MultipleMap, MultiplePath, MultipleSums};
+pub(crate) use multiple::{CellGrid, LightKey, MultipleMap, MultiplePath, MultipleSums};
 pub use notes::{CascadeNote, RoughnessNote, roughness_notes};
 pub use plan::{PatternPlan, SpecklePlan};
 use tem00_geometry::Hit;

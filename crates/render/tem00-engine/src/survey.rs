@@ -18,7 +18,7 @@ use crate::{
     integrator::is_plate,
     sampler::{pixel_key, point_in_square},
     speckle::{
-        CascadeNote, Change, Lattice, LightKey, MultipleMap, MultiplePath, MultipleSums,
+        CascadeNote, CellGrid, Change, LightKey, MultipleMap, MultiplePath, MultipleSums,
         SpecklePoint, moves,
     },
     vertex::Vertex,
@@ -174,27 +174,27 @@ impl<'a> Survey<'a> {
     pub(crate) fn map(&self) -> Option<MultipleMap> {
         let camera = self.change.camera();
         let lit = self.path_points();
-        let lattice = Lattice::over([camera.width(), camera.height()], self.cells);
+        let grid = CellGrid::over([camera.width(), camera.height()], self.cells);
         let lasers = (0..self.scene.lasers.len()).into_par_iter();
         let starts: Vec<PathStart> = lasers
-            .map(|laser| self.better_start(laser, &lit[laser], lattice))
+            .map(|laser| self.better_start(laser, &lit[laser], grid))
             .collect();
-        let cells = (0..lattice.columns * lattice.rows).into_par_iter();
+        let cells = (0..grid.columns * grid.rows).into_par_iter();
         let sums: Vec<CellSums> = cells
             .map(|cell| {
-                let Some(seen) = self.seen(lattice, cell) else {
+                let Some(seen) = self.seen(grid, cell) else {
                     return CellSums::new();
                 };
                 let lasers = starts.iter().zip(&lit).enumerate();
                 lasers
                     .map(|(laser, (&start, groups))| {
-                        let sums = self.sums(laser, start, groups, (lattice, cell, &seen));
+                        let sums = self.sums(laser, start, groups, (grid, cell, &seen));
                         ((laser, seen.point.surface), sums)
                     })
                     .collect()
             })
             .collect();
-        MultipleMap::new(lattice, &sums)
+        MultipleMap::new(grid, &sums)
     }
 
     /// Chooses the starting point from which more paths find the light of a laser, in one of
@@ -203,19 +203,19 @@ impl<'a> Survey<'a> {
         &self,
         laser: usize,
         groups: &[Vec<Vec<PathPoint<'_>>>],
-        lattice: Lattice,
+        grid: CellGrid,
     ) -> PathStart {
         let probed = |cell: &usize| {
-            let place = [cell % lattice.columns, cell / lattice.columns];
+            let place = [cell % grid.columns, cell / grid.columns];
             place.map(|i| i % PROBE) == [PROBE / 2; 2]
         };
         let mut found = [0.0; 2];
-        for cell in (0..lattice.columns * lattice.rows).filter(probed) {
-            let Some(seen) = self.seen(lattice, cell) else {
+        for cell in (0..grid.columns * grid.rows).filter(probed) {
+            let Some(seen) = self.seen(grid, cell) else {
                 continue;
             };
             for (found, start) in found.iter_mut().zip([PathStart::Laser, PathStart::Camera]) {
-                let sums = self.sums(laser, start, groups, (lattice, cell, &seen));
+                let sums = self.sums(laser, start, groups, (grid, cell, &seen));
                 *found += sums.effective_paths();
             }
         }
@@ -232,9 +232,9 @@ impl<'a> Survey<'a> {
         laser: usize,
         start: PathStart,
         groups: &[Vec<Vec<PathPoint<'_>>>],
-        (lattice, cell, seen): (Lattice, usize, &SeenPoint<'_>),
+        (grid, cell, seen): (CellGrid, usize, &SeenPoint<'_>),
     ) -> MultipleSums {
-        let number = 2 * (cell % lattice.columns + 3 * (cell / lattice.columns));
+        let number = 2 * (cell % grid.columns + 3 * (cell / grid.columns));
         let paths = [0, 1].map(|i| match start {
             PathStart::Laser => self.multiple(laser, seen, &groups[(number + i) % GROUPS]),
             PathStart::Camera => {
@@ -249,16 +249,13 @@ impl<'a> Survey<'a> {
     }
 
     /// The rough surface that the camera sees at some point of a cell.
-    fn seen(&self, lattice: Lattice, cell: usize) -> Option<SeenPoint<'a>> {
+    fn seen(&self, grid: CellGrid, cell: usize) -> Option<SeenPoint<'a>> {
         let camera = self.change.camera();
-        let corner = DVec2::new(
-            (cell % lattice.columns) as f64,
-            (cell / lattice.columns) as f64,
-        );
+        let corner = DVec2::new((cell % grid.columns) as f64, (cell / grid.columns) as f64);
         let size = DVec2::new(camera.width() as f64, camera.height() as f64);
         // The same point in every frame.
         let within = point_in_square(pixel_key(self.seed ^ SEED, [0, cell as u64, 0]));
-        let pixel = (lattice.side as f64 * (corner + DVec2::from_array(within))).min(size);
+        let pixel = (grid.side as f64 * (corner + DVec2::from_array(within))).min(size);
         let ray = camera.ray(pixel);
         let hit = self.intersector.intersect(&ray)?;
         let material = &self.scene.surfaces.get(hit.surface)?.material;

@@ -11,7 +11,7 @@ pub use self::{
     bars::Bars,
     chart::Chart,
     colours::Colour,
-    drawing::{Drawing, Format},
+    drawing::{Drawing, PlotFormat},
     heat_map::{HeatMap, Scale, height_colour},
 };
 

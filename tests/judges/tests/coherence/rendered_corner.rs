@@ -10,7 +10,7 @@ use tem00::coherence::{
     ResolutionCell, SpectralLine,
 };
 use tem00::decorrelation::pupil_overlap_correlation;
-use tem00::engine::{ReferencePoint, SpeckleChange, SpeckleModel, SpecklePlan, render_frame};
+use tem00::engine::{FollowedPoint, SpeckleChange, SpeckleModel, SpecklePlan, render_frame};
 use tem00::geometry::{Rectangle, Shape};
 use tem00::tracer::{
     BeamShape, Laser, LaserDescription, Material, RenderOptions, Rotation, Scene, Surface,
@@ -223,7 +223,7 @@ fn frames_of_a_rendered_corner_correlate_as_its_light_does() {
         let [before, after] = [0, 1].map(|frame| factors(&scene, frame));
         let found = covariance(&before, &after) / covariance(&before, &before);
         // Of the single light by itself.
-        let point = ReferencePoint {
+        let point = FollowedPoint {
             surface: 0,
             position: SEEN,
             normal: DVec3::Z,

@@ -5,7 +5,7 @@ use core::f64::consts::PI;
 use tem00::{
     camera::{RadialDistortion, SensorTilt},
     decorrelation::equivalent_pupil_shift,
-    engine::{ReferencePoint, SpeckleChange},
+    engine::{FollowedPoint, SpeckleChange},
     numerics::{Grid, jinc},
     scan::SensorSpeckle,
     triangulation::{DVec2, DVec3},
@@ -100,7 +100,7 @@ fn speckle_in_focus_goes_with_the_image_of_the_surface() {
     for (z, step) in [(20e-3, 70e-6), (0.0, 60e-6), (-25e-3, 60e-6)] {
         let setting = Setting::scheimpflug(z, step);
         let scene = setting.scene(2, 1).scene;
-        let point = ReferencePoint {
+        let point = FollowedPoint {
             surface: 0,
             position: setting.seen,
             normal: DVec3::Z,

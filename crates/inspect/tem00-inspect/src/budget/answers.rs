@@ -8,11 +8,11 @@ use tem00_report::report::{
 use tem00_triangulation::{Budget, MeasurementInput};
 use tem00_uncertainty::Input;
 
-use super::measured::{Measured, Quoted};
+use super::measured::{Quoted, ThreeMethods};
 use crate::units::shown;
 
 /// Returns the result in sentences.
-pub(super) fn verdicts(measured: &Measured) -> Vec<String> {
+pub(super) fn verdicts(measured: &ThreeMethods) -> Vec<String> {
     let quoted = measured.quoted();
     let height = MILLIMETRES.text(measured.measurement.height());
     let half = MICROMETRES.text(0.5 * measured.quoted_answer().interval.length());
@@ -42,7 +42,7 @@ pub(super) fn thin(speckles: f64, quote: &str) -> String {
 }
 
 /// Says where the methods differ, and therefore which of them to quote.
-fn why(measured: &Measured) -> String {
+fn why(measured: &ThreeMethods) -> String {
     if measured.is_thin() {
         let quote = match measured.quoted() {
             Quoted::VirtualExperiment => "the virtual experiment",
@@ -77,7 +77,7 @@ fn why(measured: &Measured) -> String {
 }
 
 /// Adds the answers and their contributions.
-pub(super) fn section(section: &mut Section, measured: &Measured) {
+pub(super) fn section(section: &mut Section, measured: &ThreeMethods) {
     let (validation, propagation) = (measured.validation(), &measured.propagation);
     section
         .fact(
@@ -118,7 +118,7 @@ pub(super) fn section(section: &mut Section, measured: &Measured) {
         );
 }
 
-fn answers(measured: &Measured) -> Table {
+fn answers(measured: &ThreeMethods) -> Table {
     let columns = [
         Column::data("method"),
         Column::shown("answer"),
@@ -150,7 +150,7 @@ fn answers(measured: &Measured) -> Table {
     table
 }
 
-fn correlations(measured: &Measured) -> Vec<serde_json::Value> {
+fn correlations(measured: &ThreeMethods) -> Vec<serde_json::Value> {
     let named = |(between, coefficient): ([MeasurementInput; 2], f64)| {
         let between = between.map(source);
         json!({ "between": between, "coefficient": coefficient })
@@ -166,7 +166,7 @@ pub(super) fn source(input: MeasurementInput) -> String {
     }
 }
 
-fn inputs(measured: &Measured) -> Table {
+fn inputs(measured: &ThreeMethods) -> Table {
     let mut columns = vec![
         Column::new("input", "input"),
         Column::new("estimate", "estimate"),
@@ -188,7 +188,12 @@ fn inputs(measured: &Measured) -> Table {
     table
 }
 
-fn cells(measured: &Measured, index: usize, input: MeasurementInput, known: &Input) -> Vec<Cell> {
+fn cells(
+    measured: &ThreeMethods,
+    index: usize,
+    input: MeasurementInput,
+    known: &Input,
+) -> Vec<Cell> {
     let (unit, divisor) = (shown(input.unit()), input.unit().divisor);
     let contribution = &measured.first_order.contributions()[index];
     let per_unit = MICROMETRES.text(contribution.sensitivity / unit.of(1.0));

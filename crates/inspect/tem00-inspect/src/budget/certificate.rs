@@ -10,7 +10,7 @@ pub(super) use self::data::CertificateData;
 use self::{data::Texts, element::Element};
 use super::{
     answers::{source, verdicts},
-    measured::{Measured, Quoted},
+    measured::{Quoted, ThreeMethods},
 };
 
 /// The version of the schema of the Physikalisch-Technische Bundesanstalt that certificates follow.
@@ -22,7 +22,11 @@ const STATEMENT: &str = "This certificate states the calculated uncertainty budg
     not the result of a measurement: no item was calibrated.";
 
 /// Returns the certificate of a measured height as XML; the same input gives the same bytes.
-pub(super) fn certificate(data: &CertificateData, measured: &Measured, setup: &Setup) -> String {
+pub(super) fn certificate(
+    data: &CertificateData,
+    measured: &ThreeMethods,
+    setup: &Setup,
+) -> String {
     let parts = [administrative(data), results(measured, setup)];
     Element::new("dcc:digitalCalibrationCertificate", parts)
         .with_attribute("schemaVersion", SCHEMA)
@@ -123,7 +127,7 @@ fn item(item: &Texts) -> Element {
     Element::new("dcc:item", parts.into_iter().flatten())
 }
 
-fn results(measured: &Measured, setup: &Setup) -> Element {
+fn results(measured: &ThreeMethods, setup: &Setup) -> Element {
     let mut parts = vec![
         words("dcc:name", "Uncertainty of a measured height"),
         methods(measured),
@@ -134,7 +138,7 @@ fn results(measured: &Measured, setup: &Setup) -> Element {
     Element::new("dcc:measurementResults", [result])
 }
 
-fn methods(measured: &Measured) -> Element {
+fn methods(measured: &ThreeMethods) -> Element {
     let quoted = measured.quoted();
     let norms = match quoted {
         Quoted::FirstOrder => &["JCGM 100:2008", "JCGM 101:2008"][..],
@@ -163,7 +167,7 @@ fn methods(measured: &Measured) -> Element {
 }
 
 /// The change of temperature since the calibration, where the set-up states one.
-fn influence(measured: &Measured, setup: &Setup) -> Option<Element> {
+fn influence(measured: &ThreeMethods, setup: &Setup) -> Option<Element> {
     let quantity = SetupQuantity::TemperatureChange;
     let change = MeasurementInput::Quantity(quantity);
     let known = measured.inputs().find(|(source, _)| *source == change);
@@ -184,7 +188,7 @@ fn influence(measured: &Measured, setup: &Setup) -> Option<Element> {
     Some(Element::new("dcc:influenceConditions", [condition]))
 }
 
-fn all_results(measured: &Measured) -> Vec<Element> {
+fn all_results(measured: &ThreeMethods) -> Vec<Element> {
     let inputs = measured
         .inputs()
         .map(|(source, known)| input(source, known))
@@ -241,7 +245,7 @@ fn quantity(
 }
 
 /// The height with the uncertainty of the method that is to be quoted.
-fn height(measured: &Measured) -> Element {
+fn height(measured: &ThreeMethods) -> Element {
     let probability = CoverageProbability::P95;
     let (quoted, answer) = (measured.quoted(), measured.quoted_answer());
     let uncertainty = match quoted {

@@ -8,7 +8,7 @@ use tem00_triangulation::{
     SimulationOptions, TriangulationError, UncertaintySource, simulate,
 };
 
-use super::measured::{Measured, differs};
+use super::measured::{ThreeMethods, differs};
 use crate::args::{BudgetArgs, SETUP_HELP};
 
 /// The file of a set-up.
@@ -37,7 +37,7 @@ pub(super) struct Answer {
     /// `None` where no line is found.
     pub(super) over_range: Vec<(f64, Option<f64>)>,
     /// Results for a set-up with uncertain values.
-    pub(super) measured: Option<Measured>,
+    pub(super) measured: Option<ThreeMethods>,
 }
 
 /// The reason why a set-up measures nothing.
@@ -94,7 +94,7 @@ impl Answer {
         }
         Ok(Ok(Self {
             over_range: over_range(setup),
-            measured: Measured::new(args, setup, uncertainty)?,
+            measured: ThreeMethods::new(args, setup, uncertainty)?,
             budget,
             trials,
         }))

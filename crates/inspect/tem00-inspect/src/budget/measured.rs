@@ -24,7 +24,7 @@ pub(super) fn differs([ratio, error]: [f64; 2]) -> bool {
 }
 
 /// A height and its uncertainty by three methods.
-pub(super) struct Measured {
+pub(super) struct ThreeMethods {
     pub(super) measurement: Measurement,
     pub(super) first_order: FirstOrder,
     pub(super) propagation: Propagation,
@@ -76,7 +76,7 @@ impl Quoted {
     }
 }
 
-impl Measured {
+impl ThreeMethods {
     /// Returns `None` for a set-up that is known exactly.
     pub(super) fn new(
         args: &BudgetArgs,

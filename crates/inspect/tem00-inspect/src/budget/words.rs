@@ -6,7 +6,7 @@ use tem00_triangulation::{LightLevel, MeasurementInput, Setup, Simulation};
 use super::{
     answers,
     findings::{Answer, Refusal},
-    measured::{Measured, differs},
+    measured::{ThreeMethods, differs},
 };
 
 /// Returns the conclusions of the budget.
@@ -51,7 +51,7 @@ pub(super) fn verdicts(answer: &Answer, setup: &Setup) -> Vec<String> {
 /// Returns the correction of heights on a part that lets light in.
 fn subsurface(answer: &Answer, setup: &Setup) -> Option<String> {
     let shift = answer.budget.subsurface()?;
-    let uncertain = answer.measured.as_ref().map(Measured::subsurface);
+    let uncertain = answer.measured.as_ref().map(ThreeMethods::subsurface);
     let height = shift.height.abs();
     let height = match uncertain.filter(|uncertainty| *uncertainty > 0.0) {
         Some(uncertainty) => format!(

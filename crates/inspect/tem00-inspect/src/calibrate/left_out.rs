@@ -13,7 +13,7 @@ use crate::{
 
 /// The points of the line that were found in photographs: one in each column.
 #[derive(Debug, Default)]
-pub(super) struct Found {
+pub(super) struct FoundPoints {
     /// Validities of the points of all photographs.
     validities: Vec<Validity>,
     pictures: usize,
@@ -22,7 +22,7 @@ pub(super) struct Found {
     boards_without_line: usize,
 }
 
-impl Found {
+impl FoundPoints {
     /// Adds a photograph of a line, or that a board has none.
     pub(super) fn add(&mut self, picture: Option<&Path>, columns: &[Vec<LinePoint>]) {
         let Some(picture) = picture else {

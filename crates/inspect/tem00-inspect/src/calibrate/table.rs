@@ -8,7 +8,7 @@ use tem00_report::{
 };
 use tem00_triangulation::{DVec2, DVec3};
 
-use super::left_out::Found;
+use super::left_out::FoundPoints;
 
 /// Returns the parameters of the camera that were estimated.
 pub(super) fn parameters(calibration: &Calibration) -> Table {
@@ -63,7 +63,7 @@ const fn shown_in(unit: &'static str) -> (f64, &'static str) {
 }
 
 /// Returns the results that the table cannot show, one sentence per line.
-pub(super) fn sentences(calibration: &Calibration, found: &Found) -> Vec<String> {
+pub(super) fn sentences(calibration: &Calibration, found: &FoundPoints) -> Vec<String> {
     let mut sentences = Vec::new();
     if let Some(quality) = calibration.quality() {
         sentences.push(format!(

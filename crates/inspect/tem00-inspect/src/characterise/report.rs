@@ -7,7 +7,7 @@ use tem00_report::report::{
 use tem00_topography::Characteristics;
 use tem00_triangulation::Setup;
 
-use super::rows::{Row, rows};
+use super::rows::{CharacteristicRow, rows};
 use crate::args::CharacteriseArgs;
 
 pub(super) fn report(
@@ -64,7 +64,7 @@ pub(super) fn report(
 }
 
 /// Returns noise and resolution in words.
-fn verdict(rows: &[Row]) -> String {
+fn verdict(rows: &[CharacteristicRow]) -> String {
     let said = |key: &str| {
         let row = rows.iter().find(|row| row.key == key)?;
         let found = row.found.as_ref().ok()?;
@@ -101,7 +101,7 @@ fn finer_than_columns(symbol: &str, width: f64, column: f64) -> Option<String> {
     })
 }
 
-fn table(rows: &[Row]) -> Table {
+fn table(rows: &[CharacteristicRow]) -> Table {
     let mut table = Table::new(
         "Values and standard uncertainties",
         [
@@ -139,7 +139,7 @@ fn table(rows: &[Row]) -> Table {
     table
 }
 
-fn defined(rows: &[Row]) -> Table {
+fn defined(rows: &[CharacteristicRow]) -> Table {
     let columns = [Column::shown("characteristic"), Column::shown("definition")];
     let mut table = Table::new("How each is found", columns);
     for row in rows {

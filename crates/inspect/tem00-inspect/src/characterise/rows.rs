@@ -7,7 +7,7 @@ use tem00_report::report::{
 use tem00_topography::{Characteristics, Estimate, Extreme, Field, GrooveResult, SphereResult};
 
 /// A characteristic.
-pub(super) struct Row {
+pub(super) struct CharacteristicRow {
     pub(super) key: &'static str,
     pub(super) name: &'static str,
     pub(super) symbol: &'static str,
@@ -25,14 +25,14 @@ const NAMES: &str = include_str!("characteristics.txt");
 const NOT_SEEN: &str = "not measured: too little of the artefact was seen";
 
 /// Value of a characteristic.
-struct Found {
+struct CharacteristicValue {
     unit: Unit,
     estimate: Result<Estimate, String>,
     by_chance: Option<f64>,
 }
 
 /// Returns all characteristics, in the order of a report.
-pub(super) fn rows(characteristics: &Characteristics) -> Vec<Row> {
+pub(super) fn rows(characteristics: &Characteristics) -> Vec<CharacteristicRow> {
     let found = heights(characteristics).into_iter();
     let found = found
         .chain(laterals(characteristics))
@@ -40,7 +40,7 @@ pub(super) fn rows(characteristics: &Characteristics) -> Vec<Row> {
     let rows = NAMES.lines().zip(found).map(|(line, found)| {
         let mut texts = line.split(" | ");
         let mut text = || texts.next().unwrap_or_default();
-        Row {
+        CharacteristicRow {
             key: text(),
             name: text(),
             symbol: text(),
@@ -53,11 +53,11 @@ pub(super) fn rows(characteristics: &Characteristics) -> Vec<Row> {
     rows.collect()
 }
 
-fn heights(found: &Characteristics) -> Vec<Found> {
+fn heights(found: &Characteristics) -> Vec<CharacteristicValue> {
     let (response, flat) = (found.response.as_ref(), found.flat.as_ref());
     let amplification = seen(response.map(|found| found.amplification));
     vec![
-        Found {
+        CharacteristicValue {
             unit: NUMBER,
             ..amplification
         },
@@ -68,7 +68,7 @@ fn heights(found: &Characteristics) -> Vec<Found> {
     ]
 }
 
-fn laterals(found: &Characteristics) -> Vec<Found> {
+fn laterals(found: &Characteristics) -> Vec<CharacteristicValue> {
     let [across_profile, across_scan] = &found.grooves;
     let x = across_profile.as_ref().ok_or_else(|| unseen(&found.field));
     let y = across_scan.as_ref().ok_or_else(|| NOT_SEEN.to_owned());
@@ -92,7 +92,7 @@ fn laterals(found: &Characteristics) -> Vec<Found> {
     ]
 }
 
-fn probing(found: &Characteristics) -> Vec<Found> {
+fn probing(found: &Characteristics) -> Vec<CharacteristicValue> {
     let (sphere, flat) = (found.sphere.as_ref(), found.flat.as_ref());
     let sphere = |of: fn(&SphereResult) -> Estimate| seen(sphere.map(of));
     let form = |pose: usize| seen(flat.map(|found| found.form[pose]));
@@ -110,25 +110,25 @@ fn seen_at_all<T>(found: Option<T>) -> Result<T, String> {
     found.ok_or_else(|| NOT_SEEN.to_owned())
 }
 
-fn seen(found: Option<Estimate>) -> Found {
+fn seen(found: Option<Estimate>) -> CharacteristicValue {
     estimate(seen_at_all(found))
 }
 
-const fn estimate(estimate: Result<Estimate, String>) -> Found {
-    Found {
+const fn estimate(estimate: Result<Estimate, String>) -> CharacteristicValue {
+    CharacteristicValue {
         unit: MICROMETRES,
         estimate,
         by_chance: None,
     }
 }
 
-fn extreme(found: Result<Extreme, String>) -> Found {
+fn extreme(found: Result<Extreme, String>) -> CharacteristicValue {
     let by_chance = found.as_ref().ok().map(|found| found.by_chance);
     let value = found.map(|found| Estimate {
         value: found.value,
         uncertainty: found.uncertainty,
     });
-    Found {
+    CharacteristicValue {
         by_chance,
         ..estimate(value)
     }

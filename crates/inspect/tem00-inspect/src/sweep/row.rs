@@ -31,7 +31,7 @@ impl Outcome {
 
 /// The row of a task.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-pub(super) struct Row {
+pub(super) struct TaskRow {
     pub(super) task: usize,
     /// Distinguishes the inputs of tasks.
     pub(super) fingerprint: String,
@@ -42,7 +42,7 @@ pub(super) struct Row {
     pub(super) results: Vec<Value>,
 }
 
-impl Row {
+impl TaskRow {
     /// Reads the row of a task, if there is one of the same inputs.
     pub(super) fn find(path: &Path, fingerprint: &str) -> Option<Self> {
         let text = read_input(path, MAX_TEXT_BYTES).ok()?;

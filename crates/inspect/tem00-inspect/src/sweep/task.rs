@@ -13,7 +13,7 @@ use tem00_report::{
 use super::{
     command::{HELP, SweptCommand},
     grid::{Grid, Swept},
-    row::{Outcome, Row, result_at},
+    row::{Outcome, TaskRow, result_at},
 };
 
 /// A sweep with the folder of its results.
@@ -67,8 +67,8 @@ impl<'a> Sweep<'a> {
     }
 
     /// Returns the row of a task, if it is there.
-    pub(super) fn find(&self, task: usize) -> Option<Row> {
-        Row::find(&self.row_path(task), &self.fingerprint(task))
+    pub(super) fn find(&self, task: usize) -> Option<TaskRow> {
+        TaskRow::find(&self.row_path(task), &self.fingerprint(task))
     }
 
     /// Runs a task that has no row, and writes the row.
@@ -101,7 +101,7 @@ impl<'a> Sweep<'a> {
             Err(failure @ Failure::Input(_)) => (Outcome::Refused, Some(failure)),
             Err(failure) => return Err(failure),
         };
-        let row = Row {
+        let row = TaskRow {
             task,
             fingerprint: self.fingerprint(task),
             outcome,

@@ -14,7 +14,7 @@ use tem00_scan::{HeightMap, Raster};
 
 use super::{
     files::ranges,
-    job::{Job, Measured},
+    job::{Job, ScanResult},
     terms::Terms,
 };
 use crate::lines::overlay::picture;
@@ -31,7 +31,7 @@ const DRAWINGS: [&str; 5] = [
 /// Draws a measurement into its folder and into sections of its report.
 pub(super) struct Drawings<'a> {
     pub(super) job: &'a Job<'a>,
-    pub(super) measured: &'a Measured,
+    pub(super) measured: &'a ScanResult,
 }
 
 impl Drawings<'_> {

@@ -32,7 +32,7 @@ pub(super) struct Job<'a> {
 }
 
 /// The results of a measurement.
-pub(super) struct Measured {
+pub(super) struct ScanResult {
     pub(super) frames: Vec<FrameRecord>,
     pub(super) profiles: Vec<Vec<MeasuredPoint>>,
     /// The heights of several profiles.
@@ -85,7 +85,7 @@ impl<'a> Job<'a> {
     }
 
     /// Measures all frames, writing raw frames on the way.
-    pub(super) fn measure(&self) -> Result<Measured, Failure> {
+    pub(super) fn measure(&self) -> Result<ScanResult, Failure> {
         let speckle = self.speckle()?;
         let progress = self.progress();
         let mut scan = Scan::new(&self.measurement);
@@ -106,7 +106,7 @@ impl<'a> Job<'a> {
             .filter(|_| !point_counts(&frames).are_too_many());
         let has_map = profiles.len() > 1 && terms.is_some();
         let map = has_map.then(|| part.height_map()).transpose();
-        Ok(Measured {
+        Ok(ScanResult {
             map: map.map_err(|error| measurement_failure(&self.args.common.scene, &error))?,
             shown,
             effective_frames: part.effective_frames(),
@@ -148,7 +148,7 @@ impl<'a> Job<'a> {
     }
 }
 
-impl Measured {
+impl ScanResult {
     /// The change of speckle from frame to frame as a sentence; `None` where it is not known.
     pub(super) fn speckle_sentence(&self, average: Averaging) -> Option<String> {
         let change = self.speckle_change.as_ref()?;

@@ -15,7 +15,7 @@ use super::{
     drawings::Drawings,
     files::{MapImage, images},
     frame,
-    job::{Job, Measured, in_words},
+    job::{Job, ScanResult, in_words},
     refusal::{BRIGHT, Refusal},
     terms::Terms,
 };
@@ -31,7 +31,7 @@ const CORRELATIONS: &str = "Speckle correlates the errors of neighbouring column
 const MUCH_MORE_SPECKLE: f64 = 1.1;
 
 /// Notes how much more speckle noise a camera would see, if it is much more.
-fn speckle_by_waves(report: &mut Report, job: &Job<'_>, measured: &Measured) {
+fn speckle_by_waves(report: &mut Report, job: &Job<'_>, measured: &ScanResult) {
     let shown = measured.shown.as_ref();
     let ratio = shown.and_then(|frame| job.measurement.speckle_by_waves(frame));
     report.data("speckle_by_waves", ratio);
@@ -49,7 +49,7 @@ fn speckle_by_waves(report: &mut Report, job: &Job<'_>, measured: &Measured) {
 /// # Errors
 ///
 /// Returns a failure if a file cannot be written.
-pub(super) fn report(job: &Job<'_>, measured: &Measured) -> Result<Report, Failure> {
+pub(super) fn report(job: &Job<'_>, measured: &ScanResult) -> Result<Report, Failure> {
     let drawings = Drawings { job, measured };
     let mut report = Report::new(format!("{}: measured by triangulation", job.name));
     let scene = job.args.common.scene.display().to_string();
@@ -174,7 +174,7 @@ fn uncertainty(
     Ok(())
 }
 
-fn settings(section: &mut Section, job: &Job<'_>, measured: &Measured) {
+fn settings(section: &mut Section, job: &Job<'_>, measured: &ScanResult) {
     let measurement = &job.measurement;
     let render = &measurement.scene().render;
     section
@@ -201,7 +201,7 @@ fn settings(section: &mut Section, job: &Job<'_>, measured: &Measured) {
         .data("adaptive", render.sampling == Sampling::Adaptive);
 }
 
-fn average(job: &Job<'_>, measured: &Measured) -> Cell {
+fn average(job: &Job<'_>, measured: &ScanResult) -> Cell {
     let average = job.measurement.settings().average;
     let worth = measured
         .effective_frames
@@ -223,7 +223,7 @@ fn average(job: &Job<'_>, measured: &Measured) -> Cell {
 
 /// The speckle size in the middle of the image, along rows and columns, and the change of speckle
 /// from one frame to the next.
-fn speckle(job: &Job<'_>, measured: &Measured) -> Cell {
+fn speckle(job: &Job<'_>, measured: &ScanResult) -> Cell {
     if job.args.common.no_speckle {
         return Cell::missing("disabled");
     }
@@ -247,7 +247,7 @@ fn speckle(job: &Job<'_>, measured: &Measured) -> Cell {
 }
 
 /// The height of a pixel, at the first valid point.
-fn height_per_pixel(job: &Job<'_>, measured: &Measured) -> Cell {
+fn height_per_pixel(job: &Job<'_>, measured: &ScanResult) -> Cell {
     let height = job.measurement.settings().height;
     let mut points = measured.profiles.iter().flatten();
     let point = points.find(|point| point.is_valid());

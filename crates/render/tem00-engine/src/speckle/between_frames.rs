@@ -7,7 +7,7 @@ use super::{SpecklePoint, change::Change};
 
 /// A point of a surface whose speckle is followed from frame to frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ReferencePoint {
+pub struct FollowedPoint {
     /// The index of the surface in the scene.
     pub surface: usize,
     /// The position of the point in the first of the frames, in metres.
@@ -65,7 +65,7 @@ impl SpeckleChange {
     pub fn between(
         scene: &Scene,
         laser: usize,
-        point: &ReferencePoint,
+        point: &FollowedPoint,
         frames: [u32; 2],
     ) -> Option<Self> {
         let wavelength = scene.lasers[laser].wavelength();

@@ -1,7 +1,7 @@
 //! Light that has met several rough surfaces, and what its speckle has in common with the speckle
 //! of light that has met one.
 
-mod lattice;
+mod cell_grid;
 mod light;
 mod sums;
 
@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 
 pub(crate) use self::{
-    lattice::Lattice,
+    cell_grid::CellGrid,
     light::MultipleLight,
     sums::{MultiplePath, MultipleSums},
 };
@@ -21,7 +21,7 @@ pub(crate) type LightKey = (usize, usize);
 /// The fraction of the brightest light of a laser below which light is faint.
 const FAINT: f64 = 0.02;
 
-/// The multiple light over the image, on a lattice of cells.
+/// The multiple light over the image, on a grid of cells.
 #[derive(Clone, Debug)]
 pub(crate) struct MultipleMap {
     layers: BTreeMap<LightKey, MultipleLayer>,
@@ -30,7 +30,7 @@ pub(crate) struct MultipleMap {
 /// The multiple light of a laser on a surface.
 #[derive(Clone, Debug)]
 pub(crate) struct MultipleLayer {
-    lattice: Lattice,
+    grid: CellGrid,
     /// The light that was found in cells, and for each cell the index of its light in this list.
     lights: Vec<MultipleLight>,
     cells: Vec<Option<u32>>,
@@ -47,7 +47,7 @@ const PART_OF_ALL: f64 = 0.1;
 
 impl MultipleMap {
     /// Smooths the sums of the cells, row by row.
-    pub(crate) fn new(lattice: Lattice, sums: &[BTreeMap<LightKey, MultipleSums>]) -> Option<Self> {
+    pub(crate) fn new(grid: CellGrid, sums: &[BTreeMap<LightKey, MultipleSums>]) -> Option<Self> {
         let mut all = BTreeMap::<LightKey, MultipleSums>::new();
         for (key, sums) in sums.iter().flatten() {
             let total = all.entry(*key);
@@ -59,7 +59,7 @@ impl MultipleMap {
             .iter()
             .filter_map(|(key, total)| {
                 let of_key = |cell: usize| sums[cell].get(key);
-                Some((*key, MultipleLayer::new(lattice, total, of_key)?))
+                Some((*key, MultipleLayer::new(grid, total, of_key)?))
             })
             .collect();
         let brightest = brightest(&layers);
@@ -111,15 +111,15 @@ fn brightest(layers: &BTreeMap<LightKey, MultipleLayer>) -> BTreeMap<usize, f64>
 
 impl MultipleLayer {
     fn new<'s>(
-        lattice: Lattice,
+        grid: CellGrid,
         total: &MultipleSums,
         sums: impl Fn(usize) -> Option<&'s MultipleSums>,
     ) -> Option<Self> {
         let mut lights = Vec::new();
-        let cells = (0..lattice.columns * lattice.rows).map(|index| {
+        let cells = (0..grid.columns * grid.rows).map(|index| {
             let own = sums(index)?;
             let mut mean = MultipleSums::new(own.point);
-            for other in lattice.neighbours(index).filter_map(&sums) {
+            for other in grid.neighbours(index).filter_map(&sums) {
                 mean.add_scaled(other, 1.0);
             }
             mean.add_scaled(total, PART_OF_ALL * own.samples / total.samples);
@@ -128,7 +128,7 @@ impl MultipleLayer {
         });
         let cells = cells.collect();
         Some(Self {
-            lattice,
+            grid,
             cells,
             lights,
             overall: total.light()?,
@@ -139,7 +139,7 @@ impl MultipleLayer {
     /// Returns the light at an image point, in pixels.
     pub(crate) fn at(&self, pixel: DVec2) -> MultipleLight {
         let mut mean: Option<(MultipleLight, f64)> = None;
-        for (cell, weight) in self.lattice.around(pixel) {
+        for (cell, weight) in self.grid.around(pixel) {
             let Some(light) = self.cells[cell].map(|index| &self.lights[index as usize]) else {
                 continue;
             };

@@ -17,12 +17,12 @@ const PNG_SCALE: f32 = 2.5;
 
 /// The formats of a drawing, distinguished by the end of the file's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
+pub enum PlotFormat {
     Svg,
     Png,
 }
 
-impl Format {
+impl PlotFormat {
     pub fn of_path(path: &Path) -> Option<Self> {
         of_ending(path, &[("svg", Self::Svg), ("png", Self::Png)])
     }
@@ -56,10 +56,10 @@ impl Drawing {
     }
 
     /// Returns the drawing as a file of the format, or what prevents it.
-    pub fn bytes(&self, format: Format) -> Result<Vec<u8>, String> {
+    pub fn bytes(&self, format: PlotFormat) -> Result<Vec<u8>, String> {
         match format {
-            Format::Svg => Ok(self.svg.clone().into_bytes()),
-            Format::Png => PngBackend::new()
+            PlotFormat::Svg => Ok(self.svg.clone().into_bytes()),
+            PlotFormat::Png => PngBackend::new()
                 .with_scale(PNG_SCALE)
                 .render_scene(&self.scene),
         }
@@ -77,7 +77,7 @@ impl Drawing {
                 .map_err(|error| Failure::writing(&path, error))
         };
         write("svg", self.svg.as_bytes())?;
-        let png = self.bytes(Format::Png).map_err(Failure::running)?;
+        let png = self.bytes(PlotFormat::Png).map_err(Failure::running)?;
         write("png", &png)?;
         Ok(self.svg)
     }

@@ -3,7 +3,7 @@ use tem00_numerics::cast::to_usize;
 
 /// Square cells over an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Lattice {
+pub(crate) struct CellGrid {
     pub columns: usize,
     pub rows: usize,
     /// The side of a cell, in pixels.
@@ -13,7 +13,7 @@ pub(crate) struct Lattice {
 /// The reach of a mean over neighbouring cells.
 const NEIGHBOURS: usize = 2;
 
-impl Lattice {
+impl CellGrid {
     /// Divides an image into at most `cells` cells along its longer side.
     pub(crate) fn over([width, height]: [usize; 2], cells: usize) -> Self {
         const MIN_SIDE: usize = 4;

@@ -1,0 +1,4 @@
+//! Sums of waves, through the face that other tests see.
+
+mod known_speckle;
+mod refusals;

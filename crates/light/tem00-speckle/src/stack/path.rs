@@ -91,6 +91,28 @@ impl SlicePath {
             .saturating_mul(self.slice_count() as u64)
     }
 
+    /// Returns the correlation γ of the intensities behind a circular pupil at two coordinates, on
+    /// slices and between them, in closed form.
+    ///
+    /// It is the correlation of
+    /// [`SpeckleStack::correlation_between`](crate::SpeckleStack::correlation_between) before
+    /// pupils are rounded to the lattice.
+    pub fn correlation_between(self, [u0, u1]: [f64; 2]) -> f64 {
+        let taps = |u: f64| {
+            let slice = u.floor();
+            [(slice, 1.0 - (u - slice)), (slice + 1.0, u - slice)]
+        };
+        let overlap = |a: f64, b: f64| -> f64 {
+            let pairs = taps(a)
+                .into_iter()
+                .flat_map(|one| taps(b).map(|other| (one, other)));
+            pairs
+                .map(|((i, of_i), (j, of_j))| of_i * of_j * self.overlap(&Pupil::Circle, [i, j]))
+                .sum()
+        };
+        overlap(u0, u1).powi(2) / (overlap(u0, u0) * overlap(u1, u1))
+    }
+
     /// Checks the number of slices and the length.
     ///
     /// # Errors

@@ -372,7 +372,8 @@ impl SpeckleFrame {
         let place = DVec2::new(positions.x[i], positions.y[i]) - beside;
         let axis = bandwidth.axis;
         [positions.x[i], positions.y[i]] = [axis.dot(place), axis.perp().dot(place)];
-        positions.u[i] += stack.path().slices_per_diameter() * shift.along(axis);
+        let along = bandwidth.stretch * shift.along(axis);
+        positions.u[i] += stack.path().slices_per_diameter() * along;
         positions.phase_per_height[i] = shift.phase_per_height;
     }
 

@@ -174,6 +174,9 @@ impl Speckle {
         };
         let needs = demand.needs(frames, geometry.speckle_size_in_pixels(), self.memory);
         let Layout { plan, stacks } = Layout::new(&needs, fields)?;
+        let line = self.laser.spectral_line();
+        let bandwidth = bandwidth.map(|bandwidth| bandwidth.on_slices(line, plan.path()));
+        let waves = bandwidth.as_ref().map_or(1, |b| b.waves(line));
         let size = plan.size().map(|samples| samples as f64);
         let field = |number: usize| match stacks {
             1 => Field {
@@ -193,9 +196,7 @@ impl Speckle {
                 .collect(),
         });
         let patterns = Patterns {
-            waves: bandwidth
-                .as_ref()
-                .map_or(1, |b| b.waves(self.laser.spectral_line())),
+            waves,
             camera: self.camera,
             laser: self.laser,
             geometry,

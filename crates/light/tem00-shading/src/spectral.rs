@@ -10,7 +10,7 @@ use tem00_decorrelation::{
     CameraFrame, Configuration, ConfigurationData, Illumination, ImagingGeometry, SpeckleMotion,
     pupil_overlap_correlation,
 };
-use tem00_speckle::Complex;
+use tem00_speckle::{Complex, SlicePath};
 
 use crate::{Laser, Perspective, SeenPoint};
 
@@ -63,6 +63,8 @@ pub struct Bandwidth {
     pub reach: f64,
     /// The displacement in pupil diameters over the difference of wave numbers.
     pub tilt: f64,
+    /// The factor by which look-ups stretch this displacement, see [`on_slices`](Self::on_slices).
+    pub stretch: f64,
     /// The change of the phase with the height, in radians per metre, over the difference of wave
     /// numbers.
     pub phase_per_height: f64,
@@ -77,6 +79,11 @@ const NEGLIGIBLE_TILT: f64 = 5e-4;
 /// speckle that is new to nearly all of the line.
 const LEFT_OUT: f64 = 5e-4;
 const MAX_REACH: f64 = 1.5;
+
+/// The number of wave numbers whose pairs stand for a line on slices, and the largest stretch of
+/// their displacements: a line narrower than a slice needs the most.
+const SAMPLED_WAVES: u32 = 64;
+const MAX_STRETCH: f64 = 16.0;
 
 impl SpectralLaw<'_> {
     /// Returns the change of the speckle at a point in light whose wave number differs by `kappa`,
@@ -148,6 +155,7 @@ impl SpectralLaw<'_> {
             axis: response.pupil.try_normalize().unwrap_or(DVec2::X),
             reach: (tilt * farthest).min(MAX_REACH),
             tilt,
+            stretch: 1.0,
             phase_per_height: response.phase_per_height,
         });
         Some(SurfaceLight {
@@ -223,6 +231,47 @@ impl Bandwidth {
             axis,
             ..self.clone()
         }
+    }
+
+    /// Returns the same bandwidth for look-ups on slices: with the stretch at which the light of the
+    /// line has the contrast of the law.
+    ///
+    /// The speckle between two slices is a blend of both, more like its surroundings than the
+    /// law says: without a stretch, the contrast would be too high by 5 % with 8 slices per
+    /// diameter of the pupil, and by 1.3 % with 32.
+    #[must_use]
+    pub fn on_slices(mut self, line: &SpectralLine, path: SlicePath) -> Self {
+        self.stretch = 1.0;
+        if path.slice_count() == 1 {
+            return self;
+        }
+        let wave = |index: u32| line.draw((f64::from(index) + 0.5) / f64::from(SAMPLED_WAVES));
+        let waves: Vec<f64> = (0..SAMPLED_WAVES).map(wave).collect();
+        let covariance = |of_pair: &dyn Fn([f64; 2]) -> f64| -> f64 {
+            // Every pair once: a wave number agrees with itself in both.
+            let pairs = waves.iter().enumerate();
+            let pairs = pairs.flat_map(|(i, &a)| waves[..i].iter().map(move |&b| [a, b]));
+            pairs
+                .map(|[a, b]| self.kept_by_heights(a - b) * of_pair([a, b]))
+                .sum()
+        };
+        let law = covariance(&|[a, b]| pupil_overlap_correlation((self.tilt * (a - b)).abs()));
+        let per_diameter = path.slices_per_diameter() * self.tilt;
+        let is_too_alike = |stretch: f64| {
+            let at = |pair: [f64; 2]| pair.map(|kappa| kappa * per_diameter * stretch);
+            covariance(&|pair| path.correlation_between(at(pair))) > law
+        };
+        let (mut low, mut high) = (1.0, MAX_STRETCH);
+        for _ in 0..12 {
+            let middle = f64::midpoint(low, high);
+            *(if is_too_alike(middle) {
+                &mut low
+            } else {
+                &mut high
+            }) = middle;
+        }
+        self.stretch = f64::midpoint(low, high);
+        self
     }
 
     /// Returns the covariance of two intensities in the light of a line, between which the pupil

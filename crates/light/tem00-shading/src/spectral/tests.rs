@@ -108,6 +108,68 @@ fn contrasts_are_those_of_the_law() {
     }
 }
 
+/// The contrast of pairs of wave numbers on slices.
+fn contrast_on(path: SlicePath, bandwidth: &Bandwidth, line: &SpectralLine) -> f64 {
+    const WAVES: u32 = 300;
+    let scale = path.slices_per_diameter() * bandwidth.tilt * bandwidth.stretch;
+    let place = |i: u32| scale * line.draw((f64::from(i) + 0.5) / f64::from(WAVES));
+    let places: Vec<_> = (0..WAVES).map(place).collect();
+    let pairs = places
+        .iter()
+        .flat_map(|&a| places.iter().map(move |&b| [a, b]));
+    let sum: f64 = pairs.map(|pair| path.correlation_between(pair)).sum();
+    sum.sqrt() / f64::from(WAVES)
+}
+
+#[test]
+fn contrasts_are_those_of_the_law_on_any_number_of_slices() {
+    for linewidth in [1e-9, 5e-9, 20e-9] {
+        let laser = laser(gaussian(linewidth), 0.0);
+        let line = laser.spectral_line();
+        let speckle = prepared(&laser, Relief::default()).planned().unwrap().0;
+        let bandwidth = speckle.bandwidth.unwrap();
+        let law = bandwidth
+            .covariance(line, DVec2::ZERO, bandwidth.axis)
+            .sqrt();
+        for slices in [4, 8, 16, 32] {
+            let path = SlicePath::Straight {
+                half_period: 2 * slices,
+                length: 4,
+            };
+            let bandwidth = bandwidth.clone().on_slices(line, path);
+            // 32 waves stand for 300.
+            assert_relative(contrast_on(path, &bandwidth, line), law, 0.006);
+            let plain = Bandwidth {
+                stretch: 1.0,
+                ..bandwidth
+            };
+            if slices == 8 {
+                let found = contrast_on(path, &plain, line);
+                assert!(found > 1.02 * law, "{found} tells nothing: {law}");
+            }
+        }
+    }
+}
+
+#[test]
+fn patterns_in_little_memory_have_the_contrast_of_the_law() {
+    const SEEDS: u64 = 6;
+    let laser = laser(gaussian(10e-9), 0.0);
+    let (line, cell) = (laser.spectral_line(), cell(&laser, Relief::default()));
+    let law = PolychromaticSpeckle { line, cell: &cell }.contrast();
+    let of_seed = |seed: u64| {
+        let speckle = Speckle::new(&camera(), &laser, seed).at_points([(DVec3::ZERO, DVec3::Z)]);
+        let speckle = speckle.within(100 << 20).prepare().unwrap();
+        let path = speckle.0.plan.path();
+        assert!(path.slices_per_diameter() < 9.0, "{path:?} tells nothing");
+        let values = picture(&speckle.frame(&Motion::default()).unwrap(), DVec3::ZERO);
+        covariance(&values, &values)
+    };
+    let found = ((0..SEEDS).map(of_seed).sum::<f64>() / SEEDS as f64).sqrt();
+    // Three standard errors from 3584 points of each seed.
+    assert_relative(found, law, 0.045 / (SEEDS as f64).sqrt());
+}
+
 #[test]
 fn pixels_have_the_contrast_of_the_law_of_a_linewidth() {
     let laser = laser(gaussian(5e-9), 0.0);

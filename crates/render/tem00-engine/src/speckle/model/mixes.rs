@@ -108,7 +108,8 @@ impl SpeckleFrame<'_> {
         pixel -= wave.displacement;
         Place {
             pixel,
-            u: pattern.slices_per_diameter * (wave.along(bandwidth.axis) + along),
+            u: pattern.slices_per_diameter
+                * (bandwidth.stretch * wave.along(bandwidth.axis) + along),
             phase_per_height: wave.phase_per_height,
         }
     }

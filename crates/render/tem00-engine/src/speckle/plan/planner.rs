@@ -213,6 +213,7 @@ impl Planner<'_> {
         let shared = allocations
             .iter()
             .any(|allocation| allocation.positions > 1);
+        let line = self.scene.lasers[self.laser].spectral_line();
         let surfaces = self.groups.iter().zip(sums).zip(self.lights);
         surfaces
             .map(|((&group, sum), light)| {
@@ -229,11 +230,14 @@ impl Planner<'_> {
                     Following::Length => bandwidth.beside(pupil_path_across(moving.as_ref())),
                     Following::Axis(axis) => bandwidth.along(axis),
                 });
+                let allocation = if shared { 0 } else { group };
+                let path = allocations[allocation].stack.path();
+                let bandwidth = bandwidth.map(|bandwidth| bandwidth.on_slices(line, path));
                 SurfacePatterns {
                     polarisation: sum.polarisation,
                     components: sum.components,
                     modes: sum.modes,
-                    allocation: if shared { 0 } else { group },
+                    allocation,
                     reference_point: moving,
                     following,
                     bandwidth,

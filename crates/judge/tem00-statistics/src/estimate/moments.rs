@@ -249,7 +249,7 @@ impl Contrast {
 /// # Examples
 ///
 /// ```
-/// use tem00_numerics::{Grid, map_pieces};
+/// use tem00_numerics::Grid;
 /// use tem00_statistics::pearson_correlation;
 ///
 /// let ramp = Grid::from_fn(4, 4, |x, y| (x + y) as f32);

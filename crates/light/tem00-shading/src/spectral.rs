@@ -82,7 +82,7 @@ const MAX_REACH: f64 = 1.5;
 
 /// The number of wave numbers whose pairs stand for a line on slices, and the largest stretch of
 /// their displacements: a line narrower than a slice needs the most.
-const SAMPLED_WAVES: u32 = 64;
+const SAMPLED_WAVES: usize = 64;
 const MAX_STRETCH: f64 = 16.0;
 
 impl SpectralLaw<'_> {
@@ -246,21 +246,19 @@ impl Bandwidth {
         if path.slice_count() == 1 {
             return self;
         }
-        let wave = |index: u32| line.draw((f64::from(index) + 0.5) / f64::from(SAMPLED_WAVES));
-        let waves: Vec<f64> = (0..SAMPLED_WAVES).map(wave).collect();
-        let covariance = |of_pair: &dyn Fn([f64; 2]) -> f64| -> f64 {
+        let waves = medians(line, SAMPLED_WAVES);
+        let covariance = |of_pair: &dyn Fn(f64, f64) -> f64| -> f64 {
             // Every pair once: a wave number agrees with itself in both.
             let pairs = waves.iter().enumerate();
-            let pairs = pairs.flat_map(|(i, &a)| waves[..i].iter().map(move |&b| [a, b]));
+            let pairs = pairs.flat_map(|(i, &a)| waves[..i].iter().map(move |&b| (a, b)));
             pairs
-                .map(|[a, b]| self.kept_by_heights(a - b) * of_pair([a, b]))
+                .map(|(a, b)| self.kept_by_heights(a - b) * of_pair(a, b))
                 .sum()
         };
-        let law = covariance(&|[a, b]| pupil_overlap_correlation((self.tilt * (a - b)).abs()));
-        let per_diameter = path.slices_per_diameter() * self.tilt;
+        let law = covariance(&|a, b| pupil_overlap_correlation(self.tilt * (a - b).abs()));
         let is_too_alike = |stretch: f64| {
-            let at = |pair: [f64; 2]| pair.map(|kappa| kappa * per_diameter * stretch);
-            covariance(&|pair| path.correlation_between(at(pair))) > law
+            let scale = path.slices_per_diameter() * self.tilt * stretch;
+            covariance(&|a, b| path.correlation_between(scale * a, scale * b)) > law
         };
         let mut range = [1.0, MAX_STRETCH];
         for _ in 0..12 {
@@ -283,8 +281,7 @@ impl Bandwidth {
     pub(crate) fn waves(&self, line: &SpectralLine) -> usize {
         let law = self.covariance(line, DVec2::ZERO, self.axis);
         let of_parts = |count: usize| {
-            let wave = |index: usize| line.draw((index as f64 + 0.5) / count as f64);
-            let waves: Vec<_> = (0..count).map(wave).collect();
+            let waves = medians(line, count);
             let pairs = waves.iter().flat_map(|a| waves.iter().map(move |b| a - b));
             let kept = pairs.map(|kappa| self.kept_of(kappa, DVec2::ZERO, self.axis));
             kept.sum::<f64>() / (count * count) as f64
@@ -320,6 +317,12 @@ impl Bandwidth {
             .sum();
         field.norm_sqr()
     }
+}
+
+/// The median wave numbers of the equal parts of a line.
+fn medians(line: &SpectralLine, count: usize) -> Vec<f64> {
+    let median = |part: usize| line.draw((part as f64 + 0.5) / count as f64);
+    (0..count).map(median).collect()
 }
 
 #[cfg(test)]

@@ -213,16 +213,10 @@ mod tests {
 
     #[test]
     fn the_noise_of_a_line_is_its_standard_deviation() {
-        // Numbers of a fixed multiplicative sequence, uniform in [−½, ½): the variance is 1/12.
-        let mut state = 1_u64;
-        let mut uniform = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
-            (state >> 40) as f64 / 16_777_216.0 - 0.5
-        };
+        // Uniform in [−½, ½): the variance is 1/12.
+        let mut numbers = tem00_testkit::Numbers::new(1);
         let values: Vec<_> = (0..20_000)
-            .map(|x| Some(uniform() + 1e-3 * f64::from(x)))
+            .map(|x| Some(numbers.unit() - 0.5 + 1e-3 * f64::from(x)))
             .collect();
         let noise = noise_about_parabola(&values).expect("there are enough");
         let expected = 1.0 / 12.0_f64.sqrt();

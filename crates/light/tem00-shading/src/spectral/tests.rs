@@ -110,15 +110,13 @@ fn contrasts_are_those_of_the_law() {
 
 /// The contrast of pairs of wave numbers on slices.
 fn contrast_on(path: SlicePath, bandwidth: &Bandwidth, line: &SpectralLine) -> f64 {
-    const WAVES: u32 = 300;
     let scale = path.slices_per_diameter() * bandwidth.tilt * bandwidth.stretch;
-    let place = |i: u32| scale * line.draw((f64::from(i) + 0.5) / f64::from(WAVES));
-    let places: Vec<_> = (0..WAVES).map(place).collect();
-    let pairs = places
-        .iter()
-        .flat_map(|&a| places.iter().map(move |&b| [a, b]));
-    let sum: f64 = pairs.map(|pair| path.correlation_between(pair)).sum();
-    sum.sqrt() / f64::from(WAVES)
+    let waves = medians(line, 300);
+    let pairs = waves.iter().flat_map(|a| waves.iter().map(move |b| (a, b)));
+    let sum: f64 = pairs
+        .map(|(a, b)| path.correlation_between(scale * a, scale * b))
+        .sum();
+    sum.sqrt() / waves.len() as f64
 }
 
 #[test]
@@ -137,7 +135,7 @@ fn contrasts_are_those_of_the_law_on_any_number_of_slices() {
                 length: 4,
             };
             let bandwidth = bandwidth.clone().on_slices(line, path);
-            // 32 waves stand for 300.
+            // 64 waves stand for 300.
             assert_relative(contrast_on(path, &bandwidth, line), law, 0.006);
             let plain = Bandwidth {
                 stretch: 1.0,

@@ -92,12 +92,15 @@ impl SlicePath {
     }
 
     /// Returns the correlation γ of the intensities behind a circular pupil at two coordinates, on
-    /// slices and between them, in closed form.
+    /// slices and between them, in closed form; 0 unless both are finite.
     ///
     /// It is the correlation of
     /// [`SpeckleStack::correlation_between`](crate::SpeckleStack::correlation_between) before
     /// pupils are rounded to the lattice.
-    pub fn correlation_between(self, [u0, u1]: [f64; 2]) -> f64 {
+    pub fn correlation_between(self, u: f64, v: f64) -> f64 {
+        if !(u.is_finite() && v.is_finite()) {
+            return 0.0;
+        }
         let taps = |u: f64| {
             let slice = u.floor();
             [(slice, 1.0 - (u - slice)), (slice + 1.0, u - slice)]
@@ -110,7 +113,7 @@ impl SlicePath {
                 .map(|((i, of_i), (j, of_j))| of_i * of_j * self.overlap(&Pupil::Circle, [i, j]))
                 .sum()
         };
-        overlap(u0, u1).powi(2) / (overlap(u0, u0) * overlap(u1, u1))
+        overlap(u, v).powi(2) / (overlap(u, u) * overlap(v, v))
     }
 
     /// Checks the number of slices and the length.

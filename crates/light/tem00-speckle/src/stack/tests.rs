@@ -141,7 +141,7 @@ fn blending_rounds_the_cusp_of_the_law_as_documented() {
         for start in 0..16_u32 {
             for distance in 0..32_u32 {
                 let (u, du) = (f64::from(start) / 16.0, f64::from(distance) / 16.0);
-                let gamma = circle(half_period).correlation_between([u, u + du]);
+                let gamma = circle(half_period).correlation_between(u, u + du);
                 worst = worst.max((gamma - law.overlap_at(du).powi(2)).abs());
             }
         }

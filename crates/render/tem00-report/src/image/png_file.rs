@@ -100,6 +100,7 @@ mod tests {
 
     use approx::assert_abs_diff_eq;
     use png::Decoder;
+    use tem00_testkit::Numbers;
 
     use super::super::{LoadedImage, RawFormat, Reading, Transfer, raw_file::decode};
     use super::*;
@@ -175,21 +176,16 @@ mod tests {
 
     #[test]
     fn images_of_several_pieces_are_read_back_as_they_were() {
-        // Bytes that cannot be compressed, by the generator of Knuth, and a ramp.
-        let mut state = 1_u64;
-        let mut noise = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
-            state.to_be_bytes()[0]
-        };
+        // Bytes that cannot be compressed, and a ramp.
+        let mut numbers = Numbers::new(1);
         for (colour, depth, pixel) in [
             (ColorType::Grayscale, BitDepth::Eight, 1_usize),
             (ColorType::Rgba, BitDepth::Eight, 4),
             (ColorType::Rgb, BitDepth::Sixteen, 6),
         ] {
             let [width, height] = [700, 3_000_000 / 700 / pixel];
-            let mut data: Vec<u8> = (0..width * height * pixel).map(|_| noise()).collect();
+            let noise = (0..width * height * pixel).map(|_| numbers.bits().to_be_bytes()[0]);
+            let mut data: Vec<u8> = noise.collect();
             let ramp = (0..width * pixel).map(|x| x.to_le_bytes()[0]);
             data.extend(ramp);
             let mut file = Vec::new();

@@ -3,7 +3,7 @@ use std::io::{BufRead, Seek, SeekFrom};
 use exr::{
     compression::Compression,
     meta::header::Header,
-    prelude::{AnyChannel, AnyChannels, FlatSamples, MetaData, ReadChannels, ReadLayers},
+    prelude::{AnyChannel, AnyChannels, FlatSamples, ReadChannels, ReadLayers},
 };
 
 use super::{
@@ -29,22 +29,22 @@ pub(super) fn read(
     let length = reader.seek(SeekFrom::End(0))?;
     reader.rewind()?;
     let (mut pixels, mut bytes) = (0_usize, 0_usize);
-    for header in MetaData::read_from_buffered(&mut reader, false)?.headers {
-        let (area, of_pixel) = checked_size(&header, length)?;
+    let chunks = exr::block::read(reader, false)?;
+    for header in chunks.headers() {
+        let (area, of_pixel) = checked_size(header, length)?;
         pixels = pixels.max(area);
         bytes = bytes.saturating_add(area.saturating_mul(of_pixel));
     }
     // All channels of all layers are read, and three of them are put together.
     let chosen = 3 * size_of::<f32>() + BYTES_PER_PIXEL;
     check_room(bytes, 1).and_then(|()| check_room(pixels, chosen))?;
-    reader.rewind()?;
     let image = exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()
         .all_channels()
         .all_layers()
         .all_attributes()
-        .from_buffered(reader)?;
+        .from_chunks(chunks)?;
     let layers = image.layer_data.iter().enumerate();
     let channels: Vec<_> = layers.flat_map(channels_of).collect();
     Ok(samples(&select(&channels, channel)?))

@@ -2,7 +2,7 @@ use std::io::Cursor;
 
 use exr::{
     meta::attribute::Chromaticities,
-    prelude::{FlatSamples, MetaData, ReadChannels, ReadLayers, Vec2},
+    prelude::{FlatSamples, ReadChannels, ReadLayers, Vec2},
 };
 use glam::DVec2;
 use tem00_numerics::{Grid, cast::to_f32, check_memory};
@@ -15,9 +15,9 @@ use super::{
 /// Reads the first part of an OpenEXR file.
 pub(super) fn parse(content: &[u8]) -> Result<Grid<f32>, RadianceMapError> {
     // The header says how much will be allocated.
-    let meta =
-        MetaData::read_from_buffered(content, false).map_err(|error| format_error(&error))?;
-    for header in &meta.headers {
+    let chunks =
+        exr::block::read(Cursor::new(content), false).map_err(|error| format_error(&error))?;
+    for header in chunks.headers() {
         let (width, height) = checked_size(
             header.layer_size.width() as u64,
             header.layer_size.height() as u64,
@@ -32,7 +32,7 @@ pub(super) fn parse(content: &[u8]) -> Result<Grid<f32>, RadianceMapError> {
         .all_channels()
         .first_valid_layer()
         .all_attributes()
-        .from_buffered(Cursor::new(content))
+        .from_chunks(chunks)
         .map_err(|error| format_error(&error))?;
     let layer = image.layer_data;
     let window = image.attributes.display_window;

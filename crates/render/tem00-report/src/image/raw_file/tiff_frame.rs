@@ -1,9 +1,9 @@
-use std::io::{Read, Seek, SeekFrom, Write};
+use std::io::{Cursor, Read, Seek, Write};
 
 use tem00_numerics::{Grid, cast::to_f32};
 use tiff::{
     ColorType,
-    decoder::{Decoder, DecodingResult},
+    decoder::DecodingResult,
     encoder::{TiffEncoder, colortype},
     tags::Tag,
 };
@@ -12,21 +12,21 @@ use super::{
     BIT_DEPTH, BYTES_PER_PIXEL, Components, GreyFrame, ImageError, Samples, StoredCurve,
     check_length, check_room, checked_area, stated_bit_depth,
     tiff_packed::{self, Packing},
-    tiff_pixels::{Pixels, number, read_all},
+    tiff_pixels::{FileDecoder, Pixels, number, read_all},
 };
 
 /// The maximum number of bytes that a byte of coded data stands for: LZW grows its words by a byte
 /// each, to 4096.
 const MAX_EXPANSION: u64 = 4096;
 
-pub(super) fn read(mut reader: impl Read + Seek) -> Result<Samples, ImageError> {
-    let length = reader.seek(SeekFrom::End(0))?;
-    reader.rewind()?;
-    let mut decoder = Decoder::new(&mut reader)?;
+pub(super) fn read(mut reader: impl Read) -> Result<Samples, ImageError> {
+    let mut file = Vec::new();
+    reader.read_to_end(&mut file)?;
+    let mut decoder = FileDecoder::new(Cursor::new(&file))?;
     let (width, height) = decoder.dimensions()?;
     let size = [width, height].map(u64::from);
     let area = checked_area(size[0], size[1])?;
-    check_length(size, length, MAX_EXPANSION)?;
+    check_length(size, file.len() as u64, MAX_EXPANSION)?;
     let told = told_bit_depth(&mut decoder);
     let has_further_images = decoder.more_images();
     let orientation = number(&mut decoder, Tag::Orientation).unwrap_or(1);
@@ -39,7 +39,7 @@ pub(super) fn read(mut reader: impl Read + Seek) -> Result<Samples, ImageError> 
     // Numbers of 64 bits at most, then of 32, then the mean of the channels.
     check_room(area, 12 * channels + BYTES_PER_PIXEL)?;
     let pixels = match packing {
-        Some(packing) => tiff_packed::read(&mut reader, &packing)?,
+        Some(packing) => tiff_packed::read(file, &packing)?,
         None => whole(decoder, area)?,
     };
     let stored = pixels.bit_depth;
@@ -67,7 +67,7 @@ pub(super) fn read(mut reader: impl Read + Seek) -> Result<Samples, ImageError> 
 }
 
 /// Reads numbers of whole bytes, pixel by pixel or in planes.
-fn whole(mut decoder: Decoder<impl Read + Seek>, area: usize) -> Result<Pixels, ImageError> {
+fn whole(mut decoder: FileDecoder<'_>, area: usize) -> Result<Pixels, ImageError> {
     let components = components(&mut decoder)?;
     let channels = components.names().len();
     let (read, planes) = read_all(decoder, 8 * channels * area)?;
@@ -115,7 +115,7 @@ fn of<T>(values: Vec<T>, number: impl Fn(T) -> f32) -> Vec<f32> {
     values.into_iter().map(number).collect()
 }
 
-fn components(decoder: &mut Decoder<impl Read + Seek>) -> Result<Components, ImageError> {
+fn components(decoder: &mut FileDecoder<'_>) -> Result<Components, ImageError> {
     /// The values of the tag of extra samples that mean opacity.
     const ALPHA: [u64; 2] = [1, 2];
     let extra = decoder.find_tag_unsigned_vec::<u64>(Tag::ExtraSamples)?;
@@ -135,7 +135,7 @@ fn components(decoder: &mut Decoder<impl Read + Seek>) -> Result<Components, Ima
 }
 
 /// The bit depth that a line of the description states.
-fn told_bit_depth(decoder: &mut Decoder<impl Read + Seek>) -> Option<u32> {
+fn told_bit_depth(decoder: &mut FileDecoder<'_>) -> Option<u32> {
     let description = decoder.get_tag_ascii_string(Tag::ImageDescription).ok()?;
     let mut entries = description.lines().filter_map(|line| line.split_once('='));
     let (_, bits) = entries.find(|(keyword, _)| *keyword == BIT_DEPTH)?;

@@ -3,16 +3,16 @@
 //! The library for TIFF does not read them. Both kinds consist of rows of bytes: the tags are
 //! changed so that the library reads these rows, and the values are unpacked here.
 
-use std::io::{Cursor, Read, Seek};
+use std::io::Cursor;
 
 use tiff::{
-    decoder::{Decoder, DecodingResult},
+    decoder::DecodingResult,
     tags::{ByteOrder, Tag},
 };
 
 use super::{
     Components, ImageError,
-    tiff_pixels::{Pixels, number, read_all},
+    tiff_pixels::{FileDecoder, Pixels, number, read_all},
 };
 
 /// The layout of packed values.
@@ -30,7 +30,7 @@ pub(super) struct Packing {
 
 impl Packing {
     /// Returns the layout of a file that holds packed values or indices.
-    pub(super) fn of(decoder: &mut Decoder<impl Read + Seek>) -> Result<Option<Self>, ImageError> {
+    pub(super) fn of(decoder: &mut FileDecoder<'_>) -> Result<Option<Self>, ImageError> {
         const WHITE_IS_ZERO: usize = 0;
         const PALETTE: usize = 3;
         let mut tag = |tag, otherwise| number::<usize>(decoder, tag).unwrap_or(otherwise);
@@ -152,15 +152,9 @@ impl Packing {
 }
 
 /// Reads packed values.
-pub(super) fn read(
-    reader: &mut (impl Read + Seek),
-    packing: &Packing,
-) -> Result<Pixels, ImageError> {
-    let mut file = Vec::new();
-    reader.rewind()?;
-    reader.read_to_end(&mut file)?;
+pub(super) fn read(mut file: Vec<u8>, packing: &Packing) -> Result<Pixels, ImageError> {
     packing.relabel(&mut file);
-    let mut decoder = Decoder::new(Cursor::new(file))?;
+    let mut decoder = FileDecoder::new(Cursor::new(&file))?;
     let (row, height) = decoder.dimensions()?;
     let (row, height) = (row as usize, height as usize);
     let (bytes, _) = read_all(decoder, row * height)?;

@@ -1,4 +1,4 @@
-use std::io::{Read, Seek};
+use std::io::Cursor;
 
 use tiff::{
     decoder::{Decoder, DecodingResult, Limits},
@@ -6,6 +6,9 @@ use tiff::{
 };
 
 use super::{Components, ImageError};
+
+/// A decoder of a file in memory.
+pub(super) type FileDecoder<'a> = Decoder<Cursor<&'a [u8]>>;
 
 /// The pixels of a file.
 pub(super) struct Pixels {
@@ -16,16 +19,13 @@ pub(super) struct Pixels {
 }
 
 /// Returns the number that a tag holds, if it is one.
-pub(super) fn number<T: TryFrom<u64>>(
-    decoder: &mut Decoder<impl Read + Seek>,
-    tag: Tag,
-) -> Option<T> {
+pub(super) fn number<T: TryFrom<u64>>(decoder: &mut FileDecoder<'_>, tag: Tag) -> Option<T> {
     decoder.find_tag_unsigned(tag).ok().flatten()
 }
 
 /// Reads all planes, at most `bytes` bytes, and returns them with their number.
 pub(super) fn read_all(
-    decoder: Decoder<impl Read + Seek>,
+    decoder: FileDecoder<'_>,
     bytes: usize,
 ) -> Result<(DecodingResult, usize), ImageError> {
     let mut limits = Limits::default();

@@ -51,7 +51,7 @@ fn budgets(criterion: &mut Criterion) {
     };
     group.throughput(Throughput::Elements(10));
     group.bench_function("by trials, all threads", |bencher| {
-        bencher.iter(|| simulate(&setup, options, |_| (), &AtomicBool::new(false)));
+        bencher.iter(|| simulate(&setup, options, &|_| (), &AtomicBool::new(false)));
     });
     group.finish();
 }

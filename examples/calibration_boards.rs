@@ -71,7 +71,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut table = String::from("board,corner,x_pixel,y_pixel,x_found_pixel,y_found_pixel\n");
     for (number, pose) in plan.poses().iter().enumerate() {
         let cancel = AtomicBool::new(false);
-        let [lit, line] = plan.frames(number, &sensor, |_| (), &cancel)?;
+        let [lit, line] = plan.frames(number, &sensor, &|_| (), &cancel)?;
         frame_file::write(&folder.join(format!("board_{number:02}.png")), &lit)?;
         frame_file::write(&folder.join(format!("line_{number:02}.png")), &line)?;
         let found = find_corners(&lit.grey_values(), plan.board())?;

@@ -128,7 +128,7 @@ fn a_render_stops_within_a_pixel_when_it_is_told_to() {
         done.fetch_add(samples, Ordering::Relaxed);
         cancel.store(true, Ordering::Relaxed);
     };
-    let result = render_frame(&scene, None, 0, &options, progress, &cancel);
+    let result = render_frame(&scene, None, 0, &options, &progress, &cancel);
     assert_eq!(result, Err(RenderError::Cancelled));
     let done = done.load(Ordering::Relaxed);
     assert!(done < 1 << 22, "{done} samples until the stop");

@@ -35,5 +35,5 @@ pub(crate) fn frame(
     options: &RenderOptions,
 ) -> Frame {
     let go_on = AtomicBool::new(false);
-    render_frame(scene, speckle, frame, options, |_| (), &go_on).expect("a render")
+    render_frame(scene, speckle, frame, options, &|_| (), &go_on).expect("a render")
 }

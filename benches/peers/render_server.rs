@@ -62,7 +62,7 @@ impl Server {
             ..scene.render
         };
         let never = AtomicBool::new(false);
-        Ok(render_frame(scene, None, 0, &options, |_| (), &never)?)
+        Ok(render_frame(scene, None, 0, &options, &|_| (), &never)?)
     }
 
     /// The radiance of all light, row by row, as bytes.

@@ -5,7 +5,7 @@ use tem00::{
     numerics::Grid,
     tracer::{Crop, Filter, Frame, Material, RenderOptions, Sampling, Scene},
 };
-use tem00_testkit::refuses;
+use tem00_testkit::{on_threads, refuses};
 
 use super::integrator::{INSIDE, ball};
 use crate::{
@@ -54,11 +54,6 @@ fn render(scene: &Scene, options: &RenderOptions) -> Frame {
     renders::frame(scene, Some(&speckle(scene, 1)), 0, options)
 }
 
-fn with_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> R {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    pool.unwrap().install(work)
-}
-
 /// All layers of a frame.
 fn layers(frame: &Frame) -> Vec<&Grid<f32>> {
     let mut all = vec![
@@ -93,9 +88,9 @@ fn frames_have_the_same_bits_for_any_number_of_threads() {
             filter,
             ..options()
         };
-        let one = with_threads(1, || render(&scene, &options));
+        let one = on_threads(1, || render(&scene, &options));
         for threads in [2, 7] {
-            let many = with_threads(threads, || render(&scene, &options));
+            let many = on_threads(threads, || render(&scene, &options));
             assert!(one == many, "{threads} threads, {options:?}");
         }
     }
@@ -360,7 +355,7 @@ fn options_out_of_range_are_refused() {
             height,
         })
     };
-    refuses!(options = options() => render_frame(&scene, None, 0, &options, |_| (), &go_on);
+    refuses!(options = options() => render_frame(&scene, None, 0, &options, &|_| (), &go_on);
         options.samples_per_pixel: [0],
         options.crop as "crop (columns)": [crop(39, 2), crop(0, 0), crop(usize::MAX, 2)],
         options.sampling as "target_error":

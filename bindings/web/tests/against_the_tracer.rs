@@ -75,7 +75,7 @@ fn frames_of_the_tracer(values: &Values) -> [Film; 2] {
     let speckle = SpeckleModel::generate(&scene, &plan).unwrap();
     [0, 1].map(|frame| {
         let end = AtomicBool::new(false);
-        film_of(&render_frame(&scene, Some(&speckle), frame, &options, |_| (), &end).unwrap())
+        film_of(&render_frame(&scene, Some(&speckle), frame, &options, &|_| (), &end).unwrap())
     })
 }
 

@@ -20,7 +20,7 @@ fn setup_of(change: impl Fn(&mut SetupDescription)) -> Setup {
 
 fn simulated(setup: &Setup, trials: u32) -> Simulation {
     let options = SimulationOptions { trials, seed: 7 };
-    simulate(setup, options, |_| (), &AtomicBool::new(false)).unwrap()
+    simulate(setup, options, &|_| (), &AtomicBool::new(false)).unwrap()
 }
 
 #[test]

@@ -180,7 +180,7 @@ fn scan(part: &Part) -> [Vec<Point>; 2] {
     let measurement = measurement.expect("a measurement");
     let frames: Vec<Grid<f32>> = (0..FRAMES)
         .map(|frame| {
-            let measured = measurement.measure(None, frame, |_| (), &AtomicBool::new(false));
+            let measured = measurement.measure(None, frame, &|_| (), &AtomicBool::new(false));
             measured.expect("a frame").exposure.electrons
         })
         .collect();

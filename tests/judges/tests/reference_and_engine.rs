@@ -115,7 +115,7 @@ fn reference(
     options: &RenderOptions,
 ) -> Frame {
     let go_on = AtomicBool::new(false);
-    render_reference(scene, speckle, frame, options, |_| (), &go_on).expect("a render")
+    render_reference(scene, speckle, frame, options, &|_| (), &go_on).expect("a render")
 }
 
 /// Renders a frame without speckle by both, once for each seed, and compares them block by block.

@@ -2,6 +2,7 @@
 //! and photons that another program counted.
 
 use std::sync::atomic::AtomicBool;
+use tem00_testkit::on_threads;
 
 use tem00::{
     DVec2, DVec3,
@@ -573,7 +574,7 @@ fn speckle_of_light_from_below_is_that_of_its_paths() {
         let prepared = ReferenceSpeckle::prepare(scene, 1).expect("patterns");
         let go_on = AtomicBool::new(false);
         let options = &scene.render;
-        let reference = render_reference(scene, Some(&prepared), number, options, |_| (), &go_on);
+        let reference = render_reference(scene, Some(&prepared), number, options, &|_| (), &go_on);
         [
             renders::frame(scene, Some(&model), number, options),
             reference.expect("a render"),
@@ -742,11 +743,7 @@ fn the_same_seed_gives_the_same_bits_for_any_number_of_threads() {
         seed: 3,
     };
     let run = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let seen = pool
-            .expect("threads")
-            .install(|| LineSpread::simulate(&medium, &walk));
-        seen.expect("a simulation")
+        on_threads(threads, || LineSpread::simulate(&medium, &walk)).expect("a simulation")
     };
     assert_eq!(run(1), run(3));
 }

@@ -1,5 +1,5 @@
 //! Shared helpers of the tests: tables of refusals, hostile bytes, p-values, tolerances, random
-//! numbers.
+//! numbers, pools of threads.
 //!
 //! The crate knows no other crate of the workspace, so that the lowest of them can use it.
 
@@ -15,6 +15,7 @@ mod p_value;
 mod refusal;
 mod robust;
 mod rows;
+mod threads;
 
 pub use close::{assert_absolute, assert_relative, correlation};
 pub use numbers::Numbers;
@@ -22,3 +23,4 @@ pub use p_value::{chi_squared, chi_squared_survival, kolmogorov_smirnov};
 pub use refusal::{assert_accepted, assert_refused};
 pub use robust::robust;
 pub use rows::rows;
+pub use threads::on_threads;

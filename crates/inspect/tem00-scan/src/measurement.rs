@@ -163,7 +163,7 @@ impl Measurement {
         &self,
         speckle: Option<&SpeckleModel>,
         frame: u32,
-        progress: impl Fn(u64) + Sync,
+        progress: &(dyn Fn(u64) + Sync),
         cancel: &AtomicBool,
     ) -> Result<MeasuredFrame, ScanError> {
         let options = &self.scene.render;

@@ -149,7 +149,7 @@ impl<'a> SetupSensor<'a> {
         let parts = image.parts_of_pixel();
         let sharp = self.sharp(scene, parts)?;
         let options = &sharp.render;
-        let rendered = render_frame(&sharp, None, frame, options, |_| (), self.cancel)?;
+        let rendered = render_frame(&sharp, None, frame, options, &|_| (), self.cancel)?;
         let light = Exposure::of_frame(&rendered, &sharp.camera, measurement.sensor());
         let light = light
             .electrons

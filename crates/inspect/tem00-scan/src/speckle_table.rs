@@ -1,6 +1,6 @@
 use glam::DVec2;
-use rayon::prelude::*;
 use tem00_numerics::cast::to_usize;
+use tem00_numerics::parallel;
 
 use crate::sensor_speckle::SensorSpeckle;
 use tem00_triangulation::PixelCovariance;
@@ -83,11 +83,11 @@ impl SpeckleTable {
         let mut values: Vec<f64>;
         if offset.iter().all(|&part| part == 0.0) {
             // Covariances are the same on both sides of the middle.
-            values = (0..=count / 2).into_par_iter().map(value).collect();
+            values = parallel::map(count / 2 + 1, value);
             values.extend_from_within(..count / 2);
             values[count / 2 + 1..].reverse();
         } else {
-            values = (0..count).into_par_iter().map(value).collect();
+            values = parallel::map(count, value);
         }
         Self {
             offset,

@@ -155,7 +155,7 @@ fn files_with_mistakes_in_the_scan_are_placed() {
 /// Measures the first frame of a scene without speckle.
 fn first_frame(scene: MeasurementScene) -> MeasuredFrame {
     let measurement = Measurement::new(scene).unwrap();
-    let frame = measurement.measure(None, 0, |_| (), &AtomicBool::new(false));
+    let frame = measurement.measure(None, 0, &|_| (), &AtomicBool::new(false));
     frame.unwrap()
 }
 

@@ -49,7 +49,7 @@ fn rendered(setup: &Setup, height: f64) -> [f64; 3] {
         crop: Some(crop),
         ..RenderOptions::default()
     };
-    let frame = render_frame(&scene, None, 0, &options, |_| (), &AtomicBool::new(false));
+    let frame = render_frame(&scene, None, 0, &options, &|_| (), &AtomicBool::new(false));
     let frame = frame.expect("it renders");
     let [mut sum, mut first, mut second] = [0.0; 3];
     for (row, y) in frame.lasers[0].single.rows().zip(0_u32..) {
@@ -148,7 +148,7 @@ fn a_frame_out_of_focus_says_how_much_more_speckle_noise_a_camera_sees() {
         let scene = measurement.scene();
         let plan = SpecklePlan::new(scene, 1).expect("a plan");
         let speckle = SpeckleModel::generate(scene, &plan).expect("speckle");
-        let frame = measurement.measure(Some(&speckle), 0, |_| (), &AtomicBool::new(false));
+        let frame = measurement.measure(Some(&speckle), 0, &|_| (), &AtomicBool::new(false));
         let frame = frame.expect("a frame");
         let ratio = measurement.speckle_by_waves(&frame).expect("a ratio");
         assert!(expected.contains(&ratio), "{height}: {ratio}");

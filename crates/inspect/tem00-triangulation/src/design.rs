@@ -11,8 +11,7 @@ mod tests;
 
 use core::sync::atomic::{AtomicBool, Ordering};
 
-use rayon::prelude::*;
-use tem00_numerics::{Refusal, check};
+use tem00_numerics::{Refusal, check, parallel};
 
 pub use self::{
     constraint::{Constraint, DesignFigure},
@@ -157,7 +156,7 @@ impl DesignSearch {
     /// is not possible is part of the outcome.
     pub fn run(
         &self,
-        progress: impl Fn(u64) + Sync,
+        progress: &(dyn Fn(u64) + Sync),
         cancel: &AtomicBool,
     ) -> Result<DesignOutcome, TriangulationError> {
         let attempt = |index: usize| {
@@ -168,7 +167,8 @@ impl DesignSearch {
             progress(1);
             Ok(candidate)
         };
-        let candidates: Result<Vec<_>, _> = (0..self.count).into_par_iter().map(attempt).collect();
+        let candidates = parallel::map(self.count, attempt);
+        let candidates: Result<Vec<_>, _> = candidates.into_iter().collect();
         let constraints = self.question.constraints.clone();
         let objective = self.question.objective.figure();
         Ok(DesignOutcome::new(candidates?, constraints, objective))

@@ -15,8 +15,7 @@ mod tests;
 mod three_point;
 mod tracks;
 
-use rayon::prelude::*;
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, parallel};
 
 use column::{Column, Sighting};
 use extent::Extent;
@@ -118,8 +117,7 @@ impl LineDetector {
                 None => self.in_column(image.row(y), marked),
             }
         };
-        let rows = (0..image.height()).into_par_iter();
-        let mut points: Vec<Vec<LinePoint>> = rows.map(find).collect();
+        let mut points = parallel::map(image.height(), find);
         tracks::number(&mut points, self.settings.window);
         points
     }

@@ -89,7 +89,7 @@ fn exercise(setup: &Setup, what: &str) {
         trials: 10,
         seed: 1,
     };
-    if let Ok(simulation) = simulate(setup, options, |_| (), &AtomicBool::new(false))
+    if let Ok(simulation) = simulate(setup, options, &|_| (), &AtomicBool::new(false))
         && let Some(total) = simulation.total()
     {
         let found = [total.uncertainty, total.standard_error];

@@ -1,4 +1,4 @@
-use tem00_numerics::{Refusal, cast::to_usize, check};
+use tem00_numerics::{Refusal, cast::to_usize, check, parallel};
 
 use crate::{
     CoverageInterval, CoverageProbability, FirstOrder, Inputs, IntervalKind, UncertaintyError,
@@ -107,7 +107,7 @@ impl Propagation {
         let mut summaries = Vec::new();
         let mut next = 0;
         while next < blocks && !result.is_stable() {
-            let range = next..blocks.min(next + trials::at_once());
+            let range = next..blocks.min(next + parallel::thread_count() as u64);
             next = range.end;
             let of_block = |block| trials::block((inputs, &model), (options.seed, block), trials);
             for values in trials::map(range, of_block) {

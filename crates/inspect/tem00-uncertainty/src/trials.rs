@@ -4,8 +4,7 @@ use core::ops::Range;
 
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
-#[cfg(feature = "parallel")]
-use rayon::prelude::*;
+use tem00_numerics::parallel;
 
 use crate::{Inputs, UncertaintyError};
 
@@ -64,16 +63,6 @@ pub(crate) fn block(
 
 /// Returns the results of `work` for the numbers of a range, in their order.
 pub(crate) fn map<T: Send>(range: Range<u64>, work: impl Fn(u64) -> T + Sync) -> Vec<T> {
-    #[cfg(feature = "parallel")]
-    let range = range.into_par_iter();
-    range.map(&work).collect()
-}
-
-/// Returns the number of blocks that are worked on at once.
-pub(crate) fn at_once() -> u64 {
-    #[cfg(feature = "parallel")]
-    let threads = rayon::current_num_threads() as u64;
-    #[cfg(not(feature = "parallel"))]
-    let threads = 1;
-    threads
+    let numbers: Vec<_> = range.collect();
+    parallel::map(numbers.len(), |index| work(numbers[index]))
 }

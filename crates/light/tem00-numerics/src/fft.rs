@@ -1,17 +1,20 @@
 use core::{error, fmt, ops::Range};
+use std::sync::Mutex;
 
 use num_complex::Complex;
 use rustfft::FftPlanner;
 
-use crate::{Grid, vectorised};
+use crate::{
+    Grid,
+    parallel::{self, lock},
+    vectorised,
+};
 
 mod axis;
 mod blocks;
-mod chunks;
 
 use axis::Axis;
 use blocks::{COLUMNS, PANEL, aligned, fill_columns, gather_rows, spread_columns, stride};
-use chunks::for_each_chunk;
 
 /// Two-dimensional Fourier transform of a small aperture in a larger array of zeros.
 ///
@@ -232,8 +235,7 @@ impl Fft2 {
         let blocks = self.row.aperture().div_ceil(COLUMNS);
         let spectra = aligned(&mut scratch.blocks, blocks * block);
         let panel = self.panel_width();
-        for_each_chunk(
-            self.threads,
+        self.for_each_chunk(
             spectra,
             panel / COLUMNS * block,
             &mut scratch.workers,
@@ -245,8 +247,7 @@ impl Fft2 {
                 );
             },
         );
-        for_each_chunk(
-            self.threads,
+        self.for_each_chunk(
             output.values_mut(),
             ROWS * self.row.length(),
             &mut scratch.workers,
@@ -259,9 +260,36 @@ impl Fft2 {
         );
     }
 
+    /// Calls `each(worker, index, chunk)` for every chunk, with a worker that no other call has.
+    fn for_each_chunk<T: Send>(
+        &self,
+        values: &mut [T],
+        length: usize,
+        workers: &mut Vec<Worker>,
+        each: impl Fn(&mut Worker, usize, &mut [T]) + Sync,
+    ) {
+        let workers = Mutex::new(workers);
+        let each = |index, chunk: &mut [T]| {
+            let mut worker = lock(&workers).pop().unwrap_or_default();
+            each(&mut worker, index, chunk);
+            lock(&workers).push(worker);
+        };
+        if self.threads {
+            parallel::for_each_chunk(values, length, each);
+        } else {
+            let chunks = values.chunks_mut(length).enumerate();
+            chunks.for_each(|(index, chunk)| each(index, chunk));
+        }
+    }
+
     /// Columns that one thread transforms together: few enough that all threads get some.
     fn panel_width(&self) -> usize {
-        let share = self.row.aperture() / (2 * chunks::thread_count(self.threads));
+        let threads = if self.threads {
+            parallel::thread_count()
+        } else {
+            1
+        };
+        let share = self.row.aperture() / (2 * threads);
         share.clamp(1, PANEL).next_multiple_of(COLUMNS)
     }
 

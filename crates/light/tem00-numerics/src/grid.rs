@@ -3,6 +3,8 @@ use core::{
     ops::{Index, IndexMut},
 };
 
+use crate::parallel;
+
 /// A rectangular array in row-major order: `(x, y)` lies at `y · width + x`.
 ///
 /// # Examples
@@ -112,16 +114,7 @@ impl<T> Grid<T> {
         T: Send,
     {
         let width = self.width();
-        #[cfg(feature = "parallel")]
-        {
-            use rayon::prelude::*;
-            let rows = self.values_mut().par_chunks_mut(width).enumerate();
-            rows.for_each(|(y, row)| each(y, row));
-        }
-        #[cfg(not(feature = "parallel"))]
-        for (y, row) in self.values_mut().chunks_mut(width).enumerate() {
-            each(y, row);
-        }
+        parallel::for_each_chunk(self.values_mut(), width, each);
     }
 
     /// Returns row `y`.

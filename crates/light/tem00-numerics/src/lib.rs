@@ -23,7 +23,7 @@ mod least_squares;
 mod lower_factor;
 mod memory;
 mod normal;
-mod pieces;
+pub mod parallel;
 mod pupil;
 pub mod quadrature;
 mod refusal;
@@ -40,7 +40,6 @@ pub use least_squares::{LeastSquaresError, Minimum, NormalEquations, minimise};
 pub use lower_factor::lower_factor;
 pub use memory::{MemoryError, available_memory, check_memory};
 pub use normal::normal_quantile;
-pub use pieces::map_pieces;
 pub use pupil::{
     circular_path_overlap, circular_path_overlap_inverse, disc_overlap, disc_overlap_inverse, jinc,
     sinc, sinc_inverse, sinc_pi_squared,

@@ -1,5 +1,5 @@
 use num_complex::Complex;
-use tem00_numerics::{Grid, disc_overlap};
+use tem00_numerics::{Grid, disc_overlap, parallel};
 
 use crate::{
     PupilField, SpeckleError,
@@ -15,7 +15,6 @@ mod plan;
 mod quadrature;
 mod slice_law;
 mod source;
-mod workers;
 
 pub(crate) use join::Slice;
 use join::join_all;
@@ -26,7 +25,6 @@ pub use path::SlicePath;
 pub use plan::{StackNeeds, StackPlan};
 pub use slice_law::SliceLaw;
 pub use source::StackSource;
-use workers::map_with_scratch;
 
 /// Speckle that moves and decorrelates: slices of one random field behind a moving pupil.
 ///
@@ -148,7 +146,8 @@ impl SpeckleStack {
     ) -> Result<Self, SpeckleError> {
         let source = StackSource::new(field, path, options)?;
         let field = source.field();
-        let slices = map_with_scratch(reserve(path, field.size())?, |index, room, scratch| {
+        let reserved = reserve(path, field.size())?;
+        let slices = parallel::map_items_with(reserved, |scratch, index, room| {
             let mut slice = dark(room, field.size())?;
             field.amplitude_into(&source.slice(index), &mut slice, scratch);
             Ok(slice)

@@ -1,15 +1,8 @@
 //! The same bits with and without the feature `parallel`, and for any number of threads: either
 //! build is held to the same recorded checksums.
 
-#![cfg_attr(
-    feature = "parallel",
-    expect(
-        clippy::expect_used,
-        reason = "a test stops at what it does not expect"
-    )
-)]
-
 use tem00_speckle::{Complex, Phasors, Pupil, PupilField, SlicePath, SpeckleError, SpeckleStack};
+use tem00_testkit::on_threads;
 
 /// FNV-1a over the bits of `f32` values.
 fn checksum(values: impl IntoIterator<Item = f32>) -> u64 {
@@ -47,17 +40,6 @@ fn checksums() -> Result<[u64; 5], SpeckleError> {
         bits_of_stack(&square, SlicePath::Circle { half_period: 3 })?,
         bits_of_stack(&oblong, straight)?,
     ])
-}
-
-#[cfg(feature = "parallel")]
-fn on_threads<T: Send>(count: usize, work: impl FnOnce() -> T + Send) -> T {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build();
-    pool.expect("a few threads").install(work)
-}
-
-#[cfg(not(feature = "parallel"))]
-fn on_threads<T>(_: usize, work: impl FnOnce() -> T) -> T {
-    work()
 }
 
 /// Recorded once without the feature `parallel`. The transform rounds as the processor's

@@ -44,7 +44,7 @@ impl LineSpread {
         let variance = squares.sum::<f64>() * count / (count - 1.0) / weight.powi(2);
         let escaped: f64 = blocks.iter().map(|block| block.escaped).sum();
         let entered: f64 = blocks.iter().map(|block| block.entered).sum();
-        let photons = walk.photons.div_ceil(BLOCKS) as f64 * count;
+        let photons = walk.photons.div_ceil(BLOCKS as u64) as f64 * count;
         Self {
             radiance_factor: PI * medium.scattered_fraction() * weight / photons,
             albedo: escaped / entered,

@@ -3,7 +3,7 @@ use core::f64::consts::PI;
 use tem00_numerics::{
     Refusal,
     cast::to_usize,
-    check,
+    check, parallel,
     seed::{Purpose, derived},
 };
 
@@ -64,17 +64,10 @@ impl LineSpread {
 }
 
 /// The number of blocks of photons, each with random numbers of its own.
-pub(crate) const BLOCKS: u64 = 64;
+pub(crate) const BLOCKS: usize = 64;
 
-#[cfg(feature = "parallel")]
-fn blocks<T: Send>(block: impl Fn(u64) -> T + Sync + Send) -> Vec<T> {
-    use rayon::prelude::*;
-    (0..BLOCKS).into_par_iter().map(block).collect()
-}
-
-#[cfg(not(feature = "parallel"))]
-fn blocks<T>(block: impl Fn(u64) -> T) -> Vec<T> {
-    (0..BLOCKS).map(block).collect()
+fn blocks<T: Send>(block: impl Fn(u64) -> T + Sync) -> Vec<T> {
+    parallel::map(BLOCKS, |number| block(number as u64))
 }
 
 /// Light of a block of photons.
@@ -100,7 +93,7 @@ fn block(medium: &Medium, walk: &Walk, number: u64, tally: fn() -> Tally) -> Blo
     };
     // First flights are stratified: they decide where the line is seen. In random order, so that
     // neighbours are independent pairs of paths.
-    let count = walk.photons.div_ceil(BLOCKS);
+    let count = walk.photons.div_ceil(BLOCKS as u64);
     let mut strata: Vec<_> = (0..count).collect();
     for left in (1..strata.len()).rev() {
         let drawn = line.photon.uniform() * (left + 1) as f64;

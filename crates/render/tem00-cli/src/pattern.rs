@@ -9,7 +9,7 @@ use std::{
 };
 
 use num_complex::Complex;
-use tem00_numerics::{Grid, map_pieces};
+use tem00_numerics::{Grid, parallel::map_pieces};
 use tem00_report::{
     atomic::write_atomically,
     failure::Failure,

@@ -7,6 +7,7 @@ mod sequence;
 
 use std::io::Write;
 
+use tem00_numerics::parallel;
 use tem00_report::{
     digits::si_prefixed,
     failure::Failure,
@@ -155,7 +156,7 @@ fn speed(report: &mut Report, frames: &[FrameSummary]) {
     let seconds: f64 = frames.iter().map(|frame| frame.seconds).sum();
     let samples: u64 = frames.iter().map(|frame| frame.samples).sum();
     let rays: u64 = frames.iter().map(|frame| frame.rays).sum();
-    let threads = rayon::current_num_threads();
+    let threads = parallel::thread_count();
     let [samples_per_second, rays_per_second] =
         [samples, rays].map(|count| count as f64 / seconds.max(1e-9));
     report.data("threads", threads);

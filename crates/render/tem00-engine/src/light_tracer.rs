@@ -21,7 +21,7 @@ mod splats;
 
 use core::sync::atomic::{AtomicBool, Ordering};
 
-use rayon::prelude::*;
+use tem00_numerics::parallel;
 use tem00_tracer::{LaserLayers, RenderError};
 
 pub(crate) use self::group::LightGroup;
@@ -73,27 +73,25 @@ impl LightTracer<'_> {
         &self,
         job: &LightJob,
         layers: &mut LaserLayers,
-        progress: &(impl Fn(u64) + Sync),
+        progress: &(dyn Fn(u64) + Sync),
         cancel: &AtomicBool,
     ) -> Result<(), RenderError> {
         let connector = Connector::new(self, job);
         let groups = Groups::new(job.paths);
         let mut film = SplatFilm::new(self.area);
         for first in (0..groups.count).step_by(GROUPS_AT_ONCE) {
-            let wave = first..groups.count.min(first + GROUPS_AT_ONCE as u64);
-            let followed: Vec<_> = wave
-                .into_par_iter()
-                .map(|index| {
-                    if cancel.load(Ordering::Relaxed) {
-                        return Err(RenderError::Cancelled);
-                    }
-                    let splats = connector.group(index, groups.size(index));
-                    progress(groups.size(index) as u64);
-                    Ok(splats)
-                })
-                .collect::<Result<_, _>>()?;
-            for splats in &followed {
-                film.add(splats);
+            let left = usize::try_from(groups.count - first).unwrap_or(usize::MAX);
+            let followed = parallel::map(left.min(GROUPS_AT_ONCE), |index| {
+                if cancel.load(Ordering::Relaxed) {
+                    return Err(RenderError::Cancelled);
+                }
+                let index = first + index as u64;
+                let splats = connector.group(index, groups.size(index));
+                progress(groups.size(index) as u64);
+                Ok(splats)
+            });
+            for splats in followed {
+                film.add(&splats?);
             }
         }
         film.add_to(layers, groups.count, groups.paths);

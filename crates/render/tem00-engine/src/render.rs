@@ -56,7 +56,7 @@ pub fn render_frame(
     speckle: Option<&SpeckleModel>,
     frame: u32,
     options: &RenderOptions,
-    progress: impl Fn(u64) + Sync,
+    progress: &(dyn Fn(u64) + Sync),
     cancel: &AtomicBool,
 ) -> Result<Frame, RenderError> {
     assert!(
@@ -94,7 +94,7 @@ pub fn render_frame(
         frame,
         area,
         light_traced: selection.is_some(),
-        progress: &progress,
+        progress,
         cancel,
     };
     let mut rendered = pass.render()?;
@@ -109,7 +109,7 @@ pub fn render_frame(
             selection,
             area,
         };
-        add_light_traced(&tracer, options, &mut rendered, &progress, cancel)?;
+        add_light_traced(&tracer, options, &mut rendered, progress, cancel)?;
     }
     Ok(rendered)
 }
@@ -132,7 +132,7 @@ fn add_light_traced(
     tracer: &LightTracer<'_>,
     options: &RenderOptions,
     frame: &mut Frame,
-    progress: &(impl Fn(u64) + Sync),
+    progress: &(dyn Fn(u64) + Sync),
     cancel: &AtomicBool,
 ) -> Result<(), RenderError> {
     let pixels = tracer.camera.width() * tracer.camera.height();

@@ -7,9 +7,9 @@ mod path;
 use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
-use rayon::prelude::*;
 use tem00_camera::Ray;
 use tem00_geometry::Intersector;
+use tem00_numerics::parallel;
 use tem00_tracer::{RenderOptions, Scene, TracerError};
 
 use self::path::PathPoint;
@@ -175,25 +175,21 @@ impl<'a> Survey<'a> {
         let camera = self.change.camera();
         let lit = self.path_points();
         let grid = CellGrid::over([camera.width(), camera.height()], self.cells);
-        let lasers = (0..self.scene.lasers.len()).into_par_iter();
-        let starts: Vec<PathStart> = lasers
-            .map(|laser| self.better_start(laser, &lit[laser], grid))
-            .collect();
-        let cells = (0..grid.columns * grid.rows).into_par_iter();
-        let sums: Vec<CellSums> = cells
-            .map(|cell| {
-                let Some(seen) = self.seen(grid, cell) else {
-                    return CellSums::new();
-                };
-                let lasers = starts.iter().zip(&lit).enumerate();
-                lasers
-                    .map(|(laser, (&start, groups))| {
-                        let sums = self.sums(laser, start, groups, (grid, cell, &seen));
-                        ((laser, seen.point.surface), sums)
-                    })
-                    .collect()
-            })
-            .collect();
+        let starts = parallel::map(self.scene.lasers.len(), |laser| {
+            self.better_start(laser, &lit[laser], grid)
+        });
+        let sums = parallel::map(grid.columns * grid.rows, |cell| {
+            let Some(seen) = self.seen(grid, cell) else {
+                return CellSums::new();
+            };
+            let lasers = starts.iter().zip(&lit).enumerate();
+            lasers
+                .map(|(laser, (&start, groups))| {
+                    let sums = self.sums(laser, start, groups, (grid, cell, &seen));
+                    ((laser, seen.point.surface), sums)
+                })
+                .collect()
+        });
         MultipleMap::new(grid, &sums)
     }
 

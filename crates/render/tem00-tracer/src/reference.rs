@@ -15,9 +15,9 @@ mod speckle;
 use core::sync::atomic::{AtomicBool, Ordering};
 
 use glam::{DVec2, DVec3};
-use rayon::prelude::*;
 use tem00_camera::{Camera, Ray};
 use tem00_geometry::{Hit, Intersector};
+use tem00_numerics::parallel;
 use tem00_shading::{Laser, LaserEvent, SpeckleFrame};
 
 pub use self::speckle::ReferenceSpeckle;
@@ -54,7 +54,7 @@ pub fn render_reference(
     speckle: Option<&ReferenceSpeckle>,
     frame: u32,
     options: &RenderOptions,
-    progress: impl Fn(u64) + Sync,
+    progress: &(dyn Fn(u64) + Sync),
     cancel: &AtomicBool,
 ) -> Result<Frame, RenderError> {
     assert!(frame < scene.frames, "frame {frame} of {}", scene.frames);
@@ -71,28 +71,25 @@ pub fn render_reference(
         has_pilot: false,
         light_traced: is_light_traced,
     })?;
-    let rows: Vec<_> = (0..area.height)
-        .into_par_iter()
-        .map(|row| {
-            if cancel.load(Ordering::Relaxed) {
-                return Err(RenderError::Cancelled);
-            }
-            let columns = area.x..area.x + area.width;
-            let pixels = columns.map(|column| reference.pixel([column, area.y + row]));
-            let pixels: Vec<_> = pixels.collect();
-            progress(area.width as u64 * u64::from(options.samples_per_pixel));
-            Ok(pixels)
-        })
-        .collect::<Result<_, _>>()?;
-    for (row, pixels) in rows.iter().enumerate() {
-        for (column, (sums, rays)) in pixels.iter().enumerate() {
+    let rows = parallel::map(area.height, |row| {
+        if cancel.load(Ordering::Relaxed) {
+            return Err(RenderError::Cancelled);
+        }
+        let columns = area.x..area.x + area.width;
+        let pixels = columns.map(|column| reference.pixel([column, area.y + row]));
+        let pixels: Vec<_> = pixels.collect();
+        progress(area.width as u64 * u64::from(options.samples_per_pixel));
+        Ok(pixels)
+    });
+    for (row, pixels) in rows.into_iter().enumerate() {
+        for (column, (sums, rays)) in pixels?.iter().enumerate() {
             film.write(row, [column, row], sums);
             film.count_rays(*rays);
         }
     }
     let mut rendered = film.into_frame();
     if is_light_traced {
-        reference.add_light_from_lasers(area, &mut rendered, &progress, cancel)?;
+        reference.add_light_from_lasers(area, &mut rendered, progress, cancel)?;
     }
     Ok(rendered)
 }

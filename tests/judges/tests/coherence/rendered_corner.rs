@@ -96,7 +96,7 @@ fn factors(scene: &Scene, frame: u32) -> Vec<f64> {
             ..scene.render
         };
         let never = AtomicBool::new(false);
-        let frame = render_frame(scene, Some(&model), frame, &options, |_| (), &never);
+        let frame = render_frame(scene, Some(&model), frame, &options, &|_| (), &never);
         let frame = frame.expect("a frame");
         frame.lasers[0].speckle.values().to_vec()
     };

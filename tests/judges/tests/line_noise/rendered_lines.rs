@@ -172,7 +172,7 @@ impl LineFrames {
             };
             let scene = self.scene(y, resolution)?;
             let cancel = AtomicBool::new(false);
-            let frame = render_frame(&scene, Some(&model), 0, &options, |_| (), &cancel)?;
+            let frame = render_frame(&scene, Some(&model), 0, &options, &|_| (), &cancel)?;
             let layers = &frame.lasers[0];
             let [speckled, even] = [&layers.radiance, &layers.single];
             for x in 0..columns {

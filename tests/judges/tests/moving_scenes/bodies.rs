@@ -1,6 +1,7 @@
 //! Displacement and correlation of speckle when plate, camera and laser move and turn.
 
 use core::f64::consts::PI;
+use tem00_testkit::on_threads;
 
 use tem00::{
     decorrelation::{DVec2, DVec3, RigidMotions, SpeckleMotion, pupil_overlap_correlation},
@@ -231,11 +232,7 @@ fn a_plate_that_swings_through_its_place_has_other_speckle_on_either_side() {
 #[test]
 fn moving_scenes_have_the_same_bits_for_any_number_of_threads() {
     let scene = cases().pop().expect("a case").scene();
-    let with = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.expect("a pool")
-            .install(|| speckle(&scene, &[1], 2).remove(0))
-    };
+    let with = |threads| on_threads(threads, || speckle(&scene, &[1], 2).remove(0));
     let one = with(1);
     for threads in [2, 7] {
         assert!(with(threads) == one, "{threads} threads");

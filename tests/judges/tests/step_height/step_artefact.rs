@@ -34,7 +34,7 @@ pub(crate) fn measured_frame(
     frame: u32,
 ) -> MeasuredFrame {
     measurement
-        .measure(Some(speckle), frame, |_| (), &AtomicBool::new(false))
+        .measure(Some(speckle), frame, &|_| (), &AtomicBool::new(false))
         .expect("the frame is rendered")
 }
 

@@ -158,7 +158,7 @@ impl Prepared {
         let cancel = AtomicBool::new(false);
         let measured = self
             .measurement
-            .measure(Some(&self.speckle), frame, |_| (), &cancel);
+            .measure(Some(&self.speckle), frame, &|_| (), &cancel);
         measured.expect("a frame")
     }
 
@@ -172,7 +172,14 @@ impl Prepared {
             ..scene.render
         };
         let cancel = AtomicBool::new(false);
-        let rendered = render_frame(scene, Some(&self.speckle), frame, &options, |_| (), &cancel);
+        let rendered = render_frame(
+            scene,
+            Some(&self.speckle),
+            frame,
+            &options,
+            &|_| (),
+            &cancel,
+        );
         rendered.expect("a frame").lasers.remove(0).speckle
     }
 }

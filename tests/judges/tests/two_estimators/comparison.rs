@@ -68,7 +68,7 @@ impl Series {
                 ..scene.render
             };
             let cancel = AtomicBool::new(false);
-            render_frame(scene, speckle, 0, &options, |_| (), &cancel).expect("a render")
+            render_frame(scene, speckle, 0, &options, &|_| (), &cancel).expect("a render")
         };
         (0..self.seeds).map(render).collect()
     }

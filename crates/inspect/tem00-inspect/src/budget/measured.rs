@@ -276,5 +276,5 @@ fn tried(
         trials: args.trials,
         seed: args.seed,
     };
-    measurement.virtual_experiment(options, |_| bar.advance(1), interrupt::flag())
+    measurement.virtual_experiment(options, &|_| bar.advance(1), interrupt::flag())
 }

@@ -37,7 +37,7 @@ impl<'a> Design<'a> {
         let bar = Progress::of(search.count() as u64, "set-ups");
         bar.name("searching".into());
         let outcome = search
-            .run(|done| bar.advance(done), interrupt::flag())
+            .run(&|done| bar.advance(done), interrupt::flag())
             .map_err(|error| match error {
                 TriangulationError::Cancelled => Failure::Interrupted,
                 error => Failure::running(error.to_string()),

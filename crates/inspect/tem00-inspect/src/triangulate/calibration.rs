@@ -46,7 +46,7 @@ pub(super) fn calibrated(
     let advance = |samples| bar.set(done.fetch_add(samples, Ordering::Relaxed) + samples);
     let mut frames = Vec::new();
     for pose in 0..plan.poses().len() {
-        let pair = plan.frames(pose, measurement.sensor(), advance, interrupt::flag());
+        let pair = plan.frames(pose, measurement.sensor(), &advance, interrupt::flag());
         let pair = pair.map_err(refused)?;
         files.write_board(pose, &pair)?;
         frames.push(pair);

@@ -143,7 +143,7 @@ impl<'a> Job<'a> {
             self.name, self.frames.first, self.frames.last
         ));
         self.measurement
-            .measure(speckle, number, advance, interrupt::flag())
+            .measure(speckle, number, &advance, interrupt::flag())
             .map_err(|error| measurement_failure(&self.args.common.scene, &error))
     }
 }

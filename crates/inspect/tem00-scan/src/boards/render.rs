@@ -35,7 +35,7 @@ impl BoardPlan {
         &self,
         pose: usize,
         sensor: &Sensor,
-        progress: impl Fn(u64) + Sync,
+        progress: &(dyn Fn(u64) + Sync),
         cancel: &AtomicBool,
     ) -> Result<[RawFrame; 2], ScanError> {
         let scenes = self.scenes(pose)?;
@@ -46,7 +46,7 @@ impl BoardPlan {
                 .wrapping_add(2 * pose as u64 + image + 1)
         };
         let frame = |scene: &Scene, seed: u64| {
-            let electrons = electrons(scene, sensor, seed, (&progress, cancel))?;
+            let electrons = electrons(scene, sensor, seed, (progress, cancel))?;
             Ok::<_, ScanError>(sensor.expose(&scaled(&electrons, sensor), seed)?)
         };
         Ok([frame(&scenes[0], seed(0))?, frame(&scenes[1], seed(1))?])
@@ -70,10 +70,10 @@ impl BoardPlan {
         &self,
         sensor: &Sensor,
         detector: &LineDetector,
-        progress: impl Fn(u64) + Sync,
+        progress: &(dyn Fn(u64) + Sync),
         cancel: &AtomicBool,
     ) -> Result<Calibration, ScanError> {
-        let frames = |pose: usize| self.frames(pose, sensor, &progress, cancel);
+        let frames = |pose: usize| self.frames(pose, sensor, progress, cancel);
         let frames: Vec<_> = (0..self.poses.len())
             .map(frames)
             .collect::<Result<_, _>>()?;
@@ -133,7 +133,7 @@ pub fn calibrate_scene(
     scene: &Scene,
     (sensor, detector): (&Sensor, &LineDetector),
     settings: &BoardSettings,
-    progress: impl Fn(u64) + Sync,
+    progress: &(dyn Fn(u64) + Sync),
     cancel: &AtomicBool,
 ) -> Result<Calibration, ScanError> {
     BoardPlan::new(scene, settings)?.calibrate(sensor, detector, progress, cancel)
@@ -144,7 +144,7 @@ fn electrons(
     scene: &Scene,
     sensor: &Sensor,
     seed: u64,
-    (progress, cancel): (&(impl Fn(u64) + Sync), &AtomicBool),
+    (progress, cancel): (&(dyn Fn(u64) + Sync), &AtomicBool),
 ) -> Result<Grid<f32>, ScanError> {
     let options = RenderOptions {
         seed,

@@ -70,7 +70,7 @@ fn rendered_corners_are_found_where_they_are_projected() {
     let cancel = AtomicBool::new(false);
     let mut sum = 0.0;
     for (i, pose) in plan.poses().iter().enumerate() {
-        let [lit, _] = plan.frames(i, &sensor(), |_| (), &cancel).unwrap();
+        let [lit, _] = plan.frames(i, &sensor(), &|_| (), &cancel).unwrap();
         let found = find_corners(&lit.grey_values(), plan.board()).unwrap();
         for (found, corner) in found.iter().zip(plan.board().points()) {
             let expected = camera.project(pose.point(corner)).unwrap();
@@ -101,7 +101,7 @@ fn rendered_boards_give_the_scene_back() {
     .unwrap();
     let cancel = AtomicBool::new(false);
     let calibration = plan
-        .calibrate(&sensor(), &detector, |_| (), &cancel)
+        .calibrate(&sensor(), &detector, &|_| (), &cancel)
         .unwrap();
     let exact = Triangulator::new(scene.camera, plane_of(&scene.lasers[0]).unwrap());
     for pixel in [[120.0, 90.0], [60.0, 60.0], [180.0, 120.0]].map(DVec2::from) {

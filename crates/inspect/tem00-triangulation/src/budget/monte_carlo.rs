@@ -5,8 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
-use rayon::prelude::*;
-use tem00_numerics::{Grid, cast::to_usize};
+use tem00_numerics::{Grid, cast::to_usize, parallel};
 use tem00_uncertainty::CoverageProbability;
 
 use self::noise::Frames;
@@ -141,7 +140,7 @@ const SIMULATED: usize = UncertaintySource::ALL.len() - 1;
 pub fn simulate(
     setup: &Setup,
     options: SimulationOptions,
-    progress: impl Fn(u64) + Sync,
+    progress: &(dyn Fn(u64) + Sync),
     cancel: &AtomicBool,
 ) -> Result<Simulation, TriangulationError> {
     let simulator = Simulator::new(setup, setup.line())?;
@@ -156,7 +155,7 @@ pub fn simulate(
 pub(crate) fn in_parallel<T: Send>(
     options: SimulationOptions,
     trial: impl Fn(u32) -> Result<T, TriangulationError> + Sync,
-    progress: impl Fn(u64) + Sync,
+    progress: &(dyn Fn(u64) + Sync),
     cancel: &AtomicBool,
 ) -> Result<Vec<T>, TriangulationError> {
     let count = f64::from(options.trials);
@@ -170,7 +169,9 @@ pub(crate) fn in_parallel<T: Send>(
         progress(done.fetch_add(1, Ordering::Relaxed) + 1);
         result
     };
-    (0..options.trials).into_par_iter().map(trial).collect()
+    let numbers: Vec<u32> = (0..options.trials).collect();
+    let results = parallel::map(numbers.len(), |index| trial(numbers[index]));
+    results.into_iter().collect()
 }
 
 const NO_LINE: TriangulationError = TriangulationError::TooFew {

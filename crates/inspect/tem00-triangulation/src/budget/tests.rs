@@ -271,7 +271,7 @@ fn a_line_that_is_not_found_has_no_budget() {
         d.detector.min_peak = 10.0;
     });
     assert_eq!(dark.light_level(), LightLevel::Dark);
-    let trials = simulate(&dark, SimulationOptions::default(), |_| (), &false.into());
+    let trials = simulate(&dark, SimulationOptions::default(), &|_| (), &false.into());
     let errors = [
         Budget::new(&dark).unwrap_err(),
         trials.unwrap_err(),

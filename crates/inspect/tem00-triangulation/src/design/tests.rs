@@ -1,6 +1,5 @@
-use rayon::ThreadPoolBuilder;
 use tem00_statistics::laws::speckle_length;
-use tem00_testkit::{assert_absolute, assert_relative};
+use tem00_testkit::{assert_absolute, assert_relative, on_threads};
 
 use super::*;
 use crate::{
@@ -36,7 +35,7 @@ fn question(sweeps: Vec<Sweep>, constraints: &[(DesignFigure, f64)]) -> DesignQu
 
 fn outcome(question: DesignQuestion) -> DesignOutcome {
     let search = DesignSearch::new(question).unwrap();
-    search.run(|_| (), &AtomicBool::new(false)).unwrap()
+    search.run(&|_| (), &AtomicBool::new(false)).unwrap()
 }
 
 /// Returns the search over three f-numbers, with constraints.
@@ -320,12 +319,9 @@ fn set_ups_that_cannot_be_are_told_and_left_out() {
 fn the_outcome_is_the_same_for_any_number_of_threads_that_are_not_cancelled() {
     let asked = pupils(&[(DesignFigure::DepthOfField, 0.06)]);
     let search = DesignSearch::new(asked.clone()).unwrap();
-    let ended = search.run(|_| (), &AtomicBool::new(true));
+    let ended = search.run(&|_| (), &AtomicBool::new(true));
     assert_eq!(ended, Err(TriangulationError::Cancelled));
-    let with = |threads: usize| {
-        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.unwrap().install(|| outcome(asked.clone()))
-    };
+    let with = |threads| on_threads(threads, || outcome(asked.clone()));
     assert_eq!(with(1), with(7));
 }
 

@@ -3,7 +3,7 @@ use tem00_statistics::{
     laws::{PixelAutocovariance, PixelColumn},
     rectangular_pixel_contrast,
 };
-use tem00_testkit::{assert_absolute, assert_relative, refuses};
+use tem00_testkit::{assert_absolute, assert_relative, on_threads, refuses};
 
 use super::*;
 use crate::SetupDescription;
@@ -147,11 +147,7 @@ fn pixels_of_a_column_go_together_as_their_autocovariance_says() {
 #[test]
 fn a_seed_gives_the_same_bits_for_any_number_of_threads() {
     let lines = LineImage::new(DATA).unwrap();
-    let image = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.unwrap()
-            .install(|| lines.speckled(3, |_| 24.3).unwrap())
-    };
+    let image = |threads| on_threads(threads, || lines.speckled(3, |_| 24.3).unwrap());
     assert_eq!(image(1), image(3), "one thread and three");
     let other = lines.speckled(4, |_| 24.3).unwrap();
     assert_ne!(image(1), other, "another seed");

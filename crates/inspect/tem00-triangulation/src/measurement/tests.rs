@@ -1,3 +1,4 @@
+use tem00_testkit::on_threads;
 use tem00_uncertainty::PropagationOptions;
 
 use super::*;
@@ -143,9 +144,8 @@ fn a_virtual_experiment_agrees_with_the_propagation_of_distributions() {
         seed: 2,
     };
     let run = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        let run = || measurement.virtual_experiment(options, |_| (), &false.into());
-        pool.build().unwrap().install(run).unwrap()
+        let run = || measurement.virtual_experiment(options, &|_| (), &false.into());
+        on_threads(threads, run).unwrap()
     };
     let found = run(2);
     let error = found.error().unwrap();
@@ -191,7 +191,7 @@ fn an_input_whose_tail_is_not_possible_is_named() {
                 .decomposition(DecompositionOptions::default())
                 .map(drop),
             measurement
-                .virtual_experiment(options, |_| (), &false.into())
+                .virtual_experiment(options, &|_| (), &false.into())
                 .map(drop),
         ];
         let start = format!(
@@ -247,6 +247,6 @@ fn impossible_measurements_are_refused() {
 #[test]
 fn trials_can_be_cancelled() {
     let found =
-        measurement(&[]).virtual_experiment(SimulationOptions::default(), |_| (), &true.into());
+        measurement(&[]).virtual_experiment(SimulationOptions::default(), &|_| (), &true.into());
     assert_eq!(found, Err(TriangulationError::Cancelled));
 }

@@ -72,7 +72,7 @@ impl Measurement {
     pub fn virtual_experiment(
         &self,
         options: SimulationOptions,
-        progress: impl Fn(u64) + Sync,
+        progress: &(dyn Fn(u64) + Sync),
         cancel: &AtomicBool,
     ) -> Result<VirtualExperiment, TriangulationError> {
         let trial = |index| self.trial(options.seed, index);

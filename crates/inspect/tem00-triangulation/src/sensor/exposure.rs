@@ -1,7 +1,6 @@
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rand_distr::{Distribution, Poisson, StandardNormal};
-use rayon::prelude::*;
 use tem00_numerics::{Grid, Refusal};
 
 use super::{Sensor, SensorDescription};
@@ -69,10 +68,7 @@ impl Sensor {
         }
         let (width, height) = (electrons.width(), electrons.height());
         let mut pixels = Grid::filled(width, height, (0, false));
-        let rows = pixels.values_mut().par_chunks_mut(width);
-        rows.zip(electrons.values().par_chunks(width))
-            .enumerate()
-            .for_each(|(y, (pixels, electrons))| self.expose_row(y, electrons, seed, pixels));
+        pixels.for_each_row_mut(|y, pixels| self.expose_row(y, electrons.row(y), seed, pixels));
         Ok(RawFrame {
             values: pixels.map(|&(value, _)| value),
             saturated: pixels.map(|&(_, saturated)| saturated),

@@ -3,7 +3,7 @@ mod noise;
 mod rejected;
 
 use tem00_numerics::Grid;
-use tem00_testkit::{assert_absolute, assert_relative};
+use tem00_testkit::{assert_absolute, assert_relative, on_threads};
 
 use super::*;
 use crate::PhotonTransferPoint;
@@ -86,12 +86,7 @@ fn the_signal_is_the_noise_at_the_threshold() {
 fn the_same_seeds_give_the_same_bits_for_any_number_of_threads() {
     let sensor = typical();
     let electrons = Grid::from_fn(61, 43, |x, y| (3 * x + 5 * y) as f32);
-    let with = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.unwrap()
-            .install(|| sensor.expose(&electrons, 17))
-            .unwrap()
-    };
+    let with = |threads| on_threads(threads, || sensor.expose(&electrons, 17).unwrap());
     let one = with(1);
     assert_eq!(one, with(2), "two threads");
     assert_eq!(one, with(7), "seven threads");

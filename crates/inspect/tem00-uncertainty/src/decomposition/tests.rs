@@ -90,20 +90,3 @@ fn what_has_no_parts_is_refused() {
     let refused = Decomposition::new(&correlated, |x| x[0], options);
     assert_eq!(refused, Err(UncertaintyError::Correlated), "correlated");
 }
-
-#[cfg(feature = "parallel")]
-#[test]
-fn the_same_seed_gives_the_same_bits_for_any_number_of_threads() {
-    let of_threads = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        let decomposed = || {
-            let options = DecompositionOptions::default();
-            Decomposition::new(&inputs(&[1.0, 2.0]), |x| x[0] * x[1] + x[0], options)
-        };
-        pool.build().unwrap().install(decomposed).unwrap()
-    };
-    let single = of_threads(1);
-    for threads in [2, 7] {
-        assert_eq!(of_threads(threads), single, "{threads} threads");
-    }
-}

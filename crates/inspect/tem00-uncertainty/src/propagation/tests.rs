@@ -1,4 +1,4 @@
-use tem00_testkit::{assert_absolute, assert_relative, refuses};
+use tem00_testkit::{assert_absolute, assert_relative, on_threads, refuses};
 
 use super::*;
 use crate::{Decomposition, DecompositionOptions, Distribution, Input};
@@ -205,14 +205,12 @@ fn inputs_that_leave_what_is_possible_are_named() {
     );
 }
 
-#[cfg(feature = "parallel")]
 #[test]
 fn the_same_seed_gives_the_same_bits_for_any_number_of_threads() {
     let of_threads = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        let pool = pool.build().unwrap();
-        pool.install(|| propagated(PropagationOptions::default()))
-            .unwrap()
+        on_threads(threads, || {
+            propagated(PropagationOptions::default()).unwrap()
+        })
     };
     let single = of_threads(1);
     for threads in [2, 7] {

@@ -1,7 +1,7 @@
 use core::f64::consts::SQRT_2;
 
 use statrs::function::erf::erf_inv;
-use tem00_numerics::{Grid, map_pieces};
+use tem00_numerics::{Grid, parallel::map_pieces};
 
 use crate::{StatisticsError, space::second_order::pixels_per_contrast_sample};
 

@@ -1,7 +1,7 @@
 //! Slices of a stack, and their joins to the next slice.
 
 use num_complex::Complex;
-use tem00_numerics::{Grid, cast::to_c64, cast::to_signed};
+use tem00_numerics::{Grid, cast::to_c64, cast::to_signed, parallel};
 
 use crate::{
     PupilField, SlicePath,
@@ -9,7 +9,6 @@ use crate::{
         covariance::{Covariance, Even, Responses, mean_square},
         spline::Variance,
     },
-    stack::workers::map_with_scratch,
 };
 
 /// The interpolation coefficients of one slice, and its join to the next.
@@ -57,7 +56,7 @@ pub(super) fn join_all<C: Send>(
         expected: Variance::expected(field),
     };
     let centre = |index: usize| path.centre(to_signed(index % count), field);
-    let joined = map_with_scratch(coefficients, |index, coefficients, _| {
+    let joined = parallel::map_items_with(coefficients, |(), index, coefficients| {
         let (centre, next) = (centre(index), centre(index + 1));
         let (join, variance) = joiner.join(centre, next);
         let slice = Slice {

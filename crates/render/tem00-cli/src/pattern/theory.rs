@@ -5,7 +5,7 @@ use core::fmt::Display;
 use tem00_numerics::{
     Grid,
     cast::{to_f32, to_usize},
-    map_pieces,
+    parallel::map_pieces,
 };
 use tem00_report::{failure::Failure, interrupt};
 use tem00_speckle::{Phasors, Pupil, PupilField, SpecklePattern};

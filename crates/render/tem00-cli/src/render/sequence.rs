@@ -148,15 +148,15 @@ impl Render<'_> {
         let (scene, options) = (&self.scene, &self.scene.render);
         let frame = match patterns {
             Some(Patterns::Reference(speckle)) => {
-                render_reference(scene, Some(speckle), number, options, advance, flag)
+                render_reference(scene, Some(speckle), number, options, &advance, flag)
             }
             None if self.args.reference => {
-                render_reference(scene, None, number, options, advance, flag)
+                render_reference(scene, None, number, options, &advance, flag)
             }
             Some(Patterns::Engine(model)) => {
-                render_frame(scene, Some(model), number, options, advance, flag)
+                render_frame(scene, Some(model), number, options, &advance, flag)
             }
-            None => render_frame(scene, None, number, options, advance, flag),
+            None => render_frame(scene, None, number, options, &advance, flag),
         };
         frame.map_err(|error| match error {
             RenderError::Cancelled => Failure::Interrupted,

@@ -5,7 +5,7 @@ use tem00_camera::CameraDescription;
 use tem00_geometry::{Intersector, Rectangle, Shape, TriangleMesh};
 use tem00_numerics::Grid;
 use tem00_statistics::{Moments, kolmogorov_smirnov, t_test_mean};
-use tem00_testkit::assert_absolute;
+use tem00_testkit::{assert_absolute, on_threads};
 use tem00_tracer::{
     Crop, LaserDescription, Material, Scene, Surface,
     film::{Film, FilmLayout},
@@ -229,8 +229,7 @@ fn threads_and_the_rest_of_the_image_change_no_bit() {
     let scene = plate();
     let image = trace(&scene, 20_000, 7);
     for threads in [1, 3] {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let again = pool.unwrap().install(|| trace(&scene, 20_000, 7));
+        let again = on_threads(threads, || trace(&scene, 20_000, 7));
         assert_eq!(again, image, "{threads} threads");
     }
     let area = Crop {

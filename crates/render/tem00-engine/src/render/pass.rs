@@ -4,8 +4,8 @@ use core::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use glam::DVec2;
-use rayon::prelude::*;
 use tem00_numerics::Grid;
+use tem00_numerics::parallel;
 use tem00_tracer::{
     Crop, FilterSampler, Frame, RenderError, RenderOptions,
     film::{Film, FilmLayout, PixelSums, Sample},
@@ -27,7 +27,7 @@ const BATCH: usize = 1024;
 const RUN: u32 = 64;
 
 /// Pass over the image, or over a part of it.
-pub(super) struct PathPass<'a, P> {
+pub(super) struct PathPass<'a> {
     pub integrator: &'a Integrator<'a>,
     pub options: &'a RenderOptions,
     /// The possible sample counts of a pixel.
@@ -37,7 +37,7 @@ pub(super) struct PathPass<'a, P> {
     pub area: Crop,
     /// True if light that is followed from the lasers will be added.
     pub light_traced: bool,
-    pub progress: &'a P,
+    pub progress: &'a (dyn Fn(u64) + Sync),
     pub cancel: &'a AtomicBool,
 }
 
@@ -48,7 +48,7 @@ struct Pixel {
     sums: PixelSums,
 }
 
-impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
+impl<'a> PathPass<'a> {
     /// Renders all layers.
     pub(super) fn render(&self) -> Result<Frame, RenderError> {
         let wavelengths: Vec<f64> = self.integrator.laser_wavelengths().collect();
@@ -108,8 +108,7 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
         level: impl Fn([usize; 2]) -> Option<u8> + Sync,
         done: impl Fn(usize, &[Pixel], u64) + Sync,
     ) -> Result<(), RenderError> {
-        let strips = (0..self.strips()).into_par_iter();
-        strips.try_for_each_init(Batch::default, |batch, strip| {
+        let strips = parallel::map_with(self.strips(), |batch: &mut Batch<'a>, strip| {
             let mut pixels = self.strip(strip);
             batch.clear();
             for slot in 0..pixels.len() {
@@ -132,7 +131,8 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
             self.trace(batch, &mut pixels)?;
             done(strip, &pixels, batch.take_ray_count());
             Ok(())
-        })
+        });
+        strips.into_iter().collect()
     }
 
     /// Returns the number of samples of a pixel.

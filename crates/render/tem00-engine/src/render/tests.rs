@@ -19,7 +19,7 @@ fn the_error_of_the_power_is_its_scatter_from_seed_to_seed() {
             seed,
             ..scene.render
         };
-        let frame = render_frame(&scene, None, 0, &options, |_| (), &AtomicBool::new(false));
+        let frame = render_frame(&scene, None, 0, &options, &|_| (), &AtomicBool::new(false));
         frame.unwrap().lasers.remove(0)
     };
     let layers: Vec<_> = (0..2000).map(render).collect();

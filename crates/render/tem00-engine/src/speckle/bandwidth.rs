@@ -3,8 +3,8 @@
 use core::iter;
 
 use glam::DVec2;
-use rayon::prelude::*;
 use tem00_geometry::Intersector;
+use tem00_numerics::parallel;
 use tem00_shading::SurfaceLight;
 use tem00_tracer::{Laser, Scene, TracerError};
 
@@ -30,19 +30,16 @@ pub(super) fn laser_lights(
         }
         let change = Change::new(scene, frame);
         let points = points_seen(scene, &change, frame)?;
-        lights
-            .par_iter_mut()
-            .enumerate()
-            .for_each(|(laser, lights)| {
-                let law = change.spectral_law(laser, &laser_groups.geometries[laser]);
-                for (surface, light) in lights.iter_mut().enumerate() {
-                    let points = points.iter().filter(|point| point.surface == surface);
-                    let relief = scene.surfaces[surface].relief;
-                    *light = light
-                        .take()
-                        .or_else(|| law.light(points.map(SpecklePoint::seen), relief));
-                }
-            });
+        parallel::for_each_chunk(&mut lights, 1, |laser, lights| {
+            let law = change.spectral_law(laser, &laser_groups.geometries[laser]);
+            for (surface, light) in lights[0].iter_mut().enumerate() {
+                let points = points.iter().filter(|point| point.surface == surface);
+                let relief = scene.surfaces[surface].relief;
+                *light = light
+                    .take()
+                    .or_else(|| law.light(points.map(SpecklePoint::seen), relief));
+            }
+        });
     }
     let known = |light: Option<SurfaceLight>| light.unwrap_or_else(SurfaceLight::single);
     let lights = lights.into_iter();

@@ -4,11 +4,11 @@ mod sample;
 use std::collections::BTreeMap;
 
 use glam::DVec2;
-use rayon::prelude::*;
 use tem00_camera::Camera;
 use tem00_decorrelation::ImagingGeometry;
 use tem00_geometry::Intersector;
 use tem00_numerics::cast::to_i64;
+use tem00_numerics::parallel;
 use tem00_shading::Perspective;
 use tem00_speckle::StackPlan;
 use tem00_tracer::{Scene, TracerError};
@@ -165,27 +165,25 @@ pub(super) fn prescan(
         });
     }
     let side = rays_per_side(scene.frames);
-    let mut samples = (0..scene.frames)
-        .into_par_iter()
-        .map(|frame| {
-            let change = Change::new(scene, frame);
-            let intersector = Intersector::build(&scene.shapes_at(frame))?;
-            let keeps = frame % scene.frames.div_ceil(KEPT_FRAMES) == 0;
-            let stride = if keeps { side / KEPT_PER_SIDE } else { side };
-            let mut samples = frame_samples(laser_groups, &intersector, &change, [side, stride]);
-            if let Some(map) = survey(frame, &intersector, &change) {
-                add_multiple_light(&mut samples, laser_groups, &map, &change);
-            }
-            laser_groups.find_reference_points(&mut samples, &change);
-            Ok(samples)
-        })
-        .collect::<Result<Vec<_>, TracerError>>()?;
+    let frames: Vec<u32> = (0..scene.frames).collect();
+    let samples = parallel::map(frames.len(), |index| {
+        let frame = frames[index];
+        let change = Change::new(scene, frame);
+        let intersector = Intersector::build(&scene.shapes_at(frame))?;
+        let keeps = frame.is_multiple_of(scene.frames.div_ceil(KEPT_FRAMES));
+        let stride = if keeps { side / KEPT_PER_SIDE } else { side };
+        let mut samples = frame_samples(laser_groups, &intersector, &change, [side, stride]);
+        if let Some(map) = survey(frame, &intersector, &change) {
+            add_multiple_light(&mut samples, laser_groups, &map, &change);
+        }
+        laser_groups.find_reference_points(&mut samples, &change);
+        Ok(samples)
+    });
+    let samples: Vec<_> = samples.into_iter().collect::<Result<_, TracerError>>()?;
     let seen = laser_groups.seen_points(&samples);
-    let needs: Vec<_> = (0..scene.frames)
-        .into_par_iter()
-        .zip(&mut samples)
-        .map(|(frame, samples)| laser_groups.needs(samples, &seen, &Change::new(scene, frame)))
-        .collect();
+    let needs = parallel::map_items_with(samples, |(), index, mut samples| {
+        laser_groups.needs(&mut samples, &seen, &Change::new(scene, frames[index]))
+    });
     for (laser, prescans) in prescans.iter_mut().enumerate() {
         for (group, prescan) in prescans.iter_mut().enumerate() {
             let SeenPoints { farthest, all } = &seen[laser][group];

@@ -3,17 +3,13 @@ use super::{
     path::{PathPoint, SurveyedPath},
 };
 use crate::{light_tracer::LightGroup, sampler::DrawKey, vertex::Vertex};
-use rayon::prelude::*;
+use tem00_numerics::parallel;
 
 impl<'a> Survey<'a> {
     /// Follows light from the lasers, and returns the rough surfaces that each path meets.
     pub(super) fn path_points(&self) -> PathPoints<'a> {
-        let groups = |laser: usize| {
-            let groups = (0..GROUPS as u64).into_par_iter();
-            groups
-                .map(|group| self.path_points_of(laser, group))
-                .collect()
-        };
+        let groups =
+            |laser| parallel::map(GROUPS, |group| self.path_points_of(laser, group as u64));
         (0..self.scene.lasers.len()).map(groups).collect()
     }
 

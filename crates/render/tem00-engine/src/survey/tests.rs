@@ -2,6 +2,7 @@
 //! wall summed.
 
 use core::sync::atomic::AtomicBool;
+use tem00_testkit::on_threads;
 
 use glam::DVec3;
 use tem00_coherence::{LineShape, SpectralLine};
@@ -54,16 +55,13 @@ fn render(scene: &Scene, frame: u32, seed: u64) -> Frame {
         ..scene.render
     };
     let go_on = AtomicBool::new(false);
-    render_frame(scene, Some(&model), frame, &options, |_| (), &go_on).unwrap()
+    render_frame(scene, Some(&model), frame, &options, &|_| (), &go_on).unwrap()
 }
 
 #[test]
 fn frames_of_a_survey_have_the_same_bits_for_any_number_of_threads() {
     let scene = corner(gaussian(0.1e-9), 20e-3);
-    let render_on = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        pool.build().unwrap().install(|| render(&scene, 0, 3))
-    };
+    let render_on = |threads| on_threads(threads, || render(&scene, 0, 3));
     assert_eq!(render_on(1), render_on(3), "one thread and three");
 }
 

@@ -5,7 +5,7 @@ use obvhs::{
     bvh2::{Bvh2, reinsertion::ReinsertionOptimizer},
     ploc::PlocBuilder,
 };
-use rayon::prelude::*;
+use tem00_numerics::parallel;
 use tem00_numerics::seed::scattered;
 
 use super::{Child, Hierarchy, Node, PADDING, WIDTH};
@@ -65,10 +65,9 @@ impl Hierarchy {
             centre: low + half,
             radius: longest * (half / longest).length(),
         };
-        let boxes: Vec<Aabb> = (0..count)
-            .into_par_iter()
-            .map(|index| hierarchy.padded(corners(index), index as u64))
-            .collect();
+        let boxes = parallel::map(count, |index| {
+            hierarchy.padded(corners(index), index as u64)
+        });
         let mut things: Vec<u32> = (0_u32..).take(count).collect();
         let tree = Tree::build(&mut things, &boxes, capacity);
         hierarchy.nodes = tree.nodes;
@@ -120,12 +119,10 @@ fn halves<'a>(things: &'a mut [u32], boxes: &[Aabb], times: u32) -> Vec<&'a mut 
     let middle = things.len() / 2;
     things.select_nth_unstable_by(middle, |&a, &b| centre(a).total_cmp(&centre(b)));
     let (below, above) = things.split_at_mut(middle);
-    let (mut below, above) = rayon::join(
-        || halves(below, boxes, times - 1),
-        || halves(above, boxes, times - 1),
-    );
-    below.extend(above);
-    below
+    let parts = parallel::map_items_with(vec![below, above], |(), _, part| {
+        halves(part, boxes, times - 1)
+    });
+    parts.into_iter().flatten().collect()
 }
 
 /// A box, and the nodes and leaves below it; the first node is the root.
@@ -147,10 +144,8 @@ impl Tree {
         } else {
             vec![large, small]
         };
-        let trees: Vec<Self> = parts
-            .into_par_iter()
-            .map(|part| Self::build(part, boxes, capacity))
-            .collect();
+        let trees =
+            parallel::map_items_with(parts, |(), _, part| Self::build(part, boxes, capacity));
         Self::join(&trees)
     }
 

@@ -1,6 +1,6 @@
 use fearless_simd::{Simd, SimdBase, SimdFloat, f32x8, f32x16};
 use glam::DVec3;
-use rayon::prelude::*;
+use tem00_numerics::parallel;
 
 use super::{
     Hierarchy, LocalRay, WIDTH,
@@ -34,10 +34,9 @@ impl MeshHierarchy {
             (a.min(b).min(c), a.max(b).max(c))
         };
         let (boxes, leaves) = Hierarchy::build(count, around, 8);
-        let blocks = (0..leaves.len())
-            .into_par_iter()
-            .map(|leaf| Block::new(&corners, &boxes, leaves.things(leaf)))
-            .collect();
+        let blocks = parallel::map(leaves.len(), |leaf| {
+            Block::new(&corners, &boxes, leaves.things(leaf))
+        });
         Self { boxes, blocks }
     }
 

@@ -3,8 +3,8 @@
 use std::io;
 
 use flate2::{Compress, Compression, FlushCompress};
-use rayon::prelude::*;
 use simd_adler32::Adler32;
+use tem00_numerics::parallel;
 
 /// The number of bytes of pixels in a piece. A piece refers to nothing before it, which makes a file
 /// longer by 0.01 %.
@@ -26,17 +26,16 @@ pub(super) fn compress<E: From<io::Error>>(
     // The header of zlib: a window of 32 KiB, the usual effort.
     let mut start = vec![0x78, 0x9c];
     // In batches, which keep all threads busy and need little memory.
-    for together in pieces.chunks(4 * rayon::current_num_threads()) {
-        let compressed: Vec<_> = together
-            .par_iter()
-            .map(|&(index, rows)| {
-                let start = index * count * row;
-                let above = start.checked_sub(row).map(|above| &data[above..start]);
-                let filtered = filtered(rows, above, row, pixel);
-                deflated(&filtered, index + 1 == pieces.len()).map(|bytes| (filtered, bytes))
-            })
-            .collect::<Result<_, _>>()?;
-        for (filtered, bytes) in compressed {
+    for together in pieces.chunks(4 * parallel::thread_count()) {
+        let compressed = parallel::map(together.len(), |piece| {
+            let (index, rows) = together[piece];
+            let start = index * count * row;
+            let above = start.checked_sub(row).map(|above| &data[above..start]);
+            let filtered = filtered(rows, above, row, pixel);
+            deflated(&filtered, index + 1 == pieces.len()).map(|bytes| (filtered, bytes))
+        });
+        for piece in compressed {
+            let (filtered, bytes) = piece?;
             check.write(&filtered);
             start.extend(bytes);
             write(&start)?;

@@ -4,16 +4,16 @@
 use core::sync::atomic::{AtomicBool, Ordering};
 
 use glam::{DVec2, DVec3};
-use rayon::prelude::*;
 use tem00_camera::Ray;
 use tem00_geometry::Hit;
 use tem00_numerics::cast::{to_f32, to_usize};
+use tem00_numerics::parallel;
 
 use super::{CERTAIN_SURFACES, Random, Reference};
 use crate::{Crop, Frame, LocalFrame, Material, RenderError};
 
 /// The number of independent groups of paths, whose scatter gives the variance.
-const GROUPS: u64 = 64;
+const GROUPS: usize = 64;
 
 /// Contribution of light paths to one pixel, or to the camera as a whole.
 struct Splat {
@@ -56,33 +56,32 @@ impl Reference<'_> {
         &self,
         area: Crop,
         frame: &mut Frame,
-        progress: &(impl Fn(u64) + Sync),
+        progress: &(dyn Fn(u64) + Sync),
         cancel: &AtomicBool,
     ) -> Result<(), RenderError> {
         let pixels = (self.camera.width() * self.camera.height()) as u64;
-        let per_group = (pixels * u64::from(self.options.samples_per_pixel)).div_ceil(GROUPS);
+        let per_group =
+            (pixels * u64::from(self.options.samples_per_pixel)).div_ceil(GROUPS as u64);
         for (laser, layers) in frame.lasers.iter_mut().enumerate() {
-            let groups: Vec<_> = (0..GROUPS)
-                .into_par_iter()
-                .map(|group| {
-                    if cancel.load(Ordering::Relaxed) {
-                        return Err(RenderError::Cancelled);
-                    }
-                    let indices = [
-                        u64::from(self.frame),
-                        u64::MAX,
-                        laser as u64 * GROUPS + group,
-                    ];
-                    let mut random = Random::new(self.options.seed, indices);
-                    let mut splats = Vec::new();
-                    for _ in 0..per_group {
-                        self.follow(laser, area, &mut random, &mut splats);
-                    }
-                    progress(per_group);
-                    Ok(splats)
-                })
-                .collect::<Result<_, _>>()?;
-            let paths = (GROUPS * per_group) as f64;
+            let groups = parallel::map(GROUPS, |group| {
+                if cancel.load(Ordering::Relaxed) {
+                    return Err(RenderError::Cancelled);
+                }
+                let indices = [
+                    u64::from(self.frame),
+                    u64::MAX,
+                    (laser * GROUPS + group) as u64,
+                ];
+                let mut random = Random::new(self.options.seed, indices);
+                let mut splats = Vec::new();
+                for _ in 0..per_group {
+                    self.follow(laser, area, &mut random, &mut splats);
+                }
+                progress(per_group);
+                Ok(splats)
+            });
+            let groups: Vec<_> = groups.into_iter().collect::<Result<_, _>>()?;
+            let paths = (GROUPS as u64 * per_group) as f64;
             let mut sums = vec![Sums::default(); area.width * area.height];
             let mut power = [0.0; 2];
             for splats in &groups {

@@ -1,10 +1,11 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use tem00_testkit::on_threads;
 
 use super::*;
 
 fn simulated(setup: &Setup, trials: u32) -> Simulation {
     let options = SimulationOptions { trials, seed: 7 };
-    simulate(setup, options, |_| (), &AtomicBool::new(false)).unwrap()
+    simulate(setup, options, &|_| (), &AtomicBool::new(false)).unwrap()
 }
 
 #[test]
@@ -105,10 +106,7 @@ fn an_expanded_uncertainty_by_trials_holds_as_much_as_it_says() {
 #[test]
 fn trials_give_the_same_bits_for_any_number_of_threads() {
     let setup = setup_of(|d| (d.average.frames, d.average.independent_speckle) = (2, true));
-    let on = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.unwrap().install(|| simulated(&setup, 10))
-    };
+    let on = |threads| on_threads(threads, || simulated(&setup, 10));
     assert_eq!(on(1), on(3), "one thread and three");
 }
 
@@ -121,7 +119,7 @@ fn trials_report_progress_and_can_be_cancelled() {
             max.fetch_max(done, Ordering::Relaxed);
         };
         let options = SimulationOptions { trials, seed: 1 };
-        simulate(&setup, options, progress, &AtomicBool::new(cancelled))
+        simulate(&setup, options, &progress, &AtomicBool::new(cancelled))
     };
     run(10, false).unwrap();
     assert_eq!(max.load(Ordering::Relaxed), 10, "all trials are reported");

@@ -1,4 +1,5 @@
 use tem00_numerics::cast::to_usize;
+use tem00_testkit::on_threads;
 
 use super::*;
 
@@ -195,10 +196,7 @@ fn lines_from_top_to_bottom_are_those_of_the_turned_image() {
     let turned = Grid::from_fn(140, 90, |x, y| image[(y, x)]);
     for method in methods() {
         let detector = finder(method, 2);
-        let with = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-            pool.build().unwrap().install(|| detector.detect(&image))
-        };
+        let with = |threads| on_threads(threads, || detector.detect(&image));
         let one = with(1);
         assert_eq!(one, detector.detect_rows(&turned), "{method}");
         assert_eq!(

@@ -53,21 +53,6 @@ fn hierarchy_of_many_triangles_and_brute_force_agree() {
 }
 
 #[test]
-fn hierarchy_is_the_same_for_any_number_of_threads() {
-    let mesh = ball_between_plates();
-    let build = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        let corners = |triangle| mesh.corners(triangle);
-        let build = || MeshHierarchy::build(mesh.triangles().len(), corners);
-        pool.build().unwrap().install(build)
-    };
-    let alone = build(1);
-    for threads in [2, 3] {
-        assert!(build(threads) == alone, "{threads} threads");
-    }
-}
-
-#[test]
 fn a_nanometre_inside_an_edge_is_found_from_anywhere() {
     // Boxes end at the edges, and single precision moves them and the rays by up to 1e−7 of
     // the scene, by more for rays that start far away.

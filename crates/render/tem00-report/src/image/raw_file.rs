@@ -20,9 +20,11 @@ mod tiff_pixels;
 
 use std::{
     fs::File,
-    io::{BufRead, BufWriter, Seek},
+    io::{BufRead, BufWriter, Seek, SeekFrom},
     path::Path,
 };
+
+use tem00_numerics::check_memory;
 
 use self::curve::StoredCurve;
 use self::frame::{BIT_DEPTH, stated_bit_depth};
@@ -62,16 +64,22 @@ pub(super) fn read_samples(path: &Path, format: RawFormat) -> Result<Samples, Im
 
 /// Decodes a file.
 pub(super) fn decode(
-    reader: impl BufRead + Seek,
+    mut reader: impl BufRead + Seek,
     format: RawFormat,
 ) -> Result<Samples, ImageError> {
-    match format {
-        RawFormat::Png => png_frame::read(reader),
-        RawFormat::Tiff => tiff_frame::read(reader),
-        RawFormat::Jpeg => jpeg_frame::read(reader),
-        RawFormat::Bmp => bmp_frame::read(reader),
-        RawFormat::Pnm => pnm_frame::read(reader),
-    }
+    let read = match format {
+        RawFormat::Png => return png_frame::read(reader),
+        RawFormat::Tiff => tiff_frame::read,
+        RawFormat::Jpeg => jpeg_frame::read,
+        RawFormat::Bmp => bmp_frame::read,
+        RawFormat::Pnm => pnm_frame::read,
+    };
+    let length = reader.seek(SeekFrom::End(0))?;
+    reader.rewind()?;
+    check_memory(length)?;
+    let mut file = Vec::new();
+    reader.read_to_end(&mut file)?;
+    read(file)
 }
 
 /// Writes a frame as PNG or TIFF, as the name says. Each pair of `text` becomes a text entry.

@@ -1,7 +1,5 @@
 //! Windows bitmaps as cameras write them: not compressed.
 
-use std::io::Read;
-
 use super::{
     BYTES_PER_PIXEL, Components, ImageError, Samples, check_length, check_room, checked_area,
 };
@@ -14,9 +12,7 @@ const FILE_HEADER: usize = 14;
 const MASKS_OF_16_BITS: [u32; 3] = [0x7c00, 0x03e0, 0x001f];
 const MASKS_OF_BYTES: [u32; 3] = [0x00ff_0000, 0xff00, 0xff];
 
-pub(super) fn read(mut reader: impl Read) -> Result<Samples, ImageError> {
-    let mut file = Vec::new();
-    reader.read_to_end(&mut file)?;
+pub(super) fn read(file: Vec<u8>) -> Result<Samples, ImageError> {
     let word = |at: usize| {
         let bytes = file.get(at..at + 4).and_then(|bytes| bytes.try_into().ok());
         bytes.map(u32::from_le_bytes).ok_or(ImageError::Bmp)

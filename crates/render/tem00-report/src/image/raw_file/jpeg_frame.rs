@@ -1,5 +1,3 @@
-use std::io::Read;
-
 use zune_core::{bytestream::ZCursor, colorspace::ColorSpace, options::DecoderOptions};
 use zune_jpeg::{JpegDecoder, errors::DecodeErrors};
 
@@ -26,9 +24,7 @@ const ONES: [u8; 64] = {
     ones
 };
 
-pub(super) fn read(mut reader: impl Read) -> Result<Samples, ImageError> {
-    let mut file = Vec::new();
-    reader.read_to_end(&mut file)?;
+pub(super) fn read(mut file: Vec<u8>) -> Result<Samples, ImageError> {
     let end = end_of_image(&file).ok_or(ImageError::CutJpeg)?;
     let bytes = file.len() as u64;
     // The decoder fills missing data with grey: here it meets data that cannot be.

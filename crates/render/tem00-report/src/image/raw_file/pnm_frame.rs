@@ -1,14 +1,10 @@
 //! Portable grey and pixel maps: the formats P2, P3, P5 and P6 of Netpbm.
 
-use std::io::Read;
-
 use super::{
     BYTES_PER_PIXEL, Components, ImageError, Samples, check_length, check_room, checked_area,
 };
 
-pub(super) fn read(mut reader: impl Read) -> Result<Samples, ImageError> {
-    let mut file = Vec::new();
-    reader.read_to_end(&mut file)?;
+pub(super) fn read(file: Vec<u8>) -> Result<Samples, ImageError> {
     let (components, is_binary) = match file.get(..2) {
         Some(b"P2") => (Components::Grey, false),
         Some(b"P3") => (Components::Rgb, false),

@@ -1,4 +1,4 @@
-use std::io::{Cursor, Read, Seek, Write};
+use std::io::{Cursor, Seek, Write};
 
 use tem00_numerics::{Grid, cast::to_f32};
 use tiff::{
@@ -19,9 +19,7 @@ use super::{
 /// each, to 4096.
 const MAX_EXPANSION: u64 = 4096;
 
-pub(super) fn read(mut reader: impl Read) -> Result<Samples, ImageError> {
-    let mut file = Vec::new();
-    reader.read_to_end(&mut file)?;
+pub(super) fn read(file: Vec<u8>) -> Result<Samples, ImageError> {
     let mut decoder = FileDecoder::new(Cursor::new(&file))?;
     let (width, height) = decoder.dimensions()?;
     let size = [width, height].map(u64::from);

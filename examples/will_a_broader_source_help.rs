@@ -16,8 +16,8 @@ use std::error::Error;
 
 use kuva::prelude::{LinePlot, Plot};
 use tem00::coherence::{
-    CellGeometry, DVec3, LineShape, PolychromaticSpeckle, Refusal, Relief, ResolutionCell, Rows,
-    SourceExtent, SpectralLine,
+    CellGeometry, DVec3, PeakShape, PolychromaticSpeckle, Refusal, Relief, ResolutionCell, Rows,
+    SourceExtent, Spectrum,
 };
 
 const LINEWIDTHS: [f64; 7] = [0.1e-9, 1e-9, 2e-9, 5e-9, 10e-9, 20e-9, 40e-9];
@@ -58,9 +58,9 @@ impl Case {
             correlation_length: 0.0,
         })?
         .with_source_extent(SourceExtent::disc(self.half_angle)?);
-        let line = SpectralLine::new(self.wavelength, self.linewidth, LineShape::Gaussian)?;
+        let line = Spectrum::new(self.wavelength, self.linewidth, PeakShape::Gaussian)?;
         let speckle = PolychromaticSpeckle {
-            line: &line,
+            spectrum: &line,
             cell: &cell,
         };
         Ok(Left {

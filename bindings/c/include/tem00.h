@@ -171,16 +171,16 @@ typedef enum {
     /**
      * A normal distribution: many modes, or a filter.
      */
-    TEM00_LINE_SHAPE_GAUSSIAN = 0,
+    TEM00_PEAK_SHAPE_GAUSSIAN = 0,
     /**
      * A Cauchy distribution, of long wings: a single mode.
      */
-    TEM00_LINE_SHAPE_LORENTZIAN = 1,
+    TEM00_PEAK_SHAPE_LORENTZIAN = 1,
     /**
      * Constant between two ends: a wavelength that is swept during the exposure.
      */
-    TEM00_LINE_SHAPE_RECTANGULAR = 2,
-} tem00_line_shape;
+    TEM00_PEAK_SHAPE_RECTANGULAR = 2,
+} tem00_peak_shape;
 
 /**
  * The light of a laser with a linewidth in one resolution cell of a camera. It never changes: any
@@ -956,7 +956,7 @@ typedef struct {
      */
     double linewidth;
     /**
-     * Shape of each peak: a `tem00_line_shape`.
+     * Shape of each peak: a `tem00_peak_shape`.
      */
     uint32_t shape;
     /**

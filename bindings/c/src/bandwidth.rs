@@ -5,7 +5,7 @@ mod description;
 
 pub use description::*;
 
-use tem00_coherence::{PatternSum, PolychromaticSpeckle, ResolutionCell, Rows, SpectralLine};
+use tem00_coherence::{PatternSum, PolychromaticSpeckle, ResolutionCell, Rows, Spectrum};
 
 use crate::{
     numbers::{check_length, check_variate, read_point},
@@ -28,7 +28,7 @@ use crate::{
 /// wavelength add, `I = sum_j patterns[j] I_j`.
 #[derive(Debug)]
 pub struct Bandwidth {
-    line: SpectralLine,
+    spectrum: Spectrum,
     cell: ResolutionCell,
     contrast: f64,
     patterns: PatternSum,
@@ -74,22 +74,22 @@ pub struct Wave {
 }
 
 impl Bandwidth {
-    fn new(line: SpectralLine, cell: ResolutionCell) -> Self {
+    fn new(spectrum: Spectrum, cell: ResolutionCell) -> Self {
         let speckle = PolychromaticSpeckle {
-            line: &line,
+            spectrum: &spectrum,
             cell: &cell,
         };
         Self {
             contrast: speckle.contrast(),
             patterns: speckle.patterns(|speckle| speckle.contrast().powi(2)),
-            line,
+            spectrum,
             cell,
         }
     }
 
     const fn speckle(&self) -> PolychromaticSpeckle<'_> {
         PolychromaticSpeckle {
-            line: &self.line,
+            spectrum: &self.spectrum,
             cell: &self.cell,
         }
     }
@@ -97,7 +97,7 @@ impl Bandwidth {
     fn info(&self) -> BandwidthInfo {
         BandwidthInfo {
             contrast: self.contrast,
-            coherence_length: self.line.coherence_length(),
+            coherence_length: self.spectrum.coherence_length(),
             tilt: (-self.cell.tilt()).normalize_or_zero().to_array(),
             tilt_wave_number: self.cell.tilt_wave_number(),
             patterns: self.patterns.fractions.as_ptr(),
@@ -108,7 +108,7 @@ impl Bandwidth {
     }
 
     fn wave(&self, uniform: f64) -> Wave {
-        let wave_number = self.line.draw(uniform);
+        let wave_number = self.spectrum.draw(uniform);
         Wave {
             wave_number,
             pupil_shift: wave_number / self.cell.tilt_wave_number(),
@@ -131,9 +131,9 @@ pub unsafe extern "C" fn tem00_bandwidth_create(
     bandwidth: *mut *mut Bandwidth,
 ) -> Status {
     create!(description: borrow => bandwidth: {
-        let line = description.line()?;
-        let cell = description.cell(line.wavelength())?;
-        Ok(Bandwidth::new(line, cell))
+        let spectrum = description.spectrum()?;
+        let cell = description.cell(spectrum.wavelength())?;
+        Ok(Bandwidth::new(spectrum, cell))
     })
 }
 

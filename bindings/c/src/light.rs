@@ -21,7 +21,7 @@ pub use queries::*;
 pub use targets::*;
 
 use tem00_beam::{AngularKnot, Emitter, LineLight, SpotLight, TabulatedLineLight};
-use tem00_coherence::SpectralLine;
+use tem00_coherence::Spectrum;
 use tem00_shading::{BeamShape, DVec3, LaserDescription, ShadingError};
 
 use crate::{pointers, status::Failure};
@@ -86,10 +86,10 @@ fn laser(
     shape: BeamShape,
 ) -> Result<tem00_shading::Laser, Failure> {
     let position = DVec3::from_array(light.origin());
-    let line = SpectralLine::monochromatic(light.wavelength()).map_err(ShadingError::from);
-    let laser = line.and_then(|line| {
+    let spectrum = Spectrum::monochromatic(light.wavelength()).map_err(ShadingError::from);
+    let laser = spectrum.and_then(|spectrum| {
         tem00_shading::Laser::new(LaserDescription {
-            line,
+            spectrum,
             power: light.power(),
             position,
             look_at: position + DVec3::from_array(light.axis()),

@@ -88,7 +88,7 @@ static void broaden(void) {
     const tem00_bandwidth_description diode = {
         .wavelength = 450e-9,
         .linewidth = 20e-9,
-        .shape = TEM00_LINE_SHAPE_GAUSSIAN,
+        .shape = TEM00_PEAK_SHAPE_GAUSSIAN,
         .to_source = {0, 0, 1},
         .to_pupil = {0.5, 0, sqrt(0.75)},
         .normal = {0, 0, 1},

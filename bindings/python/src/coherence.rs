@@ -1,12 +1,12 @@
 //! Bindings of `tem00-coherence`, the module `tem00.coherence`.
 
 mod cell;
-mod line;
 mod mixed;
+mod spectrum;
 
 use pyo3::prelude::*;
 
-pub(crate) use self::line::SpectralLine;
+pub(crate) use self::spectrum::Spectrum;
 
 /// Speckle in light that is not of one wavelength.
 ///
@@ -18,7 +18,7 @@ pub(crate) mod coherence {
     #[pymodule_export]
     use super::{
         cell::ResolutionCell,
-        line::SpectralLine,
         mixed::{cascade_variance, mixed_contrast},
+        spectrum::Spectrum,
     };
 }

@@ -9,7 +9,7 @@ from scipy import integrate
 from numpy.typing import NDArray
 from tem00.coherence import (
     ResolutionCell,
-    SpectralLine,
+    Spectrum,
     cascade_variance,
     mixed_contrast,
 )
@@ -51,7 +51,7 @@ def test_contrast_and_line_noise_are_means_over_pairs_of_wave_numbers(height: fl
 
         return float(2 * integrate.quad(integrand, 0, 8, epsabs=1e-12, limit=200)[0])
 
-    line = SpectralLine(WAVELENGTH, LINEWIDTH)
+    line = Spectrum(WAVELENGTH, LINEWIDTH)
     assert cell(height).contrast(line) ** 2 == pytest.approx(
         mean(lambda s: overlap(s) ** 2), rel=1e-7
     )
@@ -65,7 +65,7 @@ def test_contrast_and_line_noise_are_means_over_pairs_of_wave_numbers(height: fl
 
 
 def test_frames_grains_and_defocus() -> None:
-    line = SpectralLine(WAVELENGTH, LINEWIDTH)
+    line = Spectrum(WAVELENGTH, LINEWIDTH)
     tilted = cell()
     assert tilted.covariance(line, (0, 0)) == pytest.approx(tilted.contrast(line) ** 2)
     assert tilted.covariance(line, (0.3, 0)) > tilted.covariance(line, (0, 0.3))
@@ -76,36 +76,36 @@ def test_frames_grains_and_defocus() -> None:
 
 def test_lines_have_the_coherence_of_their_shapes() -> None:
     unit = WAVELENGTH**2 / LINEWIDTH
-    assert SpectralLine(WAVELENGTH, LINEWIDTH).coherence_length == pytest.approx(
+    assert Spectrum(WAVELENGTH, LINEWIDTH).coherence_length == pytest.approx(
         math.sqrt(2 * math.log(2) / math.pi) * unit
     )
-    assert SpectralLine.lorentzian(WAVELENGTH, LINEWIDTH).coherence_length == pytest.approx(
+    assert Spectrum.lorentzian(WAVELENGTH, LINEWIDTH).coherence_length == pytest.approx(
         unit / math.pi
     )
-    assert SpectralLine.rectangular(WAVELENGTH, LINEWIDTH).coherence_length == pytest.approx(unit)
-    comb = SpectralLine.comb(WAVELENGTH, 1e-9, 3)
+    assert Spectrum.rectangular(WAVELENGTH, LINEWIDTH).coherence_length == pytest.approx(unit)
+    comb = Spectrum.comb(WAVELENGTH, 1e-9, 3)
     again = WAVELENGTH**2 / 0.5e-9
     np.testing.assert_allclose(comb.squared_coherence(np.array([0.0, again])), 1, atol=1e-9)
     assert comb.squared_coherence(again / 3) == pytest.approx(0, abs=1e-9)
-    two = SpectralLine.from_peaks([450e-9, 451e-9], [1.0, 3.0])
+    two = Spectrum.from_peaks([450e-9, 451e-9], [1.0, 3.0])
     assert 450e-9 < two.wavelength < 451e-9
-    assert SpectralLine(WAVELENGTH).coherence_length == math.inf
+    assert Spectrum(WAVELENGTH).coherence_length == math.inf
     assert comb.squared_coherence(1e308) == pytest.approx(1 / 9)
 
 
 @pytest.mark.parametrize(
     ("wrong", "parameter"),
     [
-        (lambda: SpectralLine(0.0), "wavelength"),
-        (lambda: SpectralLine(1e-9, 650e-9), "linewidth"),
-        (lambda: SpectralLine.comb(650e-9, 1e-9, 0), "count"),
-        (lambda: SpectralLine.from_peaks([650e-9], [-1.0]), "powers"),
-        (lambda: SpectralLine.from_peaks([650e-9], [1.0, 2.0]), "powers"),
+        (lambda: Spectrum(0.0), "wavelength"),
+        (lambda: Spectrum(1e-9, 650e-9), "linewidth"),
+        (lambda: Spectrum.comb(650e-9, 1e-9, 0), "count"),
+        (lambda: Spectrum.from_peaks([650e-9], [-1.0]), "powers"),
+        (lambda: Spectrum.from_peaks([650e-9], [1.0, 2.0]), "powers"),
         (lambda: ResolutionCell((0, 0, -1), (0, 0, 1), (0, 0, 1), 0.1, 1e-6), "to_source"),
         (lambda: ResolutionCell((0, 0, 1), (0, 0, 1), (0, 0, 1), 2.0, 1e-6), "sin_aperture"),
         (lambda: cell(rms_height=-1.0), "rms_height"),
         (lambda: cell(defocus=math.inf), "defocus"),
-        (lambda: cell().autocovariance(SpectralLine(650e-9), (1e9, 0)), "lag"),
+        (lambda: cell().autocovariance(Spectrum(650e-9), (1e9, 0)), "lag"),
     ],
 )
 def test_what_cannot_be_is_refused_by_name(wrong: object, parameter: str) -> None:
@@ -117,7 +117,7 @@ def test_what_cannot_be_is_refused_by_name(wrong: object, parameter: str) -> Non
 
 def test_multiple_light_counts_with_what_its_paths_share() -> None:
     """Normally distributed delays, by sums over pairs of random paths."""
-    line = SpectralLine(WAVELENGTH, 0.1e-9)
+    line = Spectrum(WAVELENGTH, 0.1e-9)
     delays = np.random.default_rng(1).normal(0.82e-3, 0.3e-3, 1500)
     within = float(np.mean(line.squared_coherence(delays[:, None] - delays)))
     shared = float(np.mean(line.squared_coherence(delays)))
@@ -142,7 +142,7 @@ def test_a_small_lit_part_makes_speckle_of_speckle() -> None:
 
 @pytest.mark.parametrize("height", [0.0, 0.8e-6])
 def test_light_that_is_drawn_has_the_contrast_of_the_law(height: float) -> None:
-    line, tilted = SpectralLine(WAVELENGTH, LINEWIDTH), cell(height)
+    line, tilted = Spectrum(WAVELENGTH, LINEWIDTH), cell(height)
     fractions, heights = tilted.patterns(line)
     assert fractions.tolist() == [1.0]
     slices = 2 * 48 / 3
@@ -166,7 +166,7 @@ def test_light_that_is_drawn_has_the_contrast_of_the_law(height: float) -> None:
 
 
 def test_the_extent_of_a_source_adds_patterns() -> None:
-    line = SpectralLine(WAVELENGTH)
+    line = Spectrum(WAVELENGTH)
     wide = ResolutionCell(
         [0, 0, 1], [0, 0, 1], [0, 0, 1], 0.025, WAVELENGTH, source_half_angle=0.025
     )

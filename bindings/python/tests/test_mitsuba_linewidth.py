@@ -23,7 +23,7 @@ from test_mitsuba_speckle import (
 )
 
 from tem00 import ParameterError
-from tem00.coherence import ResolutionCell, SpectralLine
+from tem00.coherence import ResolutionCell, Spectrum
 from tem00.mitsuba.linewidth import LineLight, find_lights
 from tem00.mitsuba.look_up import pupil_at
 from tem00.mitsuba.patterns import Pattern, generate
@@ -65,7 +65,7 @@ def test_the_cell_is_that_of_the_scene() -> None:
     expected = ResolutionCell(
         [0.5, 0.0, np.sqrt(0.75)], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0], 1e-3 / 0.3, 650e-9
     )
-    assert found.line == SpectralLine(650e-9, 5e-9)
+    assert found.line == Spectrum(650e-9, 5e-9)
     # The points of the plate lie up to 6 mm from the middle.
     assert found.cell.tilt_wave_number == pytest.approx(expected.tilt_wave_number, rel=0.01)
     assert np.abs(found.axis) == pytest.approx([1.0, 0.0], abs=0.01)
@@ -125,7 +125,7 @@ def test_frames_of_a_motion_along_and_across_the_tilt_are_those_of_the_law() -> 
     ],
 )
 def test_a_line_without_a_width_has_the_pattern_of_one_wavelength(path: Node, u: float) -> None:
-    narrow = light_of({"linewidth": 5e-9})._replace(line=SpectralLine(650e-9, 1e-16))
+    narrow = light_of({"linewidth": 5e-9})._replace(line=Spectrum(650e-9, 1e-16))
     # Four samples to a speckle: with fewer, the splines of the stack miss them.
     (part,) = pattern_of(narrow, pattern_size=512, pattern_diameter=128, **path).parts
     columns, rows = part.stack.size

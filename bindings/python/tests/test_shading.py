@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from tem00 import beam
 from tem00 import decorrelation as dc
 from tem00._typing import FloatArray
-from tem00.coherence import ResolutionCell, SpectralLine
+from tem00.coherence import ResolutionCell, Spectrum
 
 ROOT = Path(__file__).parents[3]
 ORIGIN, TARGET = [0.05, 0.02, 0.4], [0.0, 0.0, 0.0]
@@ -426,7 +426,7 @@ def test_the_example_of_the_guide_finds_the_law() -> None:
 
 
 def test_a_linewidth_lowers_the_contrast_by_the_law_of_a_resolution_cell() -> None:
-    line = SpectralLine(650e-9, 5e-9)
+    line = Spectrum(650e-9, 5e-9)
     laser = tem00.Laser.spot(line, 50e-3, origin=[0, 0, 3], target=TARGET)
     eye = 0.3 * np.array([0.5, 0.0, np.cos(np.radians(30))])
     camera = tem00.Camera(position=eye, resolution=[480, 360])

@@ -5,7 +5,7 @@ use core::f64::consts::PI;
 use glam::{DQuat, DVec3, Vec3};
 use tem00_beam::{FanGeometry, FocusCurve, LineProfile};
 use tem00_camera::{Camera, CameraDescription};
-use tem00_coherence::SpectralLine;
+use tem00_coherence::Spectrum;
 use tem00_decorrelation::{ImagingGeometry, Refusal};
 use tem00_numerics::cast::{to_f32, to_usize};
 use tem00_shading::{BeamShape, Laser, LaserDescription, Pose, ShadingError};
@@ -88,7 +88,7 @@ pub fn laser(values: &Values) -> Result<Laser, ShadingError> {
         profile: LineProfile::Powell { edge: 0.05 },
     };
     Laser::new(LaserDescription {
-        line: SpectralLine::monochromatic(1e-9 * values.wavelength)?,
+        spectrum: Spectrum::monochromatic(1e-9 * values.wavelength)?,
         power: 1e-3 * values.power,
         position: -LASER_DISTANCE * direction,
         look_at: DVec3::ZERO,

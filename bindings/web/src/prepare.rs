@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 use tem00_camera::{Camera, CameraDescription};
-use tem00_coherence::SpectralLine;
+use tem00_coherence::Spectrum;
 use tem00_numerics::cast::to_usize;
 use tem00_shading::{BeamShape, Laser, LaserDescription, PlacedLight, Pose};
 use tem00_speckle::{SpeckleStack, StackOptions, StackPlan};
@@ -57,7 +57,7 @@ impl SpotSpeckle {
         let [origin, target] = [vector("origin", origin)?, vector("target", target)?];
         let [eye, look_at] = [vector("eye", eye)?, vector("look_at", look_at)?];
         let laser = Laser::new(LaserDescription {
-            line: SpectralLine::monochromatic(wavelength)?,
+            spectrum: Spectrum::monochromatic(wavelength)?,
             power,
             position: origin,
             look_at: target,

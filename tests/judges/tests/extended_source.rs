@@ -16,8 +16,7 @@ use core::f64::consts::TAU;
 use rayon::prelude::*;
 use tem00::{
     coherence::{
-        CellGeometry, PolychromaticSpeckle, Relief, ResolutionCell, Rows, SourceExtent,
-        SpectralLine,
+        CellGeometry, PolychromaticSpeckle, Relief, ResolutionCell, Rows, SourceExtent, Spectrum,
     },
     decorrelation::{
         CameraFrame, Configuration, ConfigurationData, DVec2, Illumination as LightOnSurface,
@@ -328,14 +327,14 @@ fn compare(geometry: u64) -> Vec<[[f64; MEASURES.len()]; 2]> {
                 .iter()
                 .map(|(steps, part)| [TAU / (wave_number + steps * step), *part])
                 .collect();
-            let line = SpectralLine::from_peaks(&peaks).expect("a line");
+            let line = Spectrum::from_peaks(&peaks).expect("a line");
             let list: Vec<_> = directions
                 .iter()
                 .map(|(place, share)| (bench.source(*place), *share))
                 .collect();
             let extent = SourceExtent::directions(&list).expect("directions");
             let law = PolychromaticSpeckle {
-                line: &line,
+                spectrum: &line,
                 cell: &cell.clone().with_source_extent(extent),
             };
             let moved = MOVED.map(|samples| samples / SIZE as f64);
@@ -402,11 +401,11 @@ fn directions_displace_the_field_as_the_law_of_motion_says() {
         let phases = rms_height * before.height_phase_change(&after).expect("a change");
         let shared = (-phases * phases).exp() * disc_overlap(moved).powi(2);
 
-        let line = SpectralLine::monochromatic(view.wavelength).expect("a line");
+        let line = Spectrum::monochromatic(view.wavelength).expect("a line");
         let both = [(to_source, 1.0), (other, 1.0)];
         let extent = SourceExtent::directions(&both).expect("directions");
         let speckle = PolychromaticSpeckle {
-            line: &line,
+            spectrum: &line,
             cell: &cell(view, rms_height).with_source_extent(extent),
         };
         let found = 2.0 * speckle.contrast().powi(2) - 1.0;

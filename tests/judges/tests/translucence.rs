@@ -7,7 +7,7 @@ use tem00_testkit::on_threads;
 use tem00::{
     DVec2, DVec3,
     tracer::{Frame, ReferenceSpeckle, Scene, render_reference},
-    translucence::{Bin, LineShape, LineSpread, Material, Medium, SpectralLine, SpreadLine, Walk},
+    translucence::{Bin, LineSpread, Material, Medium, PeakShape, Spectrum, SpreadLine, Walk},
 };
 
 use crate::renders;
@@ -328,7 +328,7 @@ fn shift_contrast_and_albedo_are_those_of_photons_that_were_counted() {
             seen.centroid()
         );
         for (index, linewidth) in [1e-12, 1e-11, 1e-10, 1e-9].into_iter().enumerate() {
-            let line = SpectralLine::new(660e-9, linewidth, LineShape::Gaussian);
+            let line = Spectrum::new(660e-9, linewidth, PeakShape::Gaussian);
             let line = line.expect("a line");
             for (places, expected) in [
                 ([-1.0, 1.0], counted.whole[index]),
@@ -399,7 +399,7 @@ fn detectors_find_the_line_where_they_find_counted_photons() {
         let line = line.expect("a line");
         // A twentieth of the photons that a simulation of one's own has.
         for (index, linewidth) in [1e-12, 1e-11, 1e-10, 1e-9].into_iter().enumerate() {
-            let spectrum = SpectralLine::new(660e-9, linewidth, LineShape::Gaussian);
+            let spectrum = Spectrum::new(660e-9, linewidth, PeakShape::Gaussian);
             let spectrum = spectrum.expect("a spectrum");
             for (end, expected) in [(1.0, counted.whole[index]), (1e-4, counted.near[index])] {
                 let contrast = line.contrast(&spectrum, [-end, end]).expect("paths");
@@ -584,7 +584,7 @@ fn speckle_of_light_from_below_is_that_of_its_paths() {
     let medium = *sharp.surfaces[0].material.below().expect("marble");
     let [incidence, exit] = [0.0, 0.1_f64.atan2(0.28)];
     let line = SpreadLine::new(&medium, incidence, exit).expect("a line");
-    let spectrum = wide.lasers[0].spectral_line();
+    let spectrum = wide.lasers[0].spectrum();
     let expected = line.contrast(spectrum, [-0.3e-3, 0.3e-3]).expect("paths");
     let [first, moved, wide] =
         [(&sharp, 0), (&sharp, 1), (&wide, 0)].map(|(scene, n)| renders(scene, n));

@@ -1,4 +1,4 @@
-use tem00_coherence::{CellGeometry, DVec3, Relief, ResolutionCell, SourceExtent, SpectralLine};
+use tem00_coherence::{CellGeometry, DVec3, Relief, ResolutionCell, SourceExtent, Spectrum};
 
 use crate::{
     numbers::{check_relief, code},
@@ -9,7 +9,7 @@ use crate::{
 /// The shape of a spectral peak.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LineShape {
+pub enum PeakShape {
     /// A normal distribution: many modes, or a filter.
     Gaussian = 0,
     /// A Cauchy distribution, of long wings: a single mode.
@@ -27,7 +27,7 @@ pub struct BandwidthDescription {
     pub wavelength: f64,
     /// Full width of each peak at half maximum, from 0 to a tenth of the wavelength.
     pub linewidth: f64,
-    /// Shape of each peak: a `tem00_line_shape`.
+    /// Shape of each peak: a `tem00_peak_shape`.
     pub shape: u32,
     /// Wavelength and power, in any unit, of each of several peaks.
     pub peaks: *const f64,
@@ -55,17 +55,17 @@ impl BandwidthDescription {
     /// # Safety
     ///
     /// The peaks are null or valid.
-    pub(super) unsafe fn line(&self) -> Result<SpectralLine, Failure> {
-        use tem00_coherence::LineShape::{Gaussian, Lorentzian, Rectangular};
+    pub(super) unsafe fn spectrum(&self) -> Result<Spectrum, Failure> {
+        use tem00_coherence::PeakShape::{Gaussian, Lorentzian, Rectangular};
         let shape = code("shape", self.shape, &[Gaussian, Lorentzian, Rectangular])?;
         if self.peak_count == 0 {
-            return Ok(SpectralLine::new(self.wavelength, self.linewidth, shape)?);
+            return Ok(Spectrum::new(self.wavelength, self.linewidth, shape)?);
         }
         let count = self.peak_count.saturating_mul(2);
         // SAFETY: by the contract of this function.
         let ([peaks], []) = unsafe { columns(count, [("peaks", self.peaks)], []) }?;
         let (peaks, _) = peaks.as_chunks::<2>();
-        Ok(SpectralLine::from_peaks(peaks)?.with_linewidth(self.linewidth, shape)?)
+        Ok(Spectrum::from_peaks(peaks)?.with_linewidth(self.linewidth, shape)?)
     }
 
     pub(super) fn cell(&self, wavelength: f64) -> Result<ResolutionCell, Failure> {

@@ -20,7 +20,7 @@ use crate::testing::{Owned, each_is_refused};
 const DESCRIPTION: BandwidthDescription = BandwidthDescription {
     wavelength: 450e-9,
     linewidth: 20e-9,
-    shape: LineShape::Gaussian as u32,
+    shape: PeakShape::Gaussian as u32,
     peaks: null(),
     peak_count: 0,
     to_source: [0.0, 0.0, 1.0],
@@ -44,13 +44,13 @@ impl Owned<Bandwidth> {
 
 #[test]
 fn answers_are_those_of_the_library() {
-    use tem00_coherence::LineShape as S;
+    use tem00_coherence::PeakShape as S;
     let peaks = [[448e-9, 1.0], [453e-9, 3.0]];
-    let line = |linewidth, shape| SpectralLine::new(450e-9, linewidth, shape);
-    let two = SpectralLine::from_peaks(&peaks);
+    let line = |linewidth, shape| Spectrum::new(450e-9, linewidth, shape);
+    let two = Spectrum::from_peaks(&peaks);
     let two = two.and_then(|line| line.with_linewidth(1e-9, S::Gaussian));
     let tall_heights = BandwidthDescription {
-        shape: LineShape::Lorentzian as u32,
+        shape: PeakShape::Lorentzian as u32,
         to_source: [-0.3, 0.4, 1.0],
         rms_height: 6e-6,
         correlation_length: 5e-6,
@@ -58,7 +58,7 @@ fn answers_are_those_of_the_library() {
     };
     let one_wavelength_of_a_lamp_along_the_normal = BandwidthDescription {
         linewidth: 0.0,
-        shape: LineShape::Rectangular as u32,
+        shape: PeakShape::Rectangular as u32,
         source_half_angle: 0.025,
         to_pupil: [0.0, 0.0, 1.0],
         ..DESCRIPTION
@@ -82,7 +82,7 @@ fn answers_are_those_of_the_library() {
         let (owned, line, moved) = (made(&description), line.unwrap(), [0.3, 0.1]);
         let cell = cell(&description, line.wavelength());
         let speckle = PolychromaticSpeckle {
-            line: &line,
+            spectrum: &line,
             cell: &cell,
         };
         let (handle, info, draw) = (owned.handle, owned.info(), line.draw(0.2));

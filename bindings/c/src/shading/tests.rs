@@ -200,7 +200,7 @@ fn lights() -> [(Owned<Light>, Laser); 4] {
     let placed = |placement: &Placement, power, line_direction, shape| {
         let position = DVec3::from_array(placement.origin);
         let laser = Laser::new(LaserDescription {
-            line: tem00_coherence::SpectralLine::monochromatic(650e-9).unwrap(),
+            spectrum: tem00_coherence::Spectrum::monochromatic(650e-9).unwrap(),
             power,
             position,
             look_at: position - DVec3::Z,

@@ -58,7 +58,7 @@ const STRUCTS: [(&str, usize, &str, usize); 30] = structs![
 const CONSTANTS: [(&str, u32); 7] = [
     ("STATUS_PANIC", Status::Panic as u32),
     ("FOCUS_CURVE_EQUAL_PLANE", FocusCurve::EqualPlane as u32),
-    ("LINE_SHAPE_RECTANGULAR", LineShape::Rectangular as u32),
+    ("PEAK_SHAPE_RECTANGULAR", PeakShape::Rectangular as u32),
     ("LINE_PROFILE_TABULATED", LineProfile::Tabulated as u32),
     ("LIGHT_KIND_TABULATED_LINE", LightKind::TabulatedLine as u32),
     ("SLICE_PATH_STRAIGHT", SlicePath::Straight as u32),

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from tem00._results import SpeckleShift as SpeckleShift
 from tem00.beam import Light, LineProfile, NextEvent
-from tem00.coherence import SpectralLine
+from tem00.coherence import Spectrum
 from tem00.decorrelation import RigidMotion
 from tem00._typing import Counts, FloatArray, Numbers, Values, Vector, Vectors
 
@@ -53,7 +53,7 @@ class Camera:
 class Laser:
     @staticmethod
     def spot(
-        wavelength: float | SpectralLine,
+        wavelength: float | Spectrum,
         waist_radius: Numbers,
         *,
         origin: Vector,
@@ -66,7 +66,7 @@ class Laser:
     ) -> Laser: ...
     @staticmethod
     def line(
-        wavelength: float | SpectralLine,
+        wavelength: float | Spectrum,
         thickness: float,
         fan_angle: float,
         *,

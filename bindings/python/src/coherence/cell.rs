@@ -1,6 +1,6 @@
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
-use tem00_coherence::{self as physics, DVec3, PolychromaticSpeckle, Rows, SpectralLine as Line};
+use tem00_coherence::{self as physics, DVec3, PolychromaticSpeckle, Rows};
 
 use crate::{
     arrays::{Array, Floats},
@@ -32,9 +32,9 @@ class! {
 }
 
 impl ResolutionCell {
-    const fn speckle<'a>(&'a self, line: &'a Line) -> PolychromaticSpeckle<'a> {
+    const fn speckle<'a>(&'a self, spectrum: &'a physics::Spectrum) -> PolychromaticSpeckle<'a> {
         PolychromaticSpeckle {
-            line,
+            spectrum,
             cell: &self.0,
         }
     }
@@ -75,11 +75,11 @@ methods! {
     /// wavelength.
     ///
     /// The tilt lies across the line, whose rows are finer than a speckle, or much taller.
-    #[pyo3(signature = (line, tall_rows=false))]
-    call line_noise_ratio(py; line: Bound<'py, PyAny>, tall_rows: bool) -> f64 = {
-        take!(line: Line);
+    #[pyo3(signature = (spectrum, tall_rows=false))]
+    call line_noise_ratio(py; spectrum: Bound<'py, PyAny>, tall_rows: bool) -> f64 = {
+        take!(spectrum: physics::Spectrum);
         let rows = if tall_rows { Rows::Tall } else { Rows::Thin };
-        Ok(py.detach(|| this.speckle(&line).line_noise_ratio(rows)))
+        Ok(py.detach(|| this.speckle(&spectrum).line_noise_ratio(rows)))
     };
 
     /// Return the patterns of one wavelength that together have the contrast, as two arrays of
@@ -92,10 +92,10 @@ methods! {
     /// heights : (m, 2)
     ///     Heights of the relief in metres whose fields add, each with the root of its fraction of
     ///     the light; none where the patterns are looked up as in one wavelength.
-    call patterns(py; line: Bound<'py, PyAny>) -> (Floats, Array<'py>) = {
-        take!(line: Line);
+    call patterns(py; spectrum: Bound<'py, PyAny>) -> (Floats, Array<'py>) = {
+        take!(spectrum: physics::Spectrum);
         let patterns = py.detach(|| {
-            let speckle = this.speckle(&line);
+            let speckle = this.speckle(&spectrum);
             speckle.patterns(|speckle| speckle.contrast().powi(2))
         });
         let physics::PatternSum { fractions, heights } = patterns;
@@ -104,27 +104,27 @@ methods! {
         Ok((fractions.into(), heights.into_any()))
     };
 
-    /// Return the contrast of the speckle in the light of a line.
-    fn contrast(line: Line) -> f64 = this.speckle(&line).contrast();
+    /// Return the contrast of the speckle in the light of a spectrum.
+    fn contrast(spectrum: physics::Spectrum) -> f64 = this.speckle(&spectrum).contrast();
 
     /// Return the covariance, over the squared mean, of two frames by the displacement of the
     /// pupil, of shape (2,).
-    fn covariance(line: Line, displacement: [f64; 2]) -> f64 =
-        this.speckle(&line).covariance(displacement);
+    fn covariance(spectrum: physics::Spectrum, displacement: [f64; 2]) -> f64 =
+        this.speckle(&spectrum).covariance(displacement);
 
     /// Return the autocovariance, over the squared mean, at a lag of shape (2,), at most 1000
     /// speckles long.
-    try autocovariance(line: Line, lag: [f64; 2]) -> f64 = {
+    try autocovariance(spectrum: physics::Spectrum, lag: [f64; 2]) -> f64 = {
         if lag[0].hypot(lag[1]) > 1e3 {
             let message = format!("lag must be at most 1000 speckles long, got {lag:?}");
             return Err(refused("lag", message));
         }
-        PyResult::Ok(this.speckle(&line).autocovariance(lag))
+        PyResult::Ok(this.speckle(&spectrum).autocovariance(lag))
     };
 
     /// Return the fractions of the light in its coherent modes, float64 of shape (n,), the largest
     /// first.
-    fn modes(line: Line) -> Floats = this.speckle(&line).modes();
+    fn modes(spectrum: physics::Spectrum) -> Floats = this.speckle(&spectrum).modes();
 
     /// Path per length on the object by the tilt of the cell, across the line of sight, of shape
     /// (3,).

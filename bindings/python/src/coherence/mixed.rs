@@ -17,10 +17,10 @@ use crate::error::OrRaise;
 ///     The squared contrast of the polarised single light alone, from 0 to 1.
 /// with_single : float
 ///     What multiple light shares with single light, from 0 to 1: the mean of
-///     ``SpectralLine.squared_coherence`` over the delays of the multiple light, by its energy.
+///     ``Spectrum.squared_coherence`` over the delays of the multiple light, by its energy.
 /// within_multiple : float
 ///     What multiple light shares with itself, from 0 to 1: the mean of
-///     ``SpectralLine.squared_coherence`` over the differences of two delays.
+///     ``Spectrum.squared_coherence`` over the differences of two delays.
 /// polarisation : (float, float)
 ///     Degrees of polarisation of the single and of the multiple light, from 0 to 1.
 #[pyfunction]

@@ -1,5 +1,5 @@
 use pyo3::prelude::*;
-use tem00_coherence::{SourceExtent, SpectralLine as Line};
+use tem00_coherence::SourceExtent;
 use tem00_shading::{self as physics, DVec3, LaserBuilder};
 
 use super::vector;
@@ -7,15 +7,16 @@ use crate::{
     arguments::Take,
     arrays::{Array, Components, Numbers, Vectors},
     beam::{Light, LineProfile, Placed, named},
-    coherence::SpectralLine,
+    coherence::Spectrum,
     error::{IntoPython, OrRaise, refused},
 };
 
 /// A wavelength, or a whole spectrum.
-fn spectrum(wavelength: &Bound<'_, PyAny>) -> PyResult<Line> {
-    match wavelength.cast::<SpectralLine>() {
+fn spectrum(wavelength: &Bound<'_, PyAny>) -> PyResult<tem00_coherence::Spectrum> {
+    match wavelength.cast::<Spectrum>() {
         Ok(line) => Ok(line.get().0.clone()),
-        Err(_) => Line::monochromatic(f64::take(wavelength, "wavelength")?).or_raise(),
+        Err(_) => tem00_coherence::Spectrum::monochromatic(f64::take(wavelength, "wavelength")?)
+            .or_raise(),
     }
 }
 
@@ -40,7 +41,7 @@ methods! {
     ///
     /// Parameters
     /// ----------
-    /// wavelength : float or SpectralLine
+    /// wavelength : float or Spectrum
     ///     Vacuum wavelength, in metres, or the spectrum of the light.
     /// waist_radius : float or array_like, shape (2,)
     ///     Waist radius, in metres: of an elliptic spot that along ``line_direction`` and that
@@ -87,7 +88,7 @@ methods! {
     ///
     /// Parameters
     /// ----------
-    /// wavelength : float or SpectralLine
+    /// wavelength : float or Spectrum
     ///     Vacuum wavelength, in metres, or the spectrum of the light.
     /// thickness : float
     ///     Thickness in focus (1/e², full width), in metres.

@@ -36,7 +36,7 @@ fn laser(setup: &Setup) -> Result<Laser, ScanError> {
     let description = setup.description();
     let data = &description.laser;
     let light = &data.light;
-    let line = light.line().map_err(TriangulationError::from)?;
+    let spectrum = light.spectrum().map_err(TriangulationError::from)?;
     let extent = light.extent().map_err(TriangulationError::from)?;
     let distance = description.camera.distance;
     let position = description.laser_point_at(distance).with_z(distance);
@@ -44,7 +44,7 @@ fn laser(setup: &Setup) -> Result<Laser, ScanError> {
     let focus_distance = position.distance(look_at);
     let half_fan = libm::atan(0.5 * data.line_length / distance);
     let laser = Laser::new(LaserDescription {
-        line,
+        spectrum,
         power: data.power,
         position,
         look_at,

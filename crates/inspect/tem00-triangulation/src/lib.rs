@@ -52,7 +52,7 @@ pub use setup::{
     Subsurface,
 };
 
-pub use tem00_coherence::{LaserLight, LineShape, Relief, Spectrum};
+pub use tem00_coherence::{LaserLight, PeakShape, Relief, SpectrumForm};
 /// The light of a laser and the relief of a surface.
 pub use tem00_translucence::Material;
 

@@ -168,7 +168,7 @@ impl ResolutionCell {
     ///
     /// ```
     /// use tem00_coherence::{
-    ///     CellGeometry, DVec3, PolychromaticSpeckle, ResolutionCell, SourceExtent, SpectralLine,
+    ///     CellGeometry, DVec3, PolychromaticSpeckle, ResolutionCell, SourceExtent, Spectrum,
     /// };
     ///
     /// let cell = ResolutionCell::new(CellGeometry {
@@ -178,11 +178,11 @@ impl ResolutionCell {
     ///     sin_aperture: 0.01,
     ///     wavelength: 650e-9,
     /// })?;
-    /// let line = SpectralLine::monochromatic(650e-9)?;
+    /// let spectrum = Spectrum::monochromatic(650e-9)?;
     /// let contrast = |half_angle| {
     ///     let cell = cell.clone().with_source_extent(SourceExtent::disc(half_angle)?);
     ///     Ok::<_, tem00_coherence::Refusal>(
-    ///         PolychromaticSpeckle { line: &line, cell: &cell }.contrast()
+    ///         PolychromaticSpeckle { spectrum: &spectrum, cell: &cell }.contrast()
     ///     )
     /// };
     /// assert!(contrast(0.002)? > 0.85);

@@ -4,12 +4,12 @@ use glam::DVec2;
 use tem00_numerics::{cast::to_usize, disc_overlap, quadrature::integrate, sinc_pi_squared};
 
 use crate::{
-    ResolutionCell, SpectralLine,
+    ResolutionCell, Spectrum,
     cell::{Correlation, Difference},
     chebyshev::Tabulated,
     kernel::LagKernel,
     lens,
-    line::{LADDER_END, breaks_about},
+    spectrum::{LADDER_END, breaks_about},
 };
 
 /// Speckle of one rough surface in light of a finite bandwidth.
@@ -28,7 +28,7 @@ use crate::{
 ///
 /// # Validity
 ///
-/// The limits of [`ResolutionCell`] and [`SpectralLine`] apply. The light is polarised, and the
+/// The limits of [`ResolutionCell`] and [`Spectrum`] apply. The light is polarised, and the
 /// detector integrates over many coherence times.
 ///
 /// # Examples
@@ -37,7 +37,7 @@ use crate::{
 ///
 /// ```
 /// use tem00_coherence::{
-///     CellGeometry, DVec3, LineShape, PolychromaticSpeckle, ResolutionCell, Rows, SpectralLine,
+///     CellGeometry, DVec3, PeakShape, PolychromaticSpeckle, ResolutionCell, Rows, Spectrum,
 /// };
 ///
 /// let (sin, cos) = 30_f64.to_radians().sin_cos();
@@ -48,8 +48,8 @@ use crate::{
 ///     sin_aperture: 0.025,
 ///     wavelength: 450e-9,
 /// })?;
-/// let line = SpectralLine::new(450e-9, 20e-9, LineShape::Gaussian)?;
-/// let speckle = PolychromaticSpeckle { line: &line, cell: &cell };
+/// let spectrum = Spectrum::new(450e-9, 20e-9, PeakShape::Gaussian)?;
+/// let speckle = PolychromaticSpeckle { spectrum: &spectrum, cell: &cell };
 /// assert!((speckle.contrast() - 0.731).abs() < 1e-3);
 /// assert!((speckle.line_noise_ratio(Rows::Thin) - 0.809).abs() < 1e-3);
 /// # Ok::<(), tem00_coherence::Refusal>(())
@@ -63,7 +63,7 @@ use crate::{
 #[derive(Clone, Copy, Debug)]
 pub struct PolychromaticSpeckle<'a> {
     /// The spectrum of the light.
-    pub line: &'a SpectralLine,
+    pub spectrum: &'a Spectrum,
     /// The paths of a resolution cell.
     pub cell: &'a ResolutionCell,
 }
@@ -294,14 +294,14 @@ impl PolychromaticSpeckle<'_> {
 
     /// Returns whether the light has enough parts for tables to save time.
     fn is_of_many_parts(&self) -> bool {
-        !self.cell.source_extent().is_point() || self.line.has_many_pairs()
+        !self.cell.source_extent().is_point() || self.spectrum.has_many_pairs()
     }
 
     /// Returns the mean over two parts of the light.
     fn mean(&self, f: impl Fn(Difference) -> f64) -> f64 {
-        let (cell, line) = (self.cell, self.line);
+        let (cell, spectrum) = (self.cell, self.spectrum);
         let (extent, scale) = (cell.source_extent(), cell.scale());
-        let (wave_number, tilt) = (line.wave_number(), cell.tilt_wave_number().recip());
+        let (wave_number, tilt) = (spectrum.wave_number(), cell.tilt_wave_number().recip());
         let between = |(moved, heights): (DVec2, f64), kappa: f64| {
             f(Difference {
                 kappa,
@@ -310,7 +310,7 @@ impl PolychromaticSpeckle<'_> {
             })
         };
         if extent.is_point() {
-            return line.mean_over_pairs(scale, |kappa| between((DVec2::ZERO, 0.0), kappa));
+            return spectrum.mean_over_pairs(scale, |kappa| between((DVec2::ZERO, 0.0), kappa));
         }
         let feature = 0.5 / (wave_number * cell.greatest_change_with_source());
         let mut changes = Vec::new();
@@ -324,14 +324,14 @@ impl PolychromaticSpeckle<'_> {
                 sum + share * between(change, kappa)
             })
         };
-        if !line.has_width() {
-            return line.mean_over_pairs(scale, over_source);
+        if !spectrum.has_width() {
+            return spectrum.mean_over_pairs(scale, over_source);
         }
         // There are many directions, and their mean is smooth over wave numbers.
         let unit = scale.min(1e200);
         let over_source =
             Tabulated::new(breaks_about([(0.0, unit)], LADDER_END * unit), over_source);
-        line.mean_over_pairs(scale, |kappa| over_source.at(kappa))
+        spectrum.mean_over_pairs(scale, |kappa| over_source.at(kappa))
     }
 }
 

@@ -14,7 +14,7 @@
 //!
 //! | question | answer |
 //! |---|---|
-//! | Which light? | [`SpectralLine`], [`LineShape`]; as files state it, [`LaserLight`] |
+//! | Which light? | [`Spectrum`], [`PeakShape`]; as files state it, [`LaserLight`] |
 //! | Which paths does one point of the image see? | [`ResolutionCell`], [`Relief`] |
 //! | What happens to the speckle? | [`PolychromaticSpeckle`] |
 //! | With which patterns is it drawn? | [`PatternSum`] |
@@ -38,7 +38,7 @@ mod heights;
 mod kernel;
 mod law;
 mod lens;
-mod line;
+mod light;
 mod mixed;
 mod paths;
 mod patterns;
@@ -49,10 +49,10 @@ pub use cell::{CellGeometry, Relief, ResolutionCell};
 pub use extent::SourceExtent;
 pub use glam::DVec3;
 pub use law::{PolychromaticSpeckle, Rows};
-pub use line::{LineShape, SpectralLine};
+pub use light::{LaserLight, SpectrumForm};
 pub use mixed::{MixedLight, cascade_variance};
 pub use paths::{DelayedLight, PathPairs, mode_ratio};
 pub use patterns::PatternSum;
 pub use recombination::Recombination;
-pub use spectrum::{LaserLight, Spectrum};
+pub use spectrum::{PeakShape, Spectrum};
 pub use tem00_numerics::Refusal;

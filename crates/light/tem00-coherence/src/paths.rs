@@ -1,4 +1,4 @@
-use crate::SpectralLine;
+use crate::Spectrum;
 
 /// Light that met several rough surfaces on one path.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,9 +34,9 @@ pub struct DelayedLight {
 /// line:
 ///
 /// ```
-/// use tem00_coherence::{DelayedLight, LineShape, PathPairs, SpectralLine};
+/// use tem00_coherence::{DelayedLight, PeakShape, PathPairs, Spectrum};
 ///
-/// let line = SpectralLine::new(450e-9, 1e-9, LineShape::Gaussian)?;
+/// let line = Spectrum::new(450e-9, 1e-9, PeakShape::Gaussian)?;
 /// let paths = [0.0, 2e-3].map(|delay| DelayedLight { weight: 1.0, delay });
 /// let mut pairs = PathPairs::default();
 /// pairs.add(&line, &paths, &paths);
@@ -54,13 +54,13 @@ pub struct PathPairs {
 
 impl PathPairs {
     /// Adds the paths of a camera sample and of another, independent sample of the same position.
-    pub fn add(&mut self, line: &SpectralLine, sample: &[DelayedLight], other: &[DelayedLight]) {
+    pub fn add(&mut self, spectrum: &Spectrum, sample: &[DelayedLight], other: &[DelayedLight]) {
         for path in sample {
-            let with_single = path.weight * line.squared_coherence(path.delay);
+            let with_single = path.weight * spectrum.squared_coherence(path.delay);
             add_to(&mut self.with_single, [with_single, path.weight], 1.0);
             for second in other {
                 let energy = path.weight * second.weight;
-                let coherent = energy * line.squared_coherence(path.delay - second.delay);
+                let coherent = energy * spectrum.squared_coherence(path.delay - second.delay);
                 add_to(&mut self.of_pairs, [coherent, energy], 1.0);
             }
         }

@@ -7,8 +7,8 @@ use crate::{
     chebyshev::Tabulated,
     eigenvalues::hermitian_eigenvalues,
     heights::representative_heights,
-    line::{LADDER_END, breaks_about},
     mode_ratio,
+    spectrum::{LADDER_END, breaks_about},
 };
 
 /// Speckle patterns of one wavelength whose sum reproduces the speckle of other light, for
@@ -54,8 +54,8 @@ impl PolychromaticSpeckle<'_> {
     /// The smallest variance is that of 1024 equal patterns, a contrast of 1/32.
     pub fn patterns(&self, variance: impl Fn(&PolychromaticSpeckle<'_>) -> f64) -> PatternSum {
         let of = |cell: &ResolutionCell| {
-            let line = self.line;
-            variance(&PolychromaticSpeckle { line, cell })
+            let spectrum = self.spectrum;
+            variance(&PolychromaticSpeckle { spectrum, cell })
         };
         let from_point = self
             .cell
@@ -64,7 +64,7 @@ impl PolychromaticSpeckle<'_> {
         let of_point = of(&from_point);
         let dense = dense_equivalent(from_point, of_point, of);
         let heights =
-            representative_heights(2.0 * self.line.effective_spread() * dense.path_spread());
+            representative_heights(2.0 * self.spectrum.effective_spread() * dense.path_spread());
         let is_point = self.cell.source_extent().is_point();
         let fractions = match (&heights, is_point) {
             (None, true) => self.modes(),
@@ -93,7 +93,7 @@ impl PolychromaticSpeckle<'_> {
     /// source also form a geometric series.
     pub fn modes(&self) -> Vec<f64> {
         let is_point = self.cell.source_extent().is_point();
-        let nodes = is_point.then(|| self.line.nodes(self.cell.scale(), MAX_NODES));
+        let nodes = is_point.then(|| self.spectrum.nodes(self.cell.scale(), MAX_NODES));
         let Some(nodes) = nodes.flatten() else {
             return geometric_fractions(self.contrast().powi(2));
         };

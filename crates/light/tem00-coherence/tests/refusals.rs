@@ -1,8 +1,8 @@
 //! Arguments that constructors refuse, by name.
 
 use tem00_coherence::{
-    CellGeometry, DVec3, LaserLight, LineShape, MixedLight, Relief, ResolutionCell, SourceExtent,
-    SpectralLine, Spectrum, cascade_variance,
+    CellGeometry, DVec3, LaserLight, MixedLight, PeakShape, Relief, ResolutionCell, SourceExtent,
+    Spectrum, SpectrumForm, cascade_variance,
 };
 use tem00_testkit::refuses;
 
@@ -13,19 +13,19 @@ const Z: DVec3 = DVec3::Z;
 
 #[test]
 fn spectra() {
-    let shape = LineShape::Gaussian;
+    let shape = PeakShape::Gaussian;
     refuses!(wavelength = RED, linewidth = 0.1 * RED
-        => SpectralLine::new(wavelength, linewidth, shape);
+        => Spectrum::new(wavelength, linewidth, shape);
         wavelength: [0.0, -1.0, NAN, INFINITE],
         linewidth: [-1e-9, NAN, INFINITE, 66e-9],
     );
     refuses!(wavelength = RED, span = 1e-9, peaks = 256
-        => SpectralLine::comb(wavelength, span, peaks);
+        => Spectrum::comb(wavelength, span, peaks);
         wavelength: [0.0, NAN],
         span: [-1e-9, NAN, INFINITE, 66e-9],
         peaks: [0, 257, usize::MAX],
     );
-    refuses!(peaks = vec![[RED, 1e6], [RED + 1e-9, 1.0]] => SpectralLine::from_peaks(&peaks);
+    refuses!(peaks = vec![[RED, 1e6], [RED + 1e-9, 1.0]] => Spectrum::from_peaks(&peaks);
         peaks: [vec![], vec![[RED, 1.0]; 257]],
         peaks as "power": [vec![[RED, 0.0]], vec![[RED, NAN]], vec![[RED, INFINITE]]],
         // A faint peak on either side, 13 and 14 % from the mean.
@@ -39,20 +39,20 @@ fn spectra() {
     let light = LaserLight {
         wavelength: 450e-9,
         linewidth: 1e-9,
-        spectrum: Spectrum::default(),
+        form: SpectrumForm::default(),
         source_half_angle: 0.0,
     };
-    refuses!(light = light.clone() => light.line();
+    refuses!(light = light.clone() => light.spectrum();
         light.wavelength: [NAN, 0.0],
         light.linewidth: [50e-9],
-        light.spectrum as "lines": [Spectrum::Comb(0)],
-        light.spectrum as "wavelength": [Spectrum::Peaks(vec![[448e-9, 1.0], [453e-9, 3.0]])],
+        light.form as "lines": [SpectrumForm::Comb(0)],
+        light.form as "wavelength": [SpectrumForm::Peaks(vec![[448e-9, 1.0], [453e-9, 3.0]])],
     );
     let wide = LaserLight {
-        spectrum: Spectrum::Comb(3),
+        form: SpectrumForm::Comb(3),
         ..light
     };
-    refuses!(light = wide.clone() => light.line(); light.linewidth: [50e-9]);
+    refuses!(light = wide.clone() => light.spectrum(); light.linewidth: [50e-9]);
     refuses!(light = wide.clone() => light.extent(); light.source_half_angle: [0.4, -0.1, NAN]);
 }
 

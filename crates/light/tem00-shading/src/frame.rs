@@ -362,7 +362,7 @@ impl SpeckleFrame {
             return;
         };
         let law = self.state.spectral_law(&self.speckle.geometry);
-        let kappa = self.speckle.laser.spectral_line().draw(wave);
+        let kappa = self.speckle.laser.spectrum().draw(wave);
         let shift = law.shift(point, kappa).unwrap_or_default();
         let beside = self.speckle.geometry.pattern_coordinate(
             shift.displacement,
@@ -383,7 +383,7 @@ impl SpeckleFrame {
         let Some(bandwidth) = &self.speckle.bandwidth else {
             return Ok(());
         };
-        let line = self.speckle.laser.spectral_line();
+        let line = self.speckle.laser.spectrum();
         let axis = bandwidth.axis;
         let covariance = |shift: DVec2| bandwidth.covariance(line, shift, axis);
         let held = covariance(self.side * shift.pupil * axis);

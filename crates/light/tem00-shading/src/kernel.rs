@@ -206,7 +206,7 @@ impl KernelFrame<'_> {
 
 fn one_pattern(patterns: &Patterns) -> Result<(), ShadingError> {
     if patterns.bandwidth.is_some() {
-        let length = patterns.laser.spectral_line().coherence_length();
+        let length = patterns.laser.spectrum().coherence_length();
         return Err(refused(
             "coherence_length",
             length,
@@ -226,7 +226,7 @@ fn refused(parameter: &'static str, value: f64, allowed: &'static str) -> Shadin
 #[cfg(test)]
 mod tests {
     use tem00_camera::{CameraDescription, RadialDistortion, SensorTilt};
-    use tem00_coherence::{LineShape, SpectralLine};
+    use tem00_coherence::{PeakShape, Spectrum};
 
     use super::*;
     use crate::{DVec3, LaserDescription, testing::spot};
@@ -267,9 +267,9 @@ mod tests {
             ..camera
         };
         assert_eq!(refused(bent, 1).as_deref(), Some("distortion.k1"));
-        let line = SpectralLine::new(650e-9, 5e-9, LineShape::Gaussian).unwrap();
+        let spectrum = Spectrum::new(650e-9, 5e-9, PeakShape::Gaussian).unwrap();
         let broad = Laser::new(LaserDescription {
-            line,
+            spectrum,
             ..spot(DVec3::Z, 1e-3)
         });
         let broad = Speckle::new(&Camera::new(camera).unwrap(), &broad.unwrap(), 1)

@@ -7,7 +7,7 @@ use tem00_beam::{
     AstigmaticBeam, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight, LineProfile,
     LocatedBeam, NextEvent, NextEventSlices, Placement, Refusal, SpotLight, TabulatedLineLight,
 };
-use tem00_coherence::{SourceExtent, SpectralLine};
+use tem00_coherence::{SourceExtent, Spectrum};
 use tem00_decorrelation::RigidMotion;
 
 pub use self::builder::LaserBuilder;
@@ -19,7 +19,7 @@ use crate::{ShadingError, Trajectory};
 #[derive(Clone, Debug, PartialEq)]
 pub struct LaserDescription {
     /// The vacuum wavelength and the spectrum about it. The beam has the wavelength of its middle.
-    pub line: SpectralLine,
+    pub spectrum: Spectrum,
     /// The power of the beam, in watts.
     pub power: f64,
     /// The centre of the aperture, in metres.
@@ -92,7 +92,7 @@ impl Laser {
             direction: description.look_at - description.position,
             fan_axis: description.line_direction,
         };
-        let (wavelength, power) = (description.line.wavelength(), description.power);
+        let (wavelength, power) = (description.spectrum.wavelength(), description.power);
         let source = match &description.shape {
             &BeamShape::Spot {
                 waist_radius,
@@ -142,7 +142,7 @@ impl Laser {
 
     /// Returns whether the light has one wavelength and comes from a point.
     pub fn is_coherent(&self) -> bool {
-        self.spectral_line().is_monochromatic() && self.source_extent.is_point()
+        self.spectrum().is_monochromatic() && self.source_extent.is_point()
     }
 
     /// Returns the laser with a motion from frame to frame.
@@ -190,12 +190,12 @@ impl Laser {
 
     /// Returns the vacuum wavelength of the middle of the line, in metres.
     pub const fn wavelength(&self) -> f64 {
-        self.description.line.wavelength()
+        self.description.spectrum.wavelength()
     }
 
     /// Returns the spectrum of the light.
-    pub const fn spectral_line(&self) -> &SpectralLine {
-        &self.description.line
+    pub const fn spectrum(&self) -> &Spectrum {
+        &self.description.spectrum
     }
 
     /// Returns the power of the beam, in watts.

@@ -174,7 +174,7 @@ impl Speckle {
         };
         let needs = demand.needs(frames, geometry.speckle_size_in_pixels(), self.memory);
         let Layout { plan, stacks } = Layout::new(&needs, fields)?;
-        let line = self.laser.spectral_line();
+        let line = self.laser.spectrum();
         let bandwidth = bandwidth.map(|bandwidth| bandwidth.on_slices(line, plan.path()));
         let waves = bandwidth.as_ref().map_or(1, |b| b.waves(line));
         let size = plan.size().map(|samples| samples as f64);

@@ -4,7 +4,7 @@ use core::f64::consts::TAU;
 
 use glam::DVec2;
 use tem00_coherence::{
-    CellGeometry, PatternSum, PolychromaticSpeckle, Relief, ResolutionCell, SpectralLine,
+    CellGeometry, PatternSum, PolychromaticSpeckle, Relief, ResolutionCell, Spectrum,
 };
 use tem00_decorrelation::{
     CameraFrame, Configuration, ConfigurationData, Illumination, ImagingGeometry, SpeckleMotion,
@@ -131,7 +131,7 @@ impl SpectralLaw<'_> {
         points: impl Iterator<Item = SeenPoint>,
         relief: Relief,
     ) -> Option<SurfaceLight> {
-        let line = self.laser.spectral_line();
+        let spectrum = self.laser.spectrum();
         if self.laser.is_coherent() {
             return Some(SurfaceLight::single());
         }
@@ -145,11 +145,14 @@ impl SpectralLaw<'_> {
             return Some(SurfaceLight::single());
         };
         let cell = cell.with_source_extent(self.laser.source_extent().clone());
-        let speckle = PolychromaticSpeckle { line, cell: &cell };
+        let speckle = PolychromaticSpeckle {
+            spectrum,
+            cell: &cell,
+        };
         let PatternSum { fractions, heights } =
             speckle.patterns(|speckle| speckle.contrast().powi(2));
-        let is_flat = line.effective_spread() * tilt < NEGLIGIBLE_TILT && heights.len() == 1;
-        let farthest = line.draw(1.0 - LEFT_OUT).max(-line.draw(LEFT_OUT));
+        let is_flat = spectrum.effective_spread() * tilt < NEGLIGIBLE_TILT && heights.len() == 1;
+        let farthest = spectrum.draw(1.0 - LEFT_OUT).max(-spectrum.draw(LEFT_OUT));
         let bandwidth = (!heights.is_empty() && !is_flat).then(|| Bandwidth {
             heights,
             axis: response.pupil.try_normalize().unwrap_or(DVec2::X),
@@ -167,7 +170,7 @@ impl SpectralLaw<'_> {
     /// Returns the change of the speckle of a point per difference of wave numbers.
     fn response(&self, point: &SeenPoint) -> Option<SpectralShift> {
         // Small compared with every linewidth that matters, and large compared with rounding.
-        let kappa = 1e-6 * self.laser.spectral_line().wave_number();
+        let kappa = 1e-6 * self.laser.spectrum().wave_number();
         let shift = self.shift(point, kappa)?;
         Some(SpectralShift {
             displacement: shift.displacement / kappa,
@@ -241,12 +244,12 @@ impl Bandwidth {
     /// diameter of the pupil, and by 1.3 % with 32. Motions within a slice change the contrast of
     /// a line by up to 1 % with 4 slices per diameter.
     #[must_use]
-    pub fn on_slices(mut self, line: &SpectralLine, path: SlicePath) -> Self {
+    pub fn on_slices(mut self, spectrum: &Spectrum, path: SlicePath) -> Self {
         self.stretch = 1.0;
         if path.slice_count() == 1 {
             return self;
         }
-        let waves = medians(line, SAMPLED_WAVES);
+        let waves = medians(spectrum, SAMPLED_WAVES);
         let covariance = |of_pair: &dyn Fn(f64, f64) -> f64| -> f64 {
             // Every pair once: a wave number agrees with itself in both.
             let pairs = waves.iter().enumerate();
@@ -272,16 +275,16 @@ impl Bandwidth {
     /// Returns the covariance of two intensities in the light of a line, between which the pupil
     /// has moved by `shift`, in pupil diameters; other wave numbers displace the pupil along
     /// `axis`.
-    pub fn covariance(&self, line: &SpectralLine, shift: DVec2, axis: DVec2) -> f64 {
-        line.mean_over_pairs(self.scale(), |kappa| self.kept_of(kappa, shift, axis))
+    pub fn covariance(&self, spectrum: &Spectrum, shift: DVec2, axis: DVec2) -> f64 {
+        spectrum.mean_over_pairs(self.scale(), |kappa| self.kept_of(kappa, shift, axis))
     }
 
     /// Returns the number of equal parts, at most 64, into which a line must be split, each with
     /// its median wave number, for a contrast within 1 % of the contrast of the whole line.
-    pub(crate) fn waves(&self, line: &SpectralLine) -> usize {
-        let law = self.covariance(line, DVec2::ZERO, self.axis);
+    pub(crate) fn waves(&self, spectrum: &Spectrum) -> usize {
+        let law = self.covariance(spectrum, DVec2::ZERO, self.axis);
         let of_parts = |count: usize| {
-            let waves = medians(line, count);
+            let waves = medians(spectrum, count);
             let pairs = waves.iter().flat_map(|a| waves.iter().map(move |b| a - b));
             let kept = pairs.map(|kappa| self.kept_of(kappa, DVec2::ZERO, self.axis));
             kept.sum::<f64>() / (count * count) as f64
@@ -320,8 +323,8 @@ impl Bandwidth {
 }
 
 /// The median wave numbers of the equal parts of a line.
-fn medians(line: &SpectralLine, count: usize) -> Vec<f64> {
-    let median = |part: usize| line.draw((part as f64 + 0.5) / count as f64);
+fn medians(spectrum: &Spectrum, count: usize) -> Vec<f64> {
+    let median = |part: usize| spectrum.draw((part as f64 + 0.5) / count as f64);
     (0..count).map(median).collect()
 }
 

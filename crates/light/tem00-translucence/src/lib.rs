@@ -39,6 +39,6 @@ pub use line::SpreadLine;
 pub use material::{Material, MediumDescription};
 pub use medium::Medium;
 pub use spread::{LineSpread, PathSample};
-pub use tem00_coherence::{LineShape, SpectralLine};
+pub use tem00_coherence::{PeakShape, Spectrum};
 pub use tem00_numerics::Refusal;
 pub use walk::{MAX_ANGLE, Walk};

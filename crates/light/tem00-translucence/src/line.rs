@@ -4,7 +4,7 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-use tem00_coherence::SpectralLine;
+use tem00_coherence::Spectrum;
 use tem00_numerics::{
     Refusal,
     cast::{to_i64, to_usize},
@@ -160,7 +160,7 @@ impl SpreadLine {
     ///
     /// with the fraction s that the boundary reflects, and means over the paths l, l′ from below
     /// the surface (Goodman 2007). For polarised light; unpolarised light has C/√2.
-    pub fn contrast(&self, line: &SpectralLine, places: [f64; 2]) -> Option<f64> {
+    pub fn contrast(&self, line: &Spectrum, places: [f64; 2]) -> Option<f64> {
         let pairs = pairs(
             &self.samples,
             self.medium.refractive_index(),

@@ -1,6 +1,6 @@
 use core::f64::consts::PI;
 
-use tem00_coherence::{DelayedLight, PathPairs, SpectralLine};
+use tem00_coherence::{DelayedLight, PathPairs, Spectrum};
 
 use crate::{
     Medium, Walk, bins,
@@ -94,7 +94,7 @@ impl LineSpread {
     ///
     /// C² = ⟨|γ(n (l − l′))|²⟩ over pairs of independent paths (Goodman 2007), for polarised light;
     /// unpolarised light has C/√2.
-    pub fn contrast(&self, line: &SpectralLine, places: [f64; 2]) -> Option<f64> {
+    pub fn contrast(&self, line: &Spectrum, places: [f64; 2]) -> Option<f64> {
         let pairs = pairs(&self.samples, self.optical, (line, places));
         pairs.self_coherence().map(f64::sqrt)
     }
@@ -104,7 +104,7 @@ impl LineSpread {
 pub(crate) fn pairs(
     samples: &[PathSample],
     refractive_index: f64,
-    (line, places): (&SpectralLine, [f64; 2]),
+    (line, places): (&Spectrum, [f64; 2]),
 ) -> PathPairs {
     let within = |sample: &&PathSample| (places[0]..=places[1]).contains(&sample.place);
     let paths = samples.iter().filter(within).map(|sample| DelayedLight {

@@ -1,6 +1,6 @@
 use core::ops::RangeInclusive;
 
-use tem00_coherence::{LaserLight, LineShape, Relief, SpectralLine, Spectrum};
+use tem00_coherence::{LaserLight, PeakShape, Relief, Spectrum, SpectrumForm};
 
 use crate::{ANGLE, LENGTH, NUMBER, Problem, Section, Value};
 
@@ -9,12 +9,12 @@ pub type Wavelengths = (RangeInclusive<f64>, &'static str);
 
 const PEAKS: &str =
     "a list of pairs [wavelength, power], such as [[\"448 nm\", 1], [\"451 nm\", 2]]";
-const SPECTRA: &[(&str, Spectrum)] = &[
-    ("gaussian", Spectrum::Peak(LineShape::Gaussian)),
-    ("lorentzian", Spectrum::Peak(LineShape::Lorentzian)),
-    ("rectangular", Spectrum::Peak(LineShape::Rectangular)),
+const SPECTRA: &[(&str, SpectrumForm)] = &[
+    ("gaussian", SpectrumForm::Peak(PeakShape::Gaussian)),
+    ("lorentzian", SpectrumForm::Peak(PeakShape::Lorentzian)),
+    ("rectangular", SpectrumForm::Peak(PeakShape::Rectangular)),
     // The number of lines has its own key.
-    ("comb", Spectrum::Comb(0)),
+    ("comb", SpectrumForm::Comb(0)),
 ];
 
 /// Reads the keys of the light of a laser, in scene files and in set-up files: `wavelength`,
@@ -23,7 +23,7 @@ const SPECTRA: &[(&str, Spectrum)] = &[
 /// # Errors
 ///
 /// Returns a problem, placed at a key, if one is missing, beyond its range or contradicts another.
-/// Whether the light [has a line](LaserLight::line) is left to the caller.
+/// Whether these values make a [spectrum](LaserLight::spectrum) is left to the caller.
 pub fn read_laser_light(
     section: &Section<'_>,
     wavelengths: &Wavelengths,
@@ -46,7 +46,7 @@ pub fn read_laser_light(
         }
         spectrum => LaserLight {
             linewidth,
-            spectrum: named_spectrum(section, spectrum.as_ref())?,
+            form: named_spectrum(section, spectrum.as_ref())?,
             ..LaserLight::monochromatic(wavelength(&section.required("wavelength", "\"650 nm\"")?)?)
         },
     };
@@ -65,8 +65,8 @@ fn follows(section: &Section<'_>, key: &str, from: &str) -> Problem {
 fn named_spectrum(
     section: &Section<'_>,
     spectrum: Option<&Value<'_>>,
-) -> Result<Spectrum, Problem> {
-    let named = spectrum.map_or(Ok(Spectrum::default()), |value| {
+) -> Result<SpectrumForm, Problem> {
+    let named = spectrum.map_or(Ok(SpectrumForm::default()), |value| {
         value
             .one_of(SPECTRA)
             .map_err(|problem| match value.string() {
@@ -86,11 +86,11 @@ fn named_spectrum(
             .with_help(help));
     }
     match (named, section.optional("lines")) {
-        (Spectrum::Comb(_), _) => {
+        (SpectrumForm::Comb(_), _) => {
             let lines = section.required("lines", "5")?;
-            let max = SpectralLine::MAX_PEAKS as u64;
+            let max = Spectrum::MAX_PEAKS as u64;
             let count = u32::try_from(lines.integer(1..=max)?);
-            Ok(Spectrum::Comb(count.unwrap_or(u32::MAX)))
+            Ok(SpectrumForm::Comb(count.unwrap_or(u32::MAX)))
         }
         (named, None) => Ok(named),
         (_, Some(lines)) => Err(lines

@@ -14,7 +14,7 @@ use tem00_camera::{Camera, Ray};
 use tem00_geometry::{Hit, Intersector};
 use tem00_tracer::{Laser, Light, RenderOptions, Scene, film::Seen};
 
-use self::{batch::Path, lit_points::LitPoints, rules::Spectrum};
+use self::{batch::Path, lit_points::LitPoints, rules::Bands};
 pub(crate) use self::{
     batch::{Batch, CameraSample},
     rules::{PathRules, is_plate},
@@ -48,7 +48,7 @@ pub(crate) struct Integrator<'a> {
     roulette: Roulette,
     /// One point sequence per possible sample count.
     sequences: Vec<Sequence>,
-    spectrum: Spectrum,
+    bands: Bands,
     /// The lights that rays can meet, in the order of their shapes behind the surfaces.
     light_shapes: Vec<usize>,
     /// The lights that rays meet where they meet nothing else.
@@ -114,7 +114,7 @@ impl<'a> Integrator<'a> {
             rules,
             roulette,
             sequences: counts.into_iter().map(Sequence::new).collect(),
-            spectrum: Spectrum::new(&scene.lasers, &scene.lights),
+            bands: Bands::new(&scene.lasers, &scene.lights),
             light_shapes: lights(|light| matches!(light, Light::Area { .. })),
             environments: lights(|light| matches!(light, Light::Environment(_))),
         }
@@ -187,7 +187,7 @@ impl<'a> Integrator<'a> {
             origin: DVec3::ZERO,
             direction: DVec3::Z,
         };
-        batch.prepare(self.lasers.len(), self.spectrum.wavelengths.len());
+        batch.prepare(self.lasers.len(), self.bands.wavelengths.len());
         let samples = batch.samples.len();
         batch.paths.extend((0..samples).map(Path::of_sample));
         batch.rays.resize(samples, NONE);
@@ -274,11 +274,11 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    /// Draws the position within the spectral lines of the lasers, if one of them has a width.
+    /// Draws the position within the spectra of the lasers, if one of them has a width.
     fn drawn_wave(&self, stream: Stream) -> f64 {
         let lasers = self.lasers.iter();
         let is_wide = lasers
-            .map(|laser| laser.spectral_line())
+            .map(|laser| laser.spectrum())
             .any(|line| !line.is_monochromatic());
         if is_wide {
             self.sequence(stream).uniform(stream, Use::Wave)
@@ -289,7 +289,7 @@ impl<'a> Integrator<'a> {
 
     /// Sends every path on in a direction drawn from its material, or ends it.
     fn scatter(&self, batch: &mut Batch<'a>) {
-        let wavelengths = self.spectrum.wavelengths.len();
+        let wavelengths = self.bands.wavelengths.len();
         let mut kept = 0;
         // All paths have met the same number of surfaces.
         let depth = batch.paths.first().map_or(0, |path| path.depth);
@@ -320,7 +320,7 @@ impl<'a> Integrator<'a> {
             return None;
         }
         // Choose the direction.
-        let wavelengths = &self.spectrum.wavelengths;
+        let wavelengths = &self.bands.wavelengths;
         let u = self
             .sequence(stream)
             .pair(stream, Use::Scattering(path.depth));

@@ -49,7 +49,7 @@ pub(crate) fn asks_for_survey(scene: &Scene, frame: u32, options: &RenderOptions
     let is_broad = scene
         .lasers
         .iter()
-        .any(|l| !l.spectral_line().is_monochromatic());
+        .any(|l| !l.spectrum().is_monochromatic());
     let is_depolarised = scene.surfaces.iter().any(|s| s.speckle.polarisation < 1.0);
     let is_other_frame = frame != scene.reference_frame && moves(scene);
     !is_single(scene, options) && (is_broad || is_depolarised || is_other_frame)
@@ -238,7 +238,7 @@ impl<'a> Survey<'a> {
                 self.multiple_from_camera(laser, seen, first as u64)
             }
         });
-        let line = self.scene.lasers[laser].spectral_line();
+        let line = self.scene.lasers[laser].spectrum();
         let place = (seen.point, self.single(laser, &seen.vertex));
         let [first, second] = &paths;
         MultipleSums::of_groups(line, place, [first, second], PATHS)

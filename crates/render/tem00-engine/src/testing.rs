@@ -3,7 +3,7 @@
 use glam::DVec3;
 use tem00_camera::{Camera, CameraDescription};
 use tem00_geometry::{Rectangle, Shape};
-use tem00_tracer::{BeamShape, Laser, LaserDescription, Material, Scene, SpectralLine, Surface};
+use tem00_tracer::{BeamShape, Laser, LaserDescription, Material, Scene, Spectrum, Surface};
 
 use crate::{SpeckleModel, SpecklePlan};
 
@@ -20,7 +20,7 @@ pub(crate) fn camera(position: DVec3, resolution: [usize; 2]) -> CameraDescripti
 /// A round spot of 650 nm and 1 mW whose waist lies at the origin, where it is aimed at.
 pub(crate) fn spot(position: DVec3, waist_radius: f64) -> LaserDescription {
     LaserDescription {
-        line: SpectralLine::monochromatic(650e-9).unwrap(),
+        spectrum: Spectrum::monochromatic(650e-9).unwrap(),
         power: 1e-3,
         position,
         look_at: DVec3::ZERO,

@@ -66,13 +66,13 @@ pub(crate) fn read(root: &Document<'_>) -> Result<Vec<Laser>, Problem> {
 
 fn laser(section: &Section<'_>) -> Result<Laser, Problem> {
     let light = read_laser_light(section, &(10e-9..=1e-3, "from 10 nm to 1 mm"))?;
-    let spectral_line = light
-        .line()
+    let spectrum = light
+        .spectrum()
         .map_err(|error| rejected(&error, Some(error.parameter()), &[section]))?;
     let source_extent = light
         .extent()
         .map_err(|error| rejected(&error, Some(error.parameter()), &[section]))?;
-    let wavelength = spectral_line.wavelength();
+    let wavelength = spectrum.wavelength();
     let placement = Placement::read(section)?;
     let axis = placement.axis();
     let (kind, beam) = section.one_of("shape", SHAPES)?;
@@ -82,7 +82,7 @@ fn laser(section: &Section<'_>) -> Result<Laser, Problem> {
     };
     let sideways = across(axis, DVec3::X, DVec3::Y);
     let description = LaserDescription {
-        line: spectral_line,
+        spectrum,
         power: section.required("power", "\"5 mW\"")?.positive(&POWER)?,
         position: placement.position,
         look_at: placement.look_at,

@@ -42,7 +42,7 @@ impl SpeckleBelow {
                     return Ok(None);
                 };
                 let lit = || brightest(scene, frame, intersector, (&light, surface));
-                let contrast = match light.spectral_line().is_monochromatic() {
+                let contrast = match light.spectrum().is_monochromatic() {
                     true => 1.0,
                     false => contrast(medium, &light, lit())?,
                 };
@@ -133,6 +133,6 @@ fn contrast(medium: &Medium, laser: &Laser, lit: Option<Lit>) -> Result<f64, Ref
     let spread = SpreadLine::new(medium, angle(source), side * angle(back))?;
     let radius = laser.narrow_radius_at(hit.position) / normal.dot(source).max(0.1);
     let window = radius.max(0.05 * medium.transport_length());
-    let contrast = spread.contrast(laser.spectral_line(), [-window, window]);
+    let contrast = spread.contrast(laser.spectrum(), [-window, window]);
     Ok(contrast.unwrap_or(1.0))
 }

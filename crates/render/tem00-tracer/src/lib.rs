@@ -63,7 +63,7 @@ pub use tem00_shading::{
 pub use tem00_beam::{FanGeometry, LineProfile};
 
 /// The spectrum of a laser and the relief of a surface.
-pub use tem00_coherence::{LineShape, Relief, SpectralLine};
+pub use tem00_coherence::{PeakShape, Relief, Spectrum};
 
 /// Bodies that let light in.
 pub use tem00_translucence::{Material as NamedMedium, Medium, MediumDescription};

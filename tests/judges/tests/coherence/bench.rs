@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 
 use tem00::{
-    coherence::{CellGeometry, LineShape, SpectralLine},
+    coherence::{CellGeometry, PeakShape, Spectrum},
     numerics::{Fft2, Grid},
     wave::{Complex, DVec3, Illumination, RoughSurface, Scatterer},
 };
@@ -255,13 +255,13 @@ pub(crate) fn plane_of_incidence(incidence: f64, observation: f64) -> CellGeomet
 
 /// A spectrum as the judge has it, fractions of the power at the wave numbers of a bench, and as
 /// the judged.
-pub(crate) struct Spectrum {
+pub(crate) struct BenchSpectrum {
     pub(crate) name: &'static str,
     pub(crate) weights: Vec<f64>,
-    pub(crate) line: SpectralLine,
+    pub(crate) line: Spectrum,
 }
 
-impl Spectrum {
+impl BenchSpectrum {
     /// Returns the mean of images of all wave numbers.
     pub(crate) fn mix(&self, images: &[Vec<f64>]) -> Vec<f64> {
         let mut sum = vec![0.0; images[0].len()];
@@ -277,7 +277,7 @@ impl Spectrum {
 
     /// A Gaussian line by its full width, in metres.
     pub(crate) fn gaussian(wavelength: f64, step: f64, steps: i32, linewidth: f64) -> Self {
-        let line = SpectralLine::new(wavelength, linewidth, LineShape::Gaussian);
+        let line = Spectrum::new(wavelength, linewidth, PeakShape::Gaussian);
         let full = TAU * linewidth / wavelength.powi(2);
         let spread = full / (8.0 * core::f64::consts::LN_2).sqrt() / step;
         Self {

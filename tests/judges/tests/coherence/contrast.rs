@@ -3,14 +3,12 @@
 use core::f64::consts::TAU;
 
 use tem00::{
-    coherence::{
-        CellGeometry, LineShape, PolychromaticSpeckle, Relief, ResolutionCell, SpectralLine,
-    },
+    coherence::{CellGeometry, PeakShape, PolychromaticSpeckle, Relief, ResolutionCell, Spectrum},
     wave::DVec3,
 };
 
 use super::{
-    bench::{Bench, Spectrum, View, plane_of_incidence, weights},
+    bench::{Bench, BenchSpectrum, View, plane_of_incidence, weights},
     comparison::Comparison,
     heights::{Heights, Random},
     sums::{Moments, assert_agrees, contrast, covariance, for_surfaces},
@@ -31,7 +29,7 @@ pub(crate) fn cell(view: CellGeometry, rms_height: f64, defocus: f64) -> Resolut
 }
 
 /// Lines of all shapes, some steps between wave numbers wide.
-pub(crate) fn spectra(wavelength: f64, step: f64) -> Vec<Spectrum> {
+pub(crate) fn spectra(wavelength: f64, step: f64) -> Vec<BenchSpectrum> {
     let per_step = step * wavelength.powi(2) / TAU;
     let peaks = |weights: &[f64]| {
         let peak = |(i, &weight): (usize, &f64)| {
@@ -42,30 +40,30 @@ pub(crate) fn spectra(wavelength: f64, step: f64) -> Vec<Spectrum> {
             .iter()
             .enumerate()
             .filter(|(_, weight)| **weight > 0.0);
-        SpectralLine::from_peaks(&lit.map(peak).collect::<Vec<_>>()).expect("peaks")
+        Spectrum::from_peaks(&lit.map(peak).collect::<Vec<_>>()).expect("peaks")
     };
     let of_peaks = |name, shape: &dyn Fn(f64) -> f64| {
         let weights = weights(STEPS, shape);
         let line = peaks(&weights);
-        Spectrum {
+        BenchSpectrum {
             name,
             weights,
             line,
         }
     };
     let full_width = 9.0;
-    let rectangular = SpectralLine::new(wavelength, full_width * per_step, LineShape::Rectangular);
-    let comb = SpectralLine::comb(wavelength, 16.0 * per_step, 5);
+    let rectangular = Spectrum::new(wavelength, full_width * per_step, PeakShape::Rectangular);
+    let comb = Spectrum::comb(wavelength, 16.0 * per_step, 5);
     let inside = |is_inside: bool| f64::from(u8::from(is_inside));
     vec![
         // 3.4 standard deviations on each side.
-        Spectrum::gaussian(wavelength, step, STEPS, 7.0 * per_step),
-        Spectrum {
+        BenchSpectrum::gaussian(wavelength, step, STEPS, 7.0 * per_step),
+        BenchSpectrum {
             name: "rectangular",
             weights: weights(STEPS, |i| inside(2.0 * i.abs() < full_width)),
             line: rectangular.expect("a line"),
         },
-        Spectrum {
+        BenchSpectrum {
             name: "comb",
             weights: weights(STEPS, |i| inside(i.abs() < 9.0 && i.rem_euclid(4.0) < 0.5)),
             line: comb.expect("a comb"),
@@ -145,18 +143,23 @@ fn compare(geometry: u64, random: &mut Random) -> Vec<Comparison> {
     let cases = views
         .iter()
         .flat_map(|view| spectra.iter().map(move |line| (view, line)));
-    let compared = |(i, (seen, Spectrum { name, line, .. })): (usize, (&View, &Spectrum))| {
-        let moments: Vec<Moments> = surfaces.iter().map(|surface| surface[i]).collect();
-        let cell = &cell(view, rms, seen.defocus);
-        Comparison {
-            what: format!(
-                "{name}, {:e} m out of focus, {rms:e} m, {view:?}",
-                seen.defocus
-            ),
-            waves: contrast(&moments),
-            law: PolychromaticSpeckle { line, cell }.contrast(),
-        }
-    };
+    let compared =
+        |(i, (seen, BenchSpectrum { name, line, .. })): (usize, (&View, &BenchSpectrum))| {
+            let moments: Vec<Moments> = surfaces.iter().map(|surface| surface[i]).collect();
+            let cell = &cell(view, rms, seen.defocus);
+            Comparison {
+                what: format!(
+                    "{name}, {:e} m out of focus, {rms:e} m, {view:?}",
+                    seen.defocus
+                ),
+                waves: contrast(&moments),
+                law: PolychromaticSpeckle {
+                    spectrum: line,
+                    cell,
+                }
+                .contrast(),
+            }
+        };
     cases.enumerate().map(compared).collect()
 }
 
@@ -244,7 +247,7 @@ fn contrasts_of_known_scenes_are_those_of_waves() {
         let view = plane_of_incidence(incidence, observation);
         let mut bench = Bench::with_step(view, [24, 8], scene.heights, 2.5e4);
         bench.step *= scene.steps;
-        let spectrum = Spectrum::gaussian(view.wavelength, bench.step, 9, scene.linewidth);
+        let spectrum = BenchSpectrum::gaussian(view.wavelength, bench.step, 9, scene.linewidth);
         let seen = View {
             defocus: scene.defocus,
             ..View::default()
@@ -256,7 +259,7 @@ fn contrasts_of_known_scenes_are_those_of_waves() {
         });
         let cell = cell(view, scene.rms, scene.defocus);
         let law = PolychromaticSpeckle {
-            line: &spectrum.line,
+            spectrum: &spectrum.line,
             cell: &cell,
         };
         let (waves, law) = (contrast(&surfaces), law.contrast());
@@ -298,7 +301,7 @@ fn two_wavelengths_share_what_the_law_leaves_of_the_pupil() {
 fn wide_bands_cost_contrast_without_a_tilt_as_the_stated_limit_says() {
     let view = plane_of_incidence(0.0, 0.0);
     let bench = Bench::with_step(view, [10, 10], Heights::Flat, 1.0e5);
-    let spectrum = Spectrum::gaussian(view.wavelength, bench.step, 9, 20e-9);
+    let spectrum = BenchSpectrum::gaussian(view.wavelength, bench.step, 9, 20e-9);
     let surfaces = for_surfaces(150, 5, |random| {
         let surface = bench.surface(random, |_| 1.0);
         let images = &bench.images(&surface, 9, &[View::default()], random)[0];
@@ -306,7 +309,7 @@ fn wide_bands_cost_contrast_without_a_tilt_as_the_stated_limit_says() {
     });
     let cell = cell(view, 0.0, 0.0);
     let law = PolychromaticSpeckle {
-        line: &spectrum.line,
+        spectrum: &spectrum.line,
         cell: &cell,
     };
     let stated = law.contrast() - 0.48 * 20.0 / 450.0;

@@ -9,7 +9,7 @@ use tem00::{
 };
 
 use super::{
-    bench::{Bench, Spectrum, View, plane_of_incidence},
+    bench::{Bench, BenchSpectrum, View, plane_of_incidence},
     contrast::cell,
     heights::Heights,
     sums::{Moments, assert_agrees, assert_refutes, contrast, covariance, for_surfaces},
@@ -30,16 +30,16 @@ struct Measured {
 }
 
 /// A line whose standard deviation moves the field by 0.15 diameters of the pupil.
-fn tilted(heights: Heights) -> (Bench, Spectrum) {
+fn tilted(heights: Heights) -> (Bench, BenchSpectrum) {
     let view = plane_of_incidence(0.0, 30.0);
     let bench = Bench::new(view, [20, 8], heights);
     let spread = 0.15 * 20.0 * bench.step;
     let linewidth = spread * (8.0 * LN_2).sqrt() * view.wavelength.powi(2) / TAU;
-    let spectrum = Spectrum::gaussian(bench.view.wavelength, bench.step, STEPS, linewidth);
+    let spectrum = BenchSpectrum::gaussian(bench.view.wavelength, bench.step, STEPS, linewidth);
     (bench, spectrum)
 }
 
-fn measured(bench: &Bench, spectrum: &Spectrum, count: u64) -> Vec<Measured> {
+fn measured(bench: &Bench, spectrum: &BenchSpectrum, count: u64) -> Vec<Measured> {
     let moved = FRAMES.map(|pupil| View {
         pupil,
         ..View::default()
@@ -80,7 +80,7 @@ fn frames_grains_and_intensities_of_a_tilted_plate_are_those_of_the_law() {
         let surfaces = measured(&bench, &spectrum, count);
         let cell = cell(bench.view, rms, 0.0);
         let law = PolychromaticSpeckle {
-            line: &spectrum.line,
+            spectrum: &spectrum.line,
             cell: &cell,
         };
         let squared = law.contrast().powi(2);

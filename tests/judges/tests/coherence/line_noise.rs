@@ -5,13 +5,13 @@ use std::f64::consts::PI;
 use tem00::{
     DVec3,
     coherence::{
-        CellGeometry, LineShape, PolychromaticSpeckle, Relief, ResolutionCell, Rows, SpectralLine,
+        CellGeometry, PeakShape, PolychromaticSpeckle, Relief, ResolutionCell, Rows, Spectrum,
     },
     wave::Estimate,
 };
 
 use super::{
-    bench::{Bench, Spectrum, View, plane_of_incidence},
+    bench::{Bench, BenchSpectrum, View, plane_of_incidence},
     contrast::cell,
     heights::Heights,
     sums::{assert_agrees, assert_refutes, for_surfaces},
@@ -63,7 +63,7 @@ fn lines_of_a_broad_source_scatter_as_the_law_says_and_not_as_their_contrast() {
     let view = plane_of_incidence(0.0, 30.0);
     let mut bench = Bench::new(view, [24, 8], Heights::Flat);
     bench.step *= 2.0;
-    let spectrum = Spectrum::gaussian(bench.view.wavelength, bench.step, STEPS, 20e-9);
+    let spectrum = BenchSpectrum::gaussian(bench.view.wavelength, bench.step, STEPS, 20e-9);
     let columns = bench.pixels()[0];
     let surfaces = for_surfaces(400, 4, |random| {
         let surface = bench.surface(random, |x| (-(x / WIDTH).powi(2)).exp());
@@ -84,7 +84,7 @@ fn lines_of_a_broad_source_scatter_as_the_law_says_and_not_as_their_contrast() {
     });
     let cell = cell(view, 0.0, 0.0);
     let law = PolychromaticSpeckle {
-        line: &spectrum.line,
+        spectrum: &spectrum.line,
         cell: &cell,
     };
     for (i, (rows, tolerance)) in [(Rows::Thin, 0.015), (Rows::Tall, 0.06)]
@@ -106,7 +106,7 @@ fn lines_of_a_broad_source_scatter_as_the_law_says_and_not_as_their_contrast() {
 fn long_relief_leaves_a_line_its_noise() {
     const WAVELENGTH: f64 = 450e-9;
     const SIN_APERTURE: f64 = 0.025;
-    let line = SpectralLine::new(WAVELENGTH, 20e-9, LineShape::Gaussian).expect("a line");
+    let line = Spectrum::new(WAVELENGTH, 20e-9, PeakShape::Gaussian).expect("a line");
     let sigma = line.wave_number_spread();
     let noise = |[spread, tilt, length]: [f64; 3]| {
         // The tilt is the sine of the incidence, for a camera along the normal.
@@ -125,7 +125,11 @@ fn long_relief_leaves_a_line_its_noise() {
         };
         let cell = cell.with_relief(relief).expect("a relief");
         let (line, cell) = (&line, &cell);
-        PolychromaticSpeckle { line, cell }.line_noise_ratio(Rows::Thin)
+        PolychromaticSpeckle {
+            spectrum: line,
+            cell,
+        }
+        .line_noise_ratio(Rows::Thin)
     };
     for (case, thin, tolerance) in [
         ([0.65, 0.0, 0.5], 0.8288, 5e-3),

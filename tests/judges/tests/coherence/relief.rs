@@ -3,7 +3,7 @@
 use tem00::coherence::{PolychromaticSpeckle, Relief, ResolutionCell};
 
 use super::{
-    bench::{Bench, Spectrum, View, plane_of_incidence},
+    bench::{Bench, BenchSpectrum, View, plane_of_incidence},
     heights::Heights,
     sums::{Moments, assert_agrees, contrast, for_surfaces},
 };
@@ -16,7 +16,7 @@ fn relief_as_long_as_a_speckle_spreads_fewer_paths() {
         let head_on = plane_of_incidence(0.0, 0.0);
         let heights = Heights::Correlated { rms, length };
         let bench = Bench::with_step(head_on, [16, 16], heights, 3.25e4);
-        let spectrum = Spectrum::gaussian(bench.view.wavelength, bench.step, 7, 5e-9);
+        let spectrum = BenchSpectrum::gaussian(bench.view.wavelength, bench.step, 7, 5e-9);
         let surfaces = for_surfaces(44, 7, |random| {
             let surface = bench.surface(random, |_| 1.0);
             let images = &bench.images(&surface, 7, &[View::default()], random)[0];
@@ -28,7 +28,7 @@ fn relief_as_long_as_a_speckle_spreads_fewer_paths() {
         };
         let cell = ResolutionCell::new(head_on).and_then(|cell| cell.with_relief(relief));
         let law = PolychromaticSpeckle {
-            line: &spectrum.line,
+            spectrum: &spectrum.line,
             cell: &cell.expect("a cell"),
         };
         let waves = contrast(&surfaces);

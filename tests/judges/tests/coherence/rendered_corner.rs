@@ -6,8 +6,8 @@ use std::sync::atomic::AtomicBool;
 use glam::{DVec2, DVec3};
 use tem00::camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
 use tem00::coherence::{
-    CellGeometry, DelayedLight, LineShape, MixedLight, PathPairs, PolychromaticSpeckle,
-    ResolutionCell, SpectralLine,
+    CellGeometry, DelayedLight, MixedLight, PathPairs, PeakShape, PolychromaticSpeckle,
+    ResolutionCell, Spectrum,
 };
 use tem00::decorrelation::pupil_overlap_correlation;
 use tem00::engine::{FollowedPoint, SpeckleChange, SpeckleModel, SpecklePlan, render_frame};
@@ -36,7 +36,7 @@ fn directions() -> [DVec3; 2] {
 
 /// A lens of f/5 whose pupil fills sin u = 0.025, in front of a floor with a wall of 0.7 by 0.7 mm²
 /// beside it, in collimated light.
-fn corner(line: SpectralLine, polarisation: f64) -> Scene {
+fn corner(line: Spectrum, polarisation: f64) -> Scene {
     let [to_source, to_camera] = directions();
     let camera = Camera::new(CameraDescription {
         position: SEEN + DISTANCE * to_camera,
@@ -53,7 +53,7 @@ fn corner(line: SpectralLine, polarisation: f64) -> Scene {
         depth_of_field: false,
     });
     let laser = Laser::new(LaserDescription {
-        line,
+        spectrum: line,
         power: 1e-3,
         position: SEEN + 0.5 * to_source,
         look_at: SEEN,
@@ -141,7 +141,7 @@ fn wall(seen: DVec3) -> Vec<(DVec3, f64)> {
 }
 
 /// The law of the light at a place.
-fn law(line: &SpectralLine, polarisation: f64, seen: DVec3) -> MixedLight {
+fn law(line: &Spectrum, polarisation: f64, seen: DVec3) -> MixedLight {
     let [to_source, to_pupil] = directions();
     let paths: Vec<_> = wall(seen)
         .into_iter()
@@ -161,9 +161,12 @@ fn law(line: &SpectralLine, polarisation: f64, seen: DVec3) -> MixedLight {
         wavelength: WAVELENGTH,
     });
     let cell = cell.expect("a cell");
-    let of_cell = PolychromaticSpeckle { line, cell: &cell }
-        .contrast()
-        .powi(2);
+    let of_cell = PolychromaticSpeckle {
+        spectrum: line,
+        cell: &cell,
+    }
+    .contrast()
+    .powi(2);
     MixedLight {
         multiple: ratio / (1.0 + ratio),
         within_single: of_cell,
@@ -173,10 +176,10 @@ fn law(line: &SpectralLine, polarisation: f64, seen: DVec3) -> MixedLight {
     }
 }
 
-fn line(linewidth: f64) -> SpectralLine {
+fn line(linewidth: f64) -> Spectrum {
     let line = match linewidth {
-        0.0 => SpectralLine::monochromatic(WAVELENGTH),
-        _ => SpectralLine::new(WAVELENGTH, linewidth, LineShape::Gaussian),
+        0.0 => Spectrum::monochromatic(WAVELENGTH),
+        _ => Spectrum::new(WAVELENGTH, linewidth, PeakShape::Gaussian),
     };
     line.expect("a line")
 }

@@ -3,15 +3,13 @@
 use core::f64::consts::{LN_2, TAU};
 
 use tem00::{
-    coherence::{
-        CellGeometry, MixedLight, PathPairs, PolychromaticSpeckle, SpectralLine, mode_ratio,
-    },
+    coherence::{CellGeometry, MixedLight, PathPairs, PolychromaticSpeckle, Spectrum, mode_ratio},
     statistics::kolmogorov_smirnov,
     wave::{DVec3, RigidMotion},
 };
 
 use super::{
-    bench::{Spectrum, plane_of_incidence},
+    bench::{BenchSpectrum, plane_of_incidence},
     comparison::Comparison,
     contrast::{STEPS, cell, spectra},
     corner::{Corner, Fields, Wall, Waves},
@@ -50,10 +48,10 @@ const LIGHTS: [Light; 4] = [
 ];
 
 /// Returns the moments of intensities for each light and spectrum.
-fn moments(fields: &Fields, lights: &[Light], spectra: &[Spectrum]) -> Vec<Moments> {
+fn moments(fields: &Fields, lights: &[Light], spectra: &[BenchSpectrum]) -> Vec<Moments> {
     let of_light = |light: &Light| {
         let images = fields.intensities(light.ratio, light.is_depolarised);
-        let of_line = |spectrum: &Spectrum| Moments::new(&spectrum.mix(&images), &images);
+        let of_line = |spectrum: &BenchSpectrum| Moments::new(&spectrum.mix(&images), &images);
         spectra.iter().map(of_line).collect::<Vec<_>>()
     };
     lights.iter().flat_map(of_light).collect()
@@ -61,7 +59,7 @@ fn moments(fields: &Fields, lights: &[Light], spectra: &[Spectrum]) -> Vec<Momen
 
 /// Returns what the light of a corner has in common with itself: of paths by way of the wall, drawn
 /// at random, and of a tilted plate.
-fn coherence(corner: &Corner, line: &SpectralLine) -> MixedLight {
+fn coherence(corner: &Corner, line: &Spectrum) -> MixedLight {
     let mut pairs = PathPairs::default();
     let mut random = Random::new(77);
     for _ in 0..150 {
@@ -69,7 +67,11 @@ fn coherence(corner: &Corner, line: &SpectralLine) -> MixedLight {
         pairs.add(line, &sample, &other);
     }
     let cell = &cell(corner.view, 0.0, 0.0);
-    let single = PolychromaticSpeckle { line, cell }.contrast();
+    let single = PolychromaticSpeckle {
+        spectrum: line,
+        cell,
+    }
+    .contrast();
     MixedLight {
         within_single: single.powi(2),
         with_single: pairs.coherence_with_single().expect("light"),
@@ -107,7 +109,7 @@ pub(crate) fn right_angle() -> Corner {
 
 /// Returns the waves of a corner and the Gaussian line that they sample, to 3.3 standard deviations
 /// on each side.
-fn in_line(corner: &Corner, linewidth: f64) -> (Waves, Spectrum) {
+fn in_line(corner: &Corner, linewidth: f64) -> (Waves, BenchSpectrum) {
     const STEPS: i32 = 7;
     let wavelength = corner.view.wavelength;
     let full = TAU * linewidth / wavelength.powi(2);
@@ -116,7 +118,7 @@ fn in_line(corner: &Corner, linewidth: f64) -> (Waves, Spectrum) {
     let wave_numbers: Vec<f64> = wave_numbers.collect();
     (
         corner.waves(&wave_numbers, &RigidMotion::IDENTITY),
-        Spectrum::gaussian(wavelength, step, STEPS, linewidth),
+        BenchSpectrum::gaussian(wavelength, step, STEPS, linewidth),
     )
 }
 

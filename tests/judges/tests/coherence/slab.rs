@@ -3,7 +3,7 @@
 use core::f64::consts::{LN_2, TAU};
 
 use tem00::{
-    coherence::{DelayedLight, LineShape, PathPairs, SpectralLine},
+    coherence::{DelayedLight, PathPairs, PeakShape, Spectrum},
     wave::{Complex, Estimate},
 };
 
@@ -76,9 +76,9 @@ fn diffusion(kappa: f64) -> f64 {
     }
 }
 
-fn line(spread: f64) -> SpectralLine {
+fn line(spread: f64) -> Spectrum {
     let linewidth = spread * (8.0 * LN_2).sqrt() * WAVELENGTH.powi(2) / TAU;
-    SpectralLine::new(WAVELENGTH, linewidth, LineShape::Gaussian).expect("a line")
+    Spectrum::new(WAVELENGTH, linewidth, PeakShape::Gaussian).expect("a line")
 }
 
 #[test]

@@ -16,7 +16,7 @@ from tem00.mitsuba.properties import (
     read_to_world,
     refuse_unknown,
     refused,
-    spectral_line,
+    laser_spectrum,
 )
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def laser_class(variant: str) -> type[mi.Emitter]:
         ----------
         wavelength : float
             Wavelength, in the scene's unit of length.
-        line : SpectralLine or None
+        line : Spectrum or None
             Spectrum in that unit; None is light of one wavelength.
         """
 
@@ -60,7 +60,7 @@ def laser_class(variant: str) -> type[mi.Emitter]:
         def _prepare(self) -> None:
             self.wavelength = self.description.numbers["wavelength"]
             self.law = place(self.description)
-            self.line = spectral_line(self.description)
+            self.line = laser_spectrum(self.description)
             self.frame = frame_of(self.to_world)
             dr.make_opaque(self.color, self.numbers)
             _check_color(self.color)

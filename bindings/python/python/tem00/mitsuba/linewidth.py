@@ -12,7 +12,7 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
-from tem00.coherence import ResolutionCell, SpectralLine
+from tem00.coherence import ResolutionCell, Spectrum
 from tem00.mitsuba.frame import next_event
 from tem00.mitsuba.speckle_settings import refused
 from tem00.mitsuba.surfaces import surface_finder
@@ -46,7 +46,7 @@ class LineLight(NamedTuple):
     ``fractions`` and ``heights`` are those of ``cell.patterns(line)``.
     """
 
-    line: SpectralLine
+    line: Spectrum
     cell: ResolutionCell
     axis: tuple[float, float]
     fractions: Floats
@@ -114,7 +114,7 @@ def find_lights(
 
 
 def _light(
-    line: SpectralLine, cells: list[ResolutionCell], axes: Floats
+    line: Spectrum, cells: list[ResolutionCell], axes: Floats
 ) -> LineLight | None:
     """Return the light on the middle one of cells, in the order of their tilt."""
     if not cells:

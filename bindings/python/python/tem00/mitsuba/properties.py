@@ -8,7 +8,7 @@ from typing import Any
 import mitsuba as mi
 
 from tem00 import ParameterError
-from tem00.coherence import SpectralLine
+from tem00.coherence import Spectrum
 
 SHAPES = ("spot", "line")
 FOCUS_CURVES = ("distance", "plane")
@@ -94,7 +94,7 @@ def read(props: mi.Properties) -> Description:
     return Description(shape, numbers, choices, _unit(props, numbers["wavelength"]))
 
 
-def spectral_line(description: Description) -> SpectralLine | None:
+def laser_spectrum(description: Description) -> Spectrum | None:
     """Return the spectrum in the scene's unit; None is light of one wavelength from a point."""
     numbers = description.numbers
     wavelength, linewidth = numbers["wavelength"], numbers.get("linewidth", 0.0)
@@ -112,11 +112,11 @@ def spectral_line(description: Description) -> SpectralLine | None:
                 raise refused(
                     "lines", f"must be a whole number from 1 to {_MOST_LINES}, got {count:g}"
                 )
-            return SpectralLine.comb(wavelength, linewidth, int(count))
+            return Spectrum.comb(wavelength, linewidth, int(count))
         if linewidth == half_angle == 0.0:
             return None
-        make = SpectralLine if spectrum == "gaussian" else getattr(SpectralLine, spectrum)
-        line: SpectralLine = make(wavelength, linewidth)
+        make = Spectrum if spectrum == "gaussian" else getattr(Spectrum, spectrum)
+        line: Spectrum = make(wavelength, linewidth)
     except ParameterError as error:
         raise refused("linewidth", str(error)) from error
     return line

@@ -1,6 +1,6 @@
 use core::fmt::{Display, Write};
 
-use tem00_coherence::{LineShape, Spectrum};
+use tem00_coherence::{PeakShape, SpectrumForm};
 use tem00_config::{LENGTH, NUMBER};
 
 use crate::{
@@ -99,7 +99,7 @@ impl Sections {
 
     fn spectrum(&mut self, description: &SetupDescription) {
         let light = &description.laser.light;
-        if let Spectrum::Peaks(peaks) = &light.spectrum {
+        if let SpectrumForm::Peaks(peaks) = &light.form {
             let pair = |&[wavelength, power]: &[f64; 2]| {
                 let wavelength = LENGTH.text(wavelength, "nm");
                 format!("[{wavelength}, {}]", NUMBER.text(power, ""))
@@ -108,10 +108,16 @@ impl Sections {
             self.value("spectrum", format_args!("[{}]", pairs.join(", ")));
         }
         if light.linewidth > 0.0 {
-            match light.spectrum {
-                Spectrum::Peak(LineShape::Lorentzian) => self.value("spectrum", "\"lorentzian\""),
-                Spectrum::Peak(LineShape::Rectangular) => self.value("spectrum", "\"rectangular\""),
-                Spectrum::Comb(lines) => self.value("spectrum", "\"comb\"").value("lines", lines),
+            match light.form {
+                SpectrumForm::Peak(PeakShape::Lorentzian) => {
+                    self.value("spectrum", "\"lorentzian\"")
+                }
+                SpectrumForm::Peak(PeakShape::Rectangular) => {
+                    self.value("spectrum", "\"rectangular\"")
+                }
+                SpectrumForm::Comb(lines) => {
+                    self.value("spectrum", "\"comb\"").value("lines", lines)
+                }
                 _ => self,
             };
         }

@@ -2,8 +2,8 @@ use tem00_testkit::rows;
 use tem00_translucence::Material;
 
 use crate::{
-    Averages, FilterOrder, LaserLight, LineMethod, LineShape, Setup, SetupDescription, Spectrum,
-    Subsurface, parse_setup, setup::tests::description,
+    Averages, FilterOrder, LaserLight, LineMethod, PeakShape, Setup, SetupDescription,
+    SpectrumForm, Subsurface, parse_setup, setup::tests::description,
 };
 
 /// A set-up file without what has a default.
@@ -135,13 +135,13 @@ fn a_written_description_reads_back_as_the_same_bits() {
     }
     let mut written = description();
     for spectrum in [
-        Spectrum::default(),
-        Spectrum::Peak(LineShape::Lorentzian),
-        Spectrum::Peak(LineShape::Rectangular),
-        Spectrum::Comb(5),
+        SpectrumForm::default(),
+        SpectrumForm::Peak(PeakShape::Lorentzian),
+        SpectrumForm::Peak(PeakShape::Rectangular),
+        SpectrumForm::Comb(5),
     ] {
         written.laser.light.linewidth = 1e-9 / 3.0;
-        written.laser.light.spectrum = spectrum;
+        written.laser.light.form = spectrum;
         written.surface.relief.rms_height = 1.6e-6;
         written.surface.relief.correlation_length = 0.7e-6;
         comes_back(&written);

@@ -49,18 +49,18 @@ pub(super) type Pupil = (Grid<Complex<f32>>, f64);
 impl PolychromaticLight {
     /// Returns `None` for light of one wavelength from a point.
     pub(super) fn of_setup(setup: &Setup) -> Option<Self> {
-        let line = setup.description().laser.light.line();
-        let (Ok(line), Some(cell)) = (line, setup.resolution_cell()) else {
+        let spectrum = setup.description().laser.light.spectrum();
+        let (Ok(spectrum), Some(cell)) = (spectrum, setup.resolution_cell()) else {
             return None;
         };
-        if line.is_monochromatic() && cell.source_extent().is_point() {
+        if spectrum.is_monochromatic() && cell.source_extent().is_point() {
             return None;
         }
         if setup.line().is_spread() {
             return Some(Self::of_contrast(setup));
         }
         let speckle = PolychromaticSpeckle {
-            line: &line,
+            spectrum: &spectrum,
             cell: &cell,
         };
         let description = setup.description();
@@ -69,7 +69,7 @@ impl PolychromaticLight {
             speckle.line_noise_ratio(Rows::Height(rows)).powi(2)
         };
         let PatternSum { fractions, heights } = speckle.patterns(noise);
-        let is_broad = !line.is_monochromatic() && !heights.is_empty();
+        let is_broad = !spectrum.is_monochromatic() && !heights.is_empty();
         let from_point = PolychromaticSpeckle {
             cell: &cell.clone().with_source_extent(SourceExtent::default()),
             ..speckle
@@ -132,14 +132,14 @@ fn enough(modes: Vec<f64>, variance: f64, most: f64) -> (Vec<f64>, f64) {
 
 impl Bandwidth {
     fn new(speckle: &PolychromaticSpeckle<'_>, heights: &[[f64; 2]]) -> Self {
-        let PolychromaticSpeckle { line, cell } = speckle;
+        let PolychromaticSpeckle { spectrum, cell } = speckle;
         let [min, max] = WAVES;
         let count = (WAVES_PER_PATTERN / speckle.contrast().powi(2))
             .clamp(min, max)
             .ceil();
         let full = cell.tilt_wave_number();
         let waves = (0..to_usize(count)).map(|i| {
-            let kappa = line.draw((i as f64 + 0.5) / count);
+            let kappa = spectrum.draw((i as f64 + 0.5) / count);
             [(kappa / full).clamp(-MAX_TILT, MAX_TILT), kappa]
         });
         let path = |[height, root]: &[f64; 2]| [height * cell.height_factor(), *root];

@@ -289,7 +289,7 @@ impl SetupDescription {
             return found;
         }
         let light = &self.laser.light;
-        let line = light.line().err().map(Into::into);
+        let line = light.spectrum().err().map(Into::into);
         let extent = light.extent().err().map(Into::into);
         let beam = self.line_beam().err();
         line.into_iter().chain(extent).chain(beam).collect()

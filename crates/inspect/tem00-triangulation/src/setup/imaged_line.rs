@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use tem00_camera::Camera;
-use tem00_coherence::{CellGeometry, PolychromaticSpeckle, ResolutionCell, Rows, SpectralLine};
+use tem00_coherence::{CellGeometry, PolychromaticSpeckle, ResolutionCell, Rows, Spectrum};
 use tem00_decorrelation::ImagingGeometry;
 use tem00_statistics::laws::{defocused_line_centroid_deviation, imaged_line_power_contrast};
 use tem00_translucence::SpreadLine;
@@ -111,11 +111,11 @@ impl BandwidthEffect {
     }
 
     /// Returns the effect for a resolution cell and rows of a height in speckle sizes.
-    fn new(line: &SpectralLine, cell: &ResolutionCell, rows: f64) -> Self {
-        if line.is_monochromatic() && cell.source_extent().is_point() {
+    fn new(spectrum: &Spectrum, cell: &ResolutionCell, rows: f64) -> Self {
+        if spectrum.is_monochromatic() && cell.source_extent().is_point() {
             return Self::NONE;
         }
-        let speckle = PolychromaticSpeckle { line, cell };
+        let speckle = PolychromaticSpeckle { spectrum, cell };
         Self {
             contrast: speckle.contrast(),
             line_noise_ratio: speckle.line_noise_ratio(Rows::Height(rows)),
@@ -179,7 +179,7 @@ impl ImagedLine {
             column_electrons: sensor.electrons(column, laser.light.wavelength),
             sensitive_height: 2.0 * sensor.sensitive_half_width(),
             bandwidth: BandwidthEffect::new(
-                &laser.light.line().ok()?,
+                &laser.light.spectrum().ok()?,
                 &resolution_cell(description, camera, height, &geometry)?,
                 f64::from(description.average.columns) / speckle,
             ),

@@ -12,7 +12,7 @@ use super::{
     },
     within,
 };
-use crate::{SensorDescription, Spectrum, TriangulationError};
+use crate::{SensorDescription, SpectrumForm, TriangulationError};
 
 /// The functions that read and change a field of a description.
 macro_rules! field {
@@ -78,7 +78,7 @@ quantities! {
         Wavelength: wavelength = Row::new(field!(laser.light.wavelength), &NANOMETRES)
             .within(|_| (100e-9, 100e-6), "from 100 nm to 100 µm (in metres)")
             .or("required").read_with_others().varied(3)
-            .written_if(|d| !matches!(d.laser.light.spectrum, Spectrum::Peaks(_)));
+            .written_if(|d| !matches!(d.laser.light.form, SpectrumForm::Peaks(_)));
         /// length, at most a tenth of the wavelength: the full width at half maximum of the
         /// spectrum
         Linewidth: linewidth = Row::new(field!(laser.light.linewidth), &NANOMETRES)

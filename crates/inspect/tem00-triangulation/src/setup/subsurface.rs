@@ -96,7 +96,7 @@ impl SpreadLight {
             ..refusal
         })?;
         let line = Arc::new(line.with_boundary(body.surface_fraction)?);
-        let spectrum = d.laser.light.line()?;
+        let spectrum = d.laser.light.spectrum()?;
         let contrast = match spectrum.is_monochromatic() {
             true => Some(1.0),
             false => line.contrast(&spectrum, Self::window(d)),

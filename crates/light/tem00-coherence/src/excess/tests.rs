@@ -3,8 +3,8 @@ use tem00_testkit::assert_absolute;
 
 use super::*;
 use crate::{
-    CellGeometry, DVec3, LineShape, PolychromaticSpeckle, Relief, ResolutionCell, SourceExtent,
-    SpectralLine,
+    CellGeometry, DVec3, PeakShape, PolychromaticSpeckle, Relief, ResolutionCell, SourceExtent,
+    Spectrum,
 };
 
 const KERNELS: [LagKernel; 3] = [
@@ -72,16 +72,16 @@ fn two_directions_and_a_relief_are_their_sum() {
         correlation_length: 8e-6,
     };
     let cell = cell.unwrap().with_relief(relief).unwrap();
-    let line = SpectralLine::new(650e-9, 8e-9, LineShape::Gaussian).unwrap();
+    let spectrum = Spectrum::new(650e-9, 8e-9, PeakShape::Gaussian).unwrap();
     let other = cell.source() + DVec3::new(0.0, 0.013, 0.0);
     let list = [(cell.source(), 1.0), (other, 2.0)];
     let extent = SourceExtent::directions(&list).unwrap();
-    let (mut sum, wave_number) = (0.0, line.wave_number());
+    let (mut sum, wave_number) = (0.0, spectrum.wave_number());
     let tilt = cell.tilt_wave_number();
     extent.for_each_difference(cell.source(), 1.0, |change, share| {
         let (moved, heights) = cell.change_with_source(change);
         sum += share
-            * line.mean_over_pairs(cell.scale(), |kappa| {
+            * spectrum.mean_over_pairs(cell.scale(), |kappa| {
                 let shift = (wave_number * moved.x + kappa / tilt).hypot(wave_number * moved.y);
                 let phase = (kappa + wave_number * heights) * cell.path_spread();
                 let dense = disc_overlap(shift).powi(2) * (-phase * phase).exp();
@@ -90,9 +90,12 @@ fn two_directions_and_a_relief_are_their_sum() {
             });
     });
     let cell = &cell.with_source_extent(extent);
-    let found = PolychromaticSpeckle { line: &line, cell }
-        .contrast()
-        .powi(2);
+    let found = PolychromaticSpeckle {
+        spectrum: &spectrum,
+        cell,
+    }
+    .contrast()
+    .powi(2);
     assert!((found - sum).abs() < 2e-6, "{found} {sum}");
 }
 

@@ -3,7 +3,7 @@ use tem00_testkit::assert_relative;
 
 use super::*;
 use crate::{
-    CellGeometry, LineShape, PolychromaticSpeckle, Relief, ResolutionCell, Rows, SpectralLine,
+    CellGeometry, PeakShape, PolychromaticSpeckle, Relief, ResolutionCell, Rows, Spectrum,
     law::tests::of,
 };
 
@@ -28,7 +28,7 @@ fn cell(incidence: f64, observation: f64) -> ResolutionCell {
 }
 
 fn contrast(cell: &ResolutionCell, extent: Result<SourceExtent, Refusal>) -> f64 {
-    let line = &SpectralLine::monochromatic(WAVELENGTH).unwrap();
+    let line = &Spectrum::monochromatic(WAVELENGTH).unwrap();
     let cell = &cell.clone().with_source_extent(extent.unwrap());
     of(line, cell).contrast()
 }
@@ -126,7 +126,7 @@ fn a_disc_is_the_sum_of_its_points_with_heights_and_a_linewidth_too() {
             correlation_length: 0.0,
         };
         let cell = cell(35.0, -20.0).with_relief(relief).unwrap();
-        let line = &SpectralLine::new(WAVELENGTH, linewidth, LineShape::Gaussian).unwrap();
+        let line = &Spectrum::new(WAVELENGTH, linewidth, PeakShape::Gaussian).unwrap();
         let points = SourceExtent::directions(&points_of_disc(cell.source(), 0.015, 100)).unwrap();
         for (i, law) in laws.iter().enumerate() {
             let of = |extent: &SourceExtent| {
@@ -170,7 +170,7 @@ fn two_wavelengths_from_two_directions_correlate_by_their_waves() {
     let extent = SourceExtent::directions(&list).unwrap();
     let cell = cell(35.25, -20.0).with_relief(relief).unwrap();
     let cell = &cell.with_source_extent(extent);
-    let line = &SpectralLine::from_peaks(&wavelengths.map(|peak| [peak, 1.0])).unwrap();
+    let line = &Spectrum::from_peaks(&wavelengths.map(|peak| [peak, 1.0])).unwrap();
     let found = of(line, cell).contrast().powi(2);
     // Linear in both changes, of 1 % and 3 % of their sums.
     assert!((found / expected - 1.0).abs() < 0.01, "{found}, {expected}");
@@ -181,7 +181,7 @@ fn directions_share_chords_and_lenses_of_the_pupil() {
     // Two directions of half of the light each, displaced across the tilt by half a pupil, and
     // along it.
     let cell = cell(20.0, 0.0);
-    let line = &SpectralLine::monochromatic(WAVELENGTH).unwrap();
+    let line = &Spectrum::monochromatic(WAVELENGTH).unwrap();
     let displaced = |axis: DVec3| {
         let other = cell.source() + 2.0 * SIN_APERTURE * 0.5 * axis;
         let list = [(cell.source(), 1.0), (other, 1.0)];

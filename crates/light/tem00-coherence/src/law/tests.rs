@@ -5,7 +5,7 @@ use tem00_numerics::jinc;
 use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
-use crate::{CellGeometry, DVec3, LineShape, Relief};
+use crate::{CellGeometry, DVec3, PeakShape, Relief};
 
 /// A camera of sin u = 0.025 and a source in one plane, by their angles in degrees.
 pub(crate) fn cell(
@@ -35,53 +35,53 @@ pub(crate) fn cell(
         .unwrap()
 }
 
-pub(crate) fn gaussian(wavelength: f64, linewidth: f64) -> SpectralLine {
-    SpectralLine::new(wavelength, linewidth, LineShape::Gaussian).unwrap()
+pub(crate) fn gaussian(wavelength: f64, linewidth: f64) -> Spectrum {
+    Spectrum::new(wavelength, linewidth, PeakShape::Gaussian).unwrap()
 }
 
 pub(crate) const fn of<'a>(
-    line: &'a SpectralLine,
+    spectrum: &'a Spectrum,
     cell: &'a ResolutionCell,
 ) -> PolychromaticSpeckle<'a> {
-    PolychromaticSpeckle { line, cell }
+    PolychromaticSpeckle { spectrum, cell }
 }
 
-fn contrast(line: &SpectralLine, cell: &ResolutionCell) -> f64 {
-    of(line, cell).contrast()
+fn contrast(spectrum: &Spectrum, cell: &ResolutionCell) -> f64 {
+    of(spectrum, cell).contrast()
 }
 
 #[test]
 fn without_a_tilt_contrasts_have_closed_forms() {
     let cell = cell(450e-9, -30.0, 30.0, 1.6e-6);
     let r = cell.path_spread();
-    let lines = |shape| SpectralLine::new(450e-9, 7e-9, shape).unwrap();
+    let lines = |shape| Spectrum::new(450e-9, 7e-9, shape).unwrap();
     let full = 2.0 * PI * 7e-9 / 450e-9_f64.powi(2);
     let squares = [
-        (LineShape::Gaussian, {
+        (PeakShape::Gaussian, {
             let sigma = full / (8.0 * core::f64::consts::LN_2).sqrt();
             (1.0 + (2.0 * sigma * r).powi(2)).sqrt().recip()
         }),
         (
-            LineShape::Lorentzian,
+            PeakShape::Lorentzian,
             (full * r).powi(2).exp() * erfc(full * r),
         ),
-        (LineShape::Rectangular, {
+        (PeakShape::Rectangular, {
             let b = full * r;
             PI.sqrt() * erf(b) / b - (1.0 - (-b * b).exp()) / (b * b)
         }),
     ];
     for (shape, squared) in squares {
-        let line = &lines(shape);
-        let found = contrast(line, &cell);
+        let spectrum = &lines(shape);
+        let found = contrast(spectrum, &cell);
         assert_relative(found * found, squared, 1e-8);
         // The speckles are as in one wavelength, and their covariance is the Airy pattern.
-        let speckle = of(line, &cell);
+        let speckle = of(spectrum, &cell);
         for (lag, airy) in [([0.0, 0.0], 1.0), ([0.5, 0.0], jinc(0.5 * PI).powi(2))] {
             let found = speckle.autocovariance(lag);
             assert_relative(found, squared * airy, 1e-7);
         }
     }
-    let two = SpectralLine::from_peaks(&[[450e-9, 2.0], [453e-9, 1.0]]).unwrap();
+    let two = Spectrum::from_peaks(&[[450e-9, 2.0], [453e-9, 1.0]]).unwrap();
     let kappa = 2.0 * PI * (1.0 / 450e-9 - 1.0 / 453e-9);
     let squared = (4.0 + 1.0 + 4.0 * (-(kappa * r).powi(2)).exp()) / 9.0;
     assert_relative(contrast(&two, &cell).powi(2), squared, 1e-12);
@@ -125,8 +125,8 @@ fn a_table_of_contrasts_and_line_noise_is_met() {
     for (wavelength, height, contrasts, noises) in table {
         let cell = cell(wavelength * 1e-9, 0.0, 30.0, height * 1e-6);
         for (i, linewidth) in [1e-9, 5e-9, 20e-9, 40e-9].into_iter().enumerate() {
-            let line = gaussian(wavelength * 1e-9, linewidth);
-            let speckle = of(&line, &cell);
+            let spectrum = gaussian(wavelength * 1e-9, linewidth);
+            let speckle = of(&spectrum, &cell);
             assert_absolute(speckle.contrast(), contrasts[i], 1.1e-3);
             assert_absolute(speckle.line_noise_ratio(Rows::Thin), noises[i], 1.1e-3);
         }
@@ -136,19 +136,19 @@ fn a_table_of_contrasts_and_line_noise_is_met() {
 #[test]
 fn shapes_of_one_width_differ() {
     let cell = cell(450e-9, 0.0, 30.0, 1.6e-6);
-    let shaped = |shape| SpectralLine::new(450e-9, 10e-9, shape).unwrap();
+    let shaped = |shape| Spectrum::new(450e-9, 10e-9, shape).unwrap();
     let lines = [
-        (shaped(LineShape::Lorentzian), 0.556),
+        (shaped(PeakShape::Lorentzian), 0.556),
         (
-            SpectralLine::from_peaks(&[[445e-9, 1.0], [455e-9, 1.0]]).unwrap(),
+            Spectrum::from_peaks(&[[445e-9, 1.0], [455e-9, 1.0]]).unwrap(),
             0.757,
         ),
-        (shaped(LineShape::Gaussian), 0.765),
-        (SpectralLine::comb(450e-9, 10e-9, 5).unwrap(), 0.798),
-        (shaped(LineShape::Rectangular), 0.835),
+        (shaped(PeakShape::Gaussian), 0.765),
+        (Spectrum::comb(450e-9, 10e-9, 5).unwrap(), 0.798),
+        (shaped(PeakShape::Rectangular), 0.835),
     ];
-    for (line, expected) in lines {
-        assert_absolute(contrast(&line, &cell), expected, 6e-4);
+    for (spectrum, expected) in lines {
+        assert_absolute(contrast(&spectrum, &cell), expected, 6e-4);
     }
 }
 
@@ -160,12 +160,12 @@ fn a_gaussian_line_has_an_approximate_closed_form() {
         (20.0, 45.0, 2.5e-6, 15e-9),
         (30.0, 0.0, 6e-6, 10e-9),
     ] {
-        let (cell, line) = (
+        let (cell, spectrum) = (
             cell(450e-9, incidence, observation, height),
             gaussian(450e-9, linewidth),
         );
-        let (sigma, tilt) = (line.wave_number_spread(), cell.tilt_wave_number());
-        let speckle = of(&line, &cell);
+        let (sigma, tilt) = (spectrum.wave_number_spread(), cell.tilt_wave_number());
+        let speckle = of(&spectrum, &cell);
         let approximate = |linear: f64, square: f64| {
             let q =
                 1.0 + 4.0 * sigma.powi(2) * (cell.path_spread().powi(2) + square / tilt.powi(2));
@@ -194,8 +194,8 @@ fn frames_and_grains_of_a_tilted_cell() {
     let spread = 0.15 * cell.tilt_wave_number();
     let linewidth =
         spread * (8.0 * core::f64::consts::LN_2).sqrt() * 450e-9_f64.powi(2) / (2.0 * PI);
-    let line = gaussian(450e-9, linewidth);
-    let speckle = of(&line, &cell);
+    let spectrum = gaussian(450e-9, linewidth);
+    let speckle = of(&spectrum, &cell);
     let lattice = |shift: [f64; 2], lag: [f64; 2]| {
         let (mut sum, mut count) = (Complex::ZERO, 0.0);
         let places = || (-60..=60).map(|i| f64::from(i) / 60.25);
@@ -234,15 +234,15 @@ fn frames_and_grains_of_a_tilted_cell() {
 
 #[test]
 fn long_relief_spreads_no_paths() {
-    let (line, cell) = (gaussian(450e-9, 20e-9), cell(450e-9, 0.0, 0.0, 1.6e-6));
+    let (spectrum, cell) = (gaussian(450e-9, 20e-9), cell(450e-9, 0.0, 0.0, 1.6e-6));
     let long = |length: f64| {
         let relief = Relief {
             rms_height: 1.6e-6,
             correlation_length: length * cell.speckle_size(),
         };
-        contrast(&line, &cell.clone().with_relief(relief).unwrap())
+        contrast(&spectrum, &cell.clone().with_relief(relief).unwrap())
     };
-    assert_absolute(long(1e-3), contrast(&line, &cell), 1e-3);
+    assert_absolute(long(1e-3), contrast(&spectrum, &cell), 1e-3);
     // Waves over scatterers, whose errors are 0.006, 0.007, 0.005 and 0.004.
     for (length, waves) in [(0.5, 0.757), (1.0, 0.815), (2.0, 0.885), (4.0, 0.937)] {
         assert_absolute(long(length), waves, 3e-3);
@@ -252,10 +252,10 @@ fn long_relief_spreads_no_paths() {
 
 #[test]
 fn a_defocused_cell_mixes_the_paths_of_its_blur() {
-    let (line, cell) = (gaussian(450e-9, 20e-9), cell(450e-9, 0.0, 30.0, 0.0));
+    let (spectrum, cell) = (gaussian(450e-9, 20e-9), cell(450e-9, 0.0, 30.0, 0.0));
     for defocus in [1.5e-3, -1.5e-3] {
         let cell = cell.clone().with_defocus(defocus).unwrap();
-        assert_absolute(contrast(&line, &cell), 0.401, 1e-3);
+        assert_absolute(contrast(&spectrum, &cell), 0.401, 1e-3);
     }
 }
 
@@ -280,8 +280,8 @@ fn a_table_of_displacements_has_the_closed_forms_until_the_pupils_part() {
 
 #[test]
 fn rows_lie_between_thin_and_tall_ones() {
-    let (line, cell) = (gaussian(450e-9, 20e-9), cell(450e-9, 0.0, 30.0, 0.0));
-    let speckle = of(&line, &cell);
+    let (spectrum, cell) = (gaussian(450e-9, 20e-9), cell(450e-9, 0.0, 30.0, 0.0));
+    let speckle = of(&spectrum, &cell);
     let deviation = |rows| speckle.line_noise_ratio(rows);
     let [thin, tall] = [Rows::Thin, Rows::Tall].map(deviation);
     for none in [0.0, -1.0, f64::NAN] {
@@ -304,8 +304,8 @@ fn the_wings_of_a_lorentzian_end_on_a_long_relief() {
         correlation_length: 2e-6,
     };
     let cell = cell(450e-9, 0.0, 30.0, 0.0).with_relief(relief).unwrap();
-    let line = SpectralLine::new(450e-9, 1e-9, LineShape::Lorentzian).unwrap();
-    let speckle = of(&line, &cell);
+    let spectrum = Spectrum::new(450e-9, 1e-9, PeakShape::Lorentzian).unwrap();
+    let speckle = of(&spectrum, &cell);
     let noise = speckle.line_noise_ratio(Rows::Thin);
     assert!(speckle.contrast() < noise && noise < 1.0, "{noise}");
 }
@@ -314,13 +314,13 @@ fn the_wings_of_a_lorentzian_end_on_a_long_relief() {
 fn lines_too_narrow_for_a_reciprocal_are_of_one_wavelength() {
     let cell = cell(450e-9, 0.0, 30.0, 1.6e-6);
     for shape in [
-        LineShape::Gaussian,
-        LineShape::Lorentzian,
-        LineShape::Rectangular,
+        PeakShape::Gaussian,
+        PeakShape::Lorentzian,
+        PeakShape::Rectangular,
     ] {
         for linewidth in [5e-324, 1e-300, 1e-30] {
-            let line = SpectralLine::new(450e-9, linewidth, shape).unwrap();
-            assert_absolute(contrast(&line, &cell), 1.0, 1e-9);
+            let spectrum = Spectrum::new(450e-9, linewidth, shape).unwrap();
+            assert_absolute(contrast(&spectrum, &cell), 1.0, 1e-9);
         }
     }
 }

@@ -2,7 +2,7 @@ use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
 use crate::{
-    LineShape, Rows, SpectralLine,
+    PeakShape, Rows, Spectrum,
     law::tests::{cell, gaussian, of},
 };
 
@@ -13,10 +13,10 @@ fn squares(fractions: &[f64]) -> f64 {
 
 #[test]
 fn squares_of_modes_sum_to_the_squared_contrast() {
-    let lorentzian = SpectralLine::new(450e-9, 4e-9, LineShape::Lorentzian).unwrap();
-    let comb = SpectralLine::comb(450e-9, 10e-9, 5).unwrap();
+    let lorentzian = Spectrum::new(450e-9, 4e-9, PeakShape::Lorentzian).unwrap();
+    let comb = Spectrum::comb(450e-9, 10e-9, 5).unwrap();
     let tilted = cell(450e-9, 0.0, 30.0, 0.0);
-    for (line, cell) in [
+    for (spectrum, cell) in [
         (gaussian(450e-9, 20e-9), cell(450e-9, 0.0, 30.0, 1.6e-6)),
         (gaussian(450e-9, 20e-9), tilted.clone()),
         (
@@ -28,7 +28,7 @@ fn squares_of_modes_sum_to_the_squared_contrast() {
         (gaussian(450e-9, 20e-9), cell(450e-9, 0.0, 30.0, 20e-6)),
         (gaussian(450e-9, 20e-9), cell(450e-9, 0.0, 30.0, 90e-6)),
     ] {
-        let speckle = of(&line, &cell);
+        let speckle = of(&spectrum, &cell);
         let modes = speckle.modes();
         assert_absolute(squares(&modes).sqrt(), speckle.contrast(), 1.2e-3);
     }
@@ -36,8 +36,8 @@ fn squares_of_modes_sum_to_the_squared_contrast() {
 
 #[test]
 fn modes_of_heights_alone_fall_by_one_ratio() {
-    let (line, cell) = (gaussian(450e-9, 10e-9), cell(450e-9, -30.0, 30.0, 1.6e-6));
-    let speckle = of(&line, &cell);
+    let (spectrum, cell) = (gaussian(450e-9, 10e-9), cell(450e-9, -30.0, 30.0, 1.6e-6));
+    let speckle = of(&spectrum, &cell);
     let squared = speckle.contrast().powi(2);
     let ratio = (1.0 - squared) / (1.0 + squared);
     for (n, mode) in (0..5).zip(speckle.modes()) {
@@ -64,10 +64,10 @@ fn the_extent_of_a_source_adds_patterns_to_those_of_its_line() {
     for (linewidth, rms_height, few_heights) in
         [(0.0, 0.0, true), (5e-9, 1e-6, true), (20e-9, 9e-6, false)]
     {
-        let line = &gaussian(450e-9, linewidth);
+        let spectrum = &gaussian(450e-9, linewidth);
         let point = &cell(450e-9, 0.0, 30.0, rms_height);
         let disc = &point.clone().with_source_extent(extent.clone());
-        let [of_point, of_disc] = [point, disc].map(|cell| of(line, cell));
+        let [of_point, of_disc] = [point, disc].map(|cell| of(spectrum, cell));
         for variance in [contrast, noise] {
             let patterns = of_disc.patterns(variance);
             assert_eq!(!patterns.heights.is_empty(), few_heights);
@@ -99,11 +99,11 @@ fn a_dense_relief_can_stand_for_a_correlated_one() {
         correlation_length: 9e-6,
     };
     let cell = cell(450e-9, 0.0, 30.0, 0.0).with_relief(relief).unwrap();
-    let line = gaussian(450e-9, 20e-9);
-    let speckle = of(&line, &cell);
+    let spectrum = gaussian(450e-9, 20e-9);
+    let speckle = of(&spectrum, &cell);
     let contrast = |cell: &ResolutionCell| {
-        let line = &line;
-        of(line, cell).contrast()
+        let spectrum = &spectrum;
+        of(spectrum, cell).contrast()
     };
     let dense = dense_equivalent(cell.clone(), speckle.contrast(), contrast);
     assert_absolute(contrast(&dense), speckle.contrast(), 2e-4);

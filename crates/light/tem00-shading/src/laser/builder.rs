@@ -1,6 +1,6 @@
 use glam::DVec3;
 use tem00_beam::{FanGeometry, FocusCurve, GaussianBeam, LineProfile};
-use tem00_coherence::{SourceExtent, SpectralLine};
+use tem00_coherence::{SourceExtent, Spectrum};
 
 use crate::{BeamShape, Laser, LaserDescription, ShadingError};
 
@@ -9,7 +9,7 @@ use crate::{BeamShape, Laser, LaserDescription, ShadingError};
 #[must_use]
 pub struct LaserBuilder {
     wavelength: f64,
-    spectrum: Option<SpectralLine>,
+    spectrum: Option<Spectrum>,
     source_extent: SourceExtent,
     power: f64,
     waist_radius: [f64; 2],
@@ -108,7 +108,7 @@ impl LaserBuilder {
     }
 
     /// Sets the spectrum of the light, whose middle replaces the wavelength.
-    pub fn spectrum(mut self, spectrum: SpectralLine) -> Self {
+    pub fn spectrum(mut self, spectrum: Spectrum) -> Self {
         self.spectrum = Some(spectrum);
         self
     }
@@ -136,7 +136,7 @@ impl LaserBuilder {
     ) -> Result<Laser, ShadingError> {
         let spectrum = match self.spectrum {
             Some(spectrum) => spectrum,
-            None => SpectralLine::monochromatic(self.wavelength)?,
+            None => Spectrum::monochromatic(self.wavelength)?,
         };
         let focus = self.focus.unwrap_or_else(|| origin.distance(target));
         let shape = match self.line {
@@ -163,7 +163,7 @@ impl LaserBuilder {
             }
         };
         let laser = Laser::new(LaserDescription {
-            line: spectrum,
+            spectrum,
             power: self.power,
             position: origin,
             look_at: target,

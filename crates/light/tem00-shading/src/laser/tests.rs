@@ -17,7 +17,7 @@ fn line(profile: LineProfile, focus_curve: FocusCurve) -> Laser {
         profile,
     };
     Laser::new(LaserDescription {
-        line: SpectralLine::monochromatic(650e-9).unwrap(),
+        spectrum: Spectrum::monochromatic(650e-9).unwrap(),
         power: 5e-3,
         position: DVec3::ZERO,
         look_at: DVec3::Z,
@@ -60,7 +60,7 @@ fn elliptic_spot() -> (Laser, AstigmaticBeam, [DVec3; 3]) {
     let axis = DVec3::new(2.0, 1.0, -2.0) / 3.0;
     let line_direction = DVec3::new(0.3, 0.8, 0.1);
     let laser = Laser::new(LaserDescription {
-        line: SpectralLine::monochromatic(650e-9).unwrap(),
+        spectrum: Spectrum::monochromatic(650e-9).unwrap(),
         power: 5e-3,
         position,
         look_at: position + 0.2 * axis,

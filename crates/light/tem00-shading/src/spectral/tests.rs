@@ -1,4 +1,4 @@
-use tem00_coherence::{LineShape, PolychromaticSpeckle, SourceExtent};
+use tem00_coherence::{PeakShape, PolychromaticSpeckle, SourceExtent};
 use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
@@ -16,16 +16,16 @@ fn camera() -> Camera {
     .unwrap()
 }
 
-fn laser(line: SpectralLine, half_angle: f64) -> Laser {
+fn laser(spectrum: Spectrum, half_angle: f64) -> Laser {
     Laser::spot(650e-9, 50e-3)
-        .spectrum(line)
+        .spectrum(spectrum)
         .source_extent(SourceExtent::disc(half_angle).unwrap())
         .placed(3.0 * DVec3::Z, DVec3::ZERO, DVec3::X)
         .unwrap()
 }
 
-fn gaussian(linewidth: f64) -> SpectralLine {
-    SpectralLine::new(650e-9, linewidth, LineShape::Gaussian).unwrap()
+fn gaussian(linewidth: f64) -> Spectrum {
+    Spectrum::new(650e-9, linewidth, PeakShape::Gaussian).unwrap()
 }
 
 const fn relief(rms_height: f64) -> Relief {
@@ -86,10 +86,10 @@ fn picture(frame: &SpeckleFrame, step: DVec3) -> Vec<f64> {
 
 #[test]
 fn contrasts_are_those_of_the_law() {
-    let comb = SpectralLine::comb(650e-9, 8e-9, 5).unwrap();
-    let single = SpectralLine::monochromatic(650e-9).unwrap();
+    let comb = Spectrum::comb(650e-9, 8e-9, 5).unwrap();
+    let single = Spectrum::monochromatic(650e-9).unwrap();
     // The aperture has sin u = 0.0052.
-    for (line, height, half_angle) in [
+    for (spectrum, height, half_angle) in [
         (gaussian(5e-9), 0.0, 0.0),
         (gaussian(10e-9), 8e-6, 0.0),
         (comb, 2e-6, 0.0),
@@ -98,20 +98,24 @@ fn contrasts_are_those_of_the_law() {
         (single, 8e-6, 0.01),
         (gaussian(5e-9), 2e-6, 0.004),
     ] {
-        let laser = laser(line, half_angle);
+        let laser = laser(spectrum, half_angle);
         let speckle = prepared(&laser, relief(height)).prepare().unwrap();
         let values = picture(&speckle.frame(&Motion::default()).unwrap(), DVec3::ZERO);
-        let (line, cell) = (laser.spectral_line(), cell(&laser, relief(height)));
-        let law = PolychromaticSpeckle { line, cell: &cell }.contrast();
+        let (spectrum, cell) = (laser.spectrum(), cell(&laser, relief(height)));
+        let law = PolychromaticSpeckle {
+            spectrum,
+            cell: &cell,
+        }
+        .contrast();
         // Three standard errors of a contrast from 3584 points.
         assert_relative(covariance(&values, &values).sqrt(), law, 0.045);
     }
 }
 
 /// The contrast of pairs of wave numbers on slices.
-fn contrast_on(path: SlicePath, bandwidth: &Bandwidth, line: &SpectralLine) -> f64 {
+fn contrast_on(path: SlicePath, bandwidth: &Bandwidth, spectrum: &Spectrum) -> f64 {
     let scale = path.slices_per_diameter() * bandwidth.tilt * bandwidth.stretch;
-    let waves = medians(line, 300);
+    let waves = medians(spectrum, 300);
     let pairs = waves.iter().flat_map(|a| waves.iter().map(move |b| (a, b)));
     let sum: f64 = pairs
         .map(|(a, b)| path.correlation_between(scale * a, scale * b))
@@ -123,26 +127,26 @@ fn contrast_on(path: SlicePath, bandwidth: &Bandwidth, line: &SpectralLine) -> f
 fn contrasts_are_those_of_the_law_on_any_number_of_slices() {
     for linewidth in [1e-9, 5e-9, 20e-9] {
         let laser = laser(gaussian(linewidth), 0.0);
-        let line = laser.spectral_line();
+        let spectrum = laser.spectrum();
         let speckle = prepared(&laser, Relief::default()).planned().unwrap().0;
         let bandwidth = speckle.bandwidth.unwrap();
         let law = bandwidth
-            .covariance(line, DVec2::ZERO, bandwidth.axis)
+            .covariance(spectrum, DVec2::ZERO, bandwidth.axis)
             .sqrt();
         for slices in [4, 8, 16, 32] {
             let path = SlicePath::Straight {
                 half_period: 2 * slices,
                 length: 4,
             };
-            let bandwidth = bandwidth.clone().on_slices(line, path);
+            let bandwidth = bandwidth.clone().on_slices(spectrum, path);
             // 64 waves stand for 300.
-            assert_relative(contrast_on(path, &bandwidth, line), law, 0.006);
+            assert_relative(contrast_on(path, &bandwidth, spectrum), law, 0.006);
             let plain = Bandwidth {
                 stretch: 1.0,
                 ..bandwidth
             };
             if slices == 8 {
-                let found = contrast_on(path, &plain, line);
+                let found = contrast_on(path, &plain, spectrum);
                 assert!(found > 1.02 * law, "{found} tells nothing: {law}");
             }
         }
@@ -153,8 +157,12 @@ fn contrasts_are_those_of_the_law_on_any_number_of_slices() {
 fn patterns_in_little_memory_have_the_contrast_of_the_law() {
     const SEEDS: u64 = 6;
     let laser = laser(gaussian(10e-9), 0.0);
-    let (line, cell) = (laser.spectral_line(), cell(&laser, Relief::default()));
-    let law = PolychromaticSpeckle { line, cell: &cell }.contrast();
+    let (spectrum, cell) = (laser.spectrum(), cell(&laser, Relief::default()));
+    let law = PolychromaticSpeckle {
+        spectrum,
+        cell: &cell,
+    }
+    .contrast();
     let of_seed = |seed: u64| {
         let speckle = Speckle::new(&camera(), &laser, seed).at_points([(DVec3::ZERO, DVec3::Z)]);
         let speckle = speckle.within(100 << 20).prepare().unwrap();
@@ -177,8 +185,11 @@ fn pixels_have_the_contrast_of_the_law_of_a_linewidth() {
         .iter()
         .map(|&point| frame.average(point, DVec3::Z))
         .collect();
-    let (line, cell) = (laser.spectral_line(), cell(&laser, Relief::default()));
-    let law = PolychromaticSpeckle { line, cell: &cell };
+    let (spectrum, cell) = (laser.spectrum(), cell(&laser, Relief::default()));
+    let law = PolychromaticSpeckle {
+        spectrum,
+        cell: &cell,
+    };
     let pixel = speckle.geometry().speckle_size_in_pixels().recip();
     // The mean of the autocovariance over pairs of points of a pixel, by the midpoint rule.
     let steps = 24;
@@ -194,8 +205,8 @@ fn pixels_have_the_contrast_of_the_law_of_a_linewidth() {
 
 #[test]
 fn frames_along_the_tilt_correlate_by_the_law_and_others_are_refused() {
-    let line = gaussian(5e-9);
-    let laser = laser(line.clone(), 0.0);
+    let spectrum = gaussian(5e-9);
+    let laser = laser(spectrum.clone(), 0.0);
     // By a quarter of the pupil, seen from 0.3 m under 30°.
     let diameter = camera().imaging_geometry(650e-9).unwrap().pupil_diameter();
     let along = 0.25 * diameter / 30_f64.to_radians().cos() * DVec3::X;
@@ -205,7 +216,7 @@ fn frames_along_the_tilt_correlate_by_the_law_and_others_are_refused() {
     let here = picture(&speckle.frame(&Motion::default()).unwrap(), DVec3::ZERO);
     let cell = cell(&laser, Relief::default());
     let law = PolychromaticSpeckle {
-        line: &line,
+        spectrum: &spectrum,
         cell: &cell,
     };
     for (pose, step) in poses.iter().zip([-along, along]) {

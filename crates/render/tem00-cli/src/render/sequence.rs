@@ -206,7 +206,7 @@ impl Render<'_> {
         let lasers = frame.lasers.iter().zip(&self.scene.lasers).enumerate();
         let lasers = lasers.map(|(index, (layers, laser))| {
             let plan = plans.and_then(|plans| plans.get(index));
-            let plan = plan.filter(|_| laser.spectral_line().is_monochromatic());
+            let plan = plan.filter(|_| laser.spectrum().is_monochromatic());
             FrameLaser::measure(
                 layers,
                 laser.power(),

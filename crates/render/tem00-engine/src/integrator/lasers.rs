@@ -233,7 +233,7 @@ impl<'a> Integrator<'a> {
     }
 
     fn laser_throughput(&self, laser: usize, path: &Path, batch: &Batch<'_>) -> f64 {
-        let first = path.sample * self.spectrum.wavelengths.len();
-        batch.throughput[first + self.spectrum.of_laser[laser]]
+        let first = path.sample * self.bands.wavelengths.len();
+        batch.throughput[first + self.bands.of_laser[laser]]
     }
 }

@@ -126,8 +126,8 @@ impl<'a> Integrator<'a> {
     }
 
     fn light_throughput(&self, path: &Path, batch: &Batch<'_>) -> f64 {
-        let first = path.sample * self.spectrum.wavelengths.len();
-        batch.throughput[first + self.spectrum.of_lights]
+        let first = path.sample * self.bands.wavelengths.len();
+        batch.throughput[first + self.bands.of_lights]
     }
 }
 

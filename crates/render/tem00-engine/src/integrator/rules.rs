@@ -52,7 +52,7 @@ pub(crate) fn is_plate(scene: &Scene) -> bool {
 
 /// The distinct wavelengths of all light, in metres.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Spectrum {
+pub(super) struct Bands {
     pub wavelengths: Vec<f64>,
     /// For each laser, the index of its wavelength.
     pub of_laser: Vec<usize>,
@@ -60,7 +60,7 @@ pub(super) struct Spectrum {
     pub of_lights: usize,
 }
 
-impl Spectrum {
+impl Bands {
     pub(super) fn new(lasers: &[Laser], lights: &[Light]) -> Self {
         let mut wavelengths = Vec::new();
         let of_laser = lasers

@@ -76,7 +76,7 @@ impl<'a> Connector<'a> {
         let (mut connections, mut segments) = (Vec::new(), Vec::new());
         for met in met.iter().filter(|met| !met.vertex.is_specular()) {
             let lens = draws.uniform_2d();
-            let is_single = self.laser.spectral_line().is_monochromatic();
+            let is_single = self.laser.spectrum().is_monochromatic();
             let wave = if is_single { 0.5 } else { draws.uniform() };
             if let Some((connection, segment)) = self.connection(met, lens, wave) {
                 connections.push(connection);

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use glam::DVec2;
 use tem00_decorrelation::{ImagingGeometry, pupil_overlap_correlation};
 use tem00_shading::{Bandwidth, LightPath};
-use tem00_tracer::{Scene, SpectralLine};
+use tem00_tracer::{Scene, Spectrum};
 
 use super::{
     change::{Change, ReferencePoint},
@@ -149,7 +149,7 @@ struct PupilShift {
 /// The waves of a line on a surface.
 pub(super) struct Waves<'a> {
     surface: usize,
-    line: Option<(&'a SpectralLine, Bandwidth)>,
+    spectrum: Option<(&'a Spectrum, Bandwidth)>,
     /// Their covariance without a motion.
     variance: f64,
 }
@@ -211,7 +211,7 @@ impl Tracks {
             return [by_length; 2];
         }
         let widest = waves.iter().max_by(|a, b| a.reach().total_cmp(&b.reach()));
-        let tilt = widest.filter(|waves| waves.line.is_some());
+        let tilt = widest.filter(|waves| waves.spectrum.is_some());
         let along = follow(Following::Axis(tilt.map_or(self.axis, Waves::axis)));
         let is_better = along.error() < by_length.error();
         [by_length, if is_better { along } else { by_length }]
@@ -300,14 +300,14 @@ impl<'a> Waves<'a> {
     pub(super) fn single(surface: usize) -> Self {
         Self {
             surface,
-            line: None,
+            spectrum: None,
             variance: 1.0,
         }
     }
 
-    pub(super) fn of(line: &'a SpectralLine, surface: usize, bandwidth: Bandwidth) -> Self {
+    pub(super) fn of(spectrum: &'a Spectrum, surface: usize, bandwidth: Bandwidth) -> Self {
         let mut waves = Self {
-            line: Some((line, bandwidth)),
+            spectrum: Some((spectrum, bandwidth)),
             ..Self::single(surface)
         };
         waves.variance = waves.correlation(DVec2::ZERO, DVec2::X);
@@ -316,19 +316,19 @@ impl<'a> Waves<'a> {
 
     /// Returns the direction in which the waves displace the pupil.
     fn axis(&self) -> DVec2 {
-        self.line.as_ref().map_or(DVec2::X, |(_, b)| b.axis)
+        self.spectrum.as_ref().map_or(DVec2::X, |(_, b)| b.axis)
     }
 
     fn reach(&self) -> f64 {
-        self.line.as_ref().map_or(0.0, |(_, b)| b.reach)
+        self.spectrum.as_ref().map_or(0.0, |(_, b)| b.reach)
     }
 
     /// Returns the correlation of intensities after the pupil has moved by `shift`, in diameters,
     /// where the waves displace it along an axis.
     pub(super) fn correlation(&self, shift: DVec2, axis: DVec2) -> f64 {
-        let Some((line, bandwidth)) = &self.line else {
+        let Some((spectrum, bandwidth)) = &self.spectrum else {
             return pupil_overlap_correlation(shift.length());
         };
-        bandwidth.covariance(line, shift, axis) / self.variance
+        bandwidth.covariance(spectrum, shift, axis) / self.variance
     }
 }

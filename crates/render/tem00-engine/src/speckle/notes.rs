@@ -86,7 +86,7 @@ pub fn roughness_notes(scene: &Scene) -> Result<Vec<RoughnessNote>, TracerError>
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
-    use tem00_tracer::{LaserDescription, Material, Metal, SpectralLine};
+    use tem00_tracer::{LaserDescription, Material, Metal, Spectrum};
 
     use super::roughness_notes;
     use crate::testing::{self, camera, plate, spot};
@@ -95,7 +95,7 @@ mod tests {
     fn scene() -> tem00_tracer::Scene {
         let red = spot(DVec3::new(0.1, 0.0, 0.3), 0.1e-3);
         let green = LaserDescription {
-            line: SpectralLine::monochromatic(532e-9).unwrap(),
+            spectrum: Spectrum::monochromatic(532e-9).unwrap(),
             ..red.clone()
         };
         let plate = plate(DVec3::ZERO, DVec3::Z, [0.02, 0.02]);

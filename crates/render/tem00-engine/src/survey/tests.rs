@@ -5,7 +5,7 @@ use core::sync::atomic::AtomicBool;
 use tem00_testkit::on_threads;
 
 use glam::DVec3;
-use tem00_coherence::{LineShape, SpectralLine};
+use tem00_coherence::{PeakShape, Spectrum};
 use tem00_decorrelation::pupil_overlap_correlation;
 use tem00_tracer::{Frame, LaserDescription};
 
@@ -16,11 +16,11 @@ const WAVELENGTH: f64 = 650e-9;
 
 /// Plates at right angles: the floor, which the camera sees, and a wall, which a beam of the given
 /// waist radius lights from the side.
-fn corner(line: SpectralLine, waist_radius: f64) -> Scene {
+fn corner(spectrum: Spectrum, waist_radius: f64) -> Scene {
     let aim = DVec3::new(0.0, 0.0, 15e-3);
     let position = DVec3::new(0.4, 0.0, 0.2);
     let laser = LaserDescription {
-        line,
+        spectrum,
         look_at: aim,
         ..testing::spot(position, waist_radius)
     };
@@ -40,11 +40,11 @@ fn corner(line: SpectralLine, waist_radius: f64) -> Scene {
     scene
 }
 
-fn gaussian(linewidth: f64) -> SpectralLine {
+fn gaussian(linewidth: f64) -> Spectrum {
     if linewidth == 0.0 {
-        return SpectralLine::monochromatic(WAVELENGTH).unwrap();
+        return Spectrum::monochromatic(WAVELENGTH).unwrap();
     }
-    SpectralLine::new(WAVELENGTH, linewidth, LineShape::Gaussian).unwrap()
+    Spectrum::new(WAVELENGTH, linewidth, PeakShape::Gaussian).unwrap()
 }
 
 fn render(scene: &Scene, frame: u32, seed: u64) -> Frame {

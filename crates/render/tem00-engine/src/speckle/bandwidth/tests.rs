@@ -1,7 +1,7 @@
 use glam::DVec3;
 use tem00_camera::Camera;
 use tem00_coherence::{
-    LineShape, PolychromaticSpeckle, Relief, ResolutionCell, SourceExtent, SpectralLine,
+    PeakShape, PolychromaticSpeckle, Relief, ResolutionCell, SourceExtent, Spectrum,
 };
 use tem00_testkit::{assert_absolute, assert_relative};
 use tem00_tracer::{Keyframe, LaserDescription, Scene, Trajectory};
@@ -10,9 +10,9 @@ use super::{super::crossing::Waves, *};
 use crate::{SpeckleModel, SpecklePlan, testing};
 
 /// A plate under a laser along its normal, seen under 30° about the axis y.
-fn scene(line: SpectralLine, rms_height: f64) -> Scene {
+fn scene(spectrum: Spectrum, rms_height: f64) -> Scene {
     let laser = LaserDescription {
-        line,
+        spectrum,
         ..testing::spot(DVec3::new(0.0, 0.0, 3.0), 50e-3)
     };
     let mut plate = testing::plate(DVec3::ZERO, DVec3::Z, [0.05, 0.05]);
@@ -25,8 +25,8 @@ fn scene(line: SpectralLine, rms_height: f64) -> Scene {
     testing::scene(camera, &[laser], plate)
 }
 
-fn gaussian(linewidth: f64) -> SpectralLine {
-    SpectralLine::new(650e-9, linewidth, LineShape::Gaussian).unwrap()
+fn gaussian(linewidth: f64) -> Spectrum {
+    Spectrum::new(650e-9, linewidth, PeakShape::Gaussian).unwrap()
 }
 
 /// Means over the line of the speckle factor in a frame, at image points some `offset` from a
@@ -96,8 +96,11 @@ fn cell(scene: &Scene) -> ResolutionCell {
 
 /// The value of the law in the middle of the picture.
 fn by_law(scene: &Scene, value: impl Fn(&PolychromaticSpeckle<'_>) -> f64) -> f64 {
-    let (line, cell) = (scene.lasers[0].spectral_line(), cell(scene));
-    value(&PolychromaticSpeckle { line, cell: &cell })
+    let (spectrum, cell) = (scene.lasers[0].spectrum(), cell(scene));
+    value(&PolychromaticSpeckle {
+        spectrum,
+        cell: &cell,
+    })
 }
 
 #[track_caller]
@@ -113,9 +116,10 @@ fn assert_contrast(scene: &Scene, frame: u32) {
 #[test]
 fn contrasts_are_those_of_the_law() {
     // The aperture has sin u = 0.0052.
-    for (line, height, half_angle) in [(gaussian(10e-9), 8e-6, 0.0), (gaussian(5e-9), 2e-6, 0.004)]
+    for (spectrum, height, half_angle) in
+        [(gaussian(10e-9), 8e-6, 0.0), (gaussian(5e-9), 2e-6, 0.004)]
     {
-        let mut scene = scene(line, height);
+        let mut scene = scene(spectrum, height);
         let extent = SourceExtent::disc(half_angle).unwrap();
         scene.lasers[0] = scene.lasers[0].clone().with_source_extent(extent);
         assert_contrast(&scene, 0);
@@ -126,12 +130,12 @@ fn contrasts_are_those_of_the_law() {
 fn frames_of_motions_along_and_across_the_tilt_are_those_of_the_law() {
     // The motion of the plate that the camera sees in a frame, in diameters of its pupil: along the
     // tilt, and across it.
-    for (way, line, height, frame) in [
+    for (way, spectrum, height, frame) in [
         ([0.25, 0.0], gaussian(5e-9), 0.0, 4),
         ([0.0, 0.25], gaussian(5e-9), 0.0, 1),
         ([-0.1, 0.2], gaussian(10e-9), 8e-6, 4),
     ] {
-        let mut scene = scene(line, height);
+        let mut scene = scene(spectrum, height);
         scene.frames = 5;
         scene.reference_frame = 2;
         let step = DVec3::new(way[0] / 30_f64.to_radians().cos(), way[1], 0.0);
@@ -154,14 +158,14 @@ fn frames_of_motions_along_and_across_the_tilt_are_those_of_the_law() {
 
 #[test]
 fn correlations_that_are_noted_are_those_of_the_law() {
-    for (line, height) in [(gaussian(5e-9), 0.0), (gaussian(10e-9), 8e-6)] {
-        let mut scene = scene(line, height);
+    for (spectrum, height) in [(gaussian(5e-9), 0.0), (gaussian(10e-9), 8e-6)] {
+        let mut scene = scene(spectrum, height);
         // So few pixels that the tilt is one.
         let camera = testing::camera(scene.camera.position(), [48, 36]);
         scene.camera = Camera::new(camera).unwrap();
         let plan = SpecklePlan::new(&scene, 0).unwrap();
         let bandwidth = plan.patterns()[0].surface_patterns[0].bandwidth.clone();
-        let waves = Waves::of(scene.lasers[0].spectral_line(), 0, bandwidth.unwrap());
+        let waves = Waves::of(scene.lasers[0].spectrum(), 0, bandwidth.unwrap());
         for way in [[0.25, 0.0], [0.0, 0.25], [0.5, 0.0], [-0.1, 0.2]] {
             // The tilt is along x.
             let found = waves.correlation(DVec2::from_array(way), DVec2::X);
@@ -201,7 +205,7 @@ fn grains_are_longer_along_the_tilt() {
 
 #[test]
 fn more_patterns_than_can_add_up_are_refused_by_their_name() {
-    let mut scene = scene(SpectralLine::monochromatic(650e-9).unwrap(), 0.0);
+    let mut scene = scene(Spectrum::monochromatic(650e-9).unwrap(), 0.0);
     let extent = SourceExtent::disc(0.02).unwrap();
     scene.lasers[0] = scene.lasers[0].clone().with_source_extent(extent);
     scene.surfaces[0].speckle.patterns = 40;

@@ -102,7 +102,7 @@ impl SpeckleFrame<'_> {
                 phase_per_height: 0.0,
             };
         };
-        let kappa = self.change.laser(laser).spectral_line().draw(point.wave);
+        let kappa = self.change.laser(laser).spectrum().draw(point.wave);
         let law = self.change.spectral_law(laser, geometry);
         let wave = law.shift(&point.seen(), kappa).unwrap_or_default();
         pixel -= wave.displacement;

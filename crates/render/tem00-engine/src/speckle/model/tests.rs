@@ -1,5 +1,5 @@
 use glam::DVec3;
-use tem00_tracer::{LaserDescription, SpectralLine, Surface, SurfaceSpeckle, Trajectory};
+use tem00_tracer::{LaserDescription, Spectrum, Surface, SurfaceSpeckle, Trajectory};
 
 use super::*;
 use crate::testing;
@@ -8,7 +8,7 @@ use crate::testing;
 fn scene() -> Scene {
     let red = testing::spot(DVec3::new(0.1, 0.0, 0.25), 2e-3);
     let green = LaserDescription {
-        line: SpectralLine::monochromatic(532e-9).unwrap(),
+        spectrum: Spectrum::monochromatic(532e-9).unwrap(),
         position: DVec3::new(-0.1, 0.0, 0.25),
         ..red.clone()
     };

@@ -1,5 +1,5 @@
 use glam::DVec3;
-use tem00_coherence::{DelayedLight, PathPairs, SpectralLine};
+use tem00_coherence::{DelayedLight, PathPairs, Spectrum};
 use tem00_decorrelation::pupil_overlap_correlation;
 
 use super::{super::SpecklePoint, light::MultipleLight};
@@ -57,7 +57,7 @@ impl MultipleSums {
     /// Sums over the pairs of two independent groups, of `paths` paths each, to a point; `single`
     /// is the radiance there of light that has met only its surface.
     pub(crate) fn of_groups(
-        line: &SpectralLine,
+        spectrum: &Spectrum,
         (point, single): (SpecklePoint, f64),
         groups: [&[MultiplePath]; 2],
         paths: usize,
@@ -76,9 +76,9 @@ impl MultipleSums {
             group.iter().map(delayed).collect()
         });
         let [first, second] = &delayed;
-        sums.paths.add(line, first, second);
-        sums.paths.add(line, second, first);
-        let phase = |path: f64| (line.wave_number() * path).cos();
+        sums.paths.add(spectrum, first, second);
+        sums.paths.add(spectrum, second, first);
+        let phase = |path: f64| (spectrum.wave_number() * path).cos();
         for path in groups.into_iter().flatten() {
             sums.radiance += path.radiance;
             sums.squares += path.radiance * path.radiance;

@@ -115,7 +115,7 @@ impl Planner<'_> {
         if prescan.frames.is_empty() {
             return [Followed::default(); 2];
         }
-        let line = self.scene.lasers[self.laser].spectral_line();
+        let line = self.scene.lasers[self.laser].spectrum();
         let surfaces = self.surfaces_of(group);
         let waves = surfaces.iter().filter_map(|&surface| {
             let bandwidth = self.lights[surface].bandwidth.as_ref()?;
@@ -213,7 +213,7 @@ impl Planner<'_> {
         let shared = allocations
             .iter()
             .any(|allocation| allocation.positions > 1);
-        let line = self.scene.lasers[self.laser].spectral_line();
+        let line = self.scene.lasers[self.laser].spectrum();
         let surfaces = self.groups.iter().zip(sums).zip(self.lights);
         surfaces
             .map(|((&group, sum), light)| {

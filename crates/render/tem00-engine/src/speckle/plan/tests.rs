@@ -4,7 +4,7 @@ use tem00_geometry::{Shape, Sphere};
 use tem00_speckle::SlicePath;
 use tem00_testkit::assert_absolute;
 use tem00_tracer::{
-    BeamShape, Keyframe, Laser, LaserDescription, Material, SpectralLine, Surface, SurfaceSpeckle,
+    BeamShape, Keyframe, Laser, LaserDescription, Material, Spectrum, Surface, SurfaceSpeckle,
 };
 
 use super::*;
@@ -384,7 +384,7 @@ fn what_the_scene_asks_for_is_kept_and_said() {
 #[test]
 fn lasers_have_seeds_of_their_own() {
     let second = LaserDescription {
-        line: SpectralLine::monochromatic(532e-9).unwrap(),
+        spectrum: Spectrum::monochromatic(532e-9).unwrap(),
         ..testing::spot(DVec3::new(0.1, 0.0, 0.2), 1e-3)
     };
     let mut scene = scene(2, DVec3::ZERO);

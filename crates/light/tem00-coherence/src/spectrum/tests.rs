@@ -5,14 +5,14 @@ use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
 
-const SHAPES: [LineShape; 3] = [
-    LineShape::Gaussian,
-    LineShape::Lorentzian,
-    LineShape::Rectangular,
+const SHAPES: [PeakShape; 3] = [
+    PeakShape::Gaussian,
+    PeakShape::Lorentzian,
+    PeakShape::Rectangular,
 ];
 
-fn shaped(linewidth: f64, shape: LineShape) -> SpectralLine {
-    SpectralLine::new(650e-9, linewidth, shape).unwrap()
+fn shaped(linewidth: f64, shape: PeakShape) -> Spectrum {
+    Spectrum::new(650e-9, linewidth, shape).unwrap()
 }
 
 #[test]
@@ -23,7 +23,7 @@ fn coherence_lengths_have_closed_forms() {
         let line = shaped(3e-9, shape);
         assert_relative(line.coherence_length(), factor * unit, 1e-12);
     }
-    let single = SpectralLine::monochromatic(650e-9).unwrap();
+    let single = Spectrum::monochromatic(650e-9).unwrap();
     assert_eq!(single.coherence_length().to_bits(), f64::INFINITY.to_bits());
 }
 
@@ -31,7 +31,7 @@ fn coherence_lengths_have_closed_forms() {
 fn the_squared_coherence_is_the_transform_of_the_pairs() {
     let single = |shape| shaped(3e-9, shape);
     let comb = |shape| {
-        SpectralLine::comb(650e-9, 5e-9, 4)
+        Spectrum::comb(650e-9, 5e-9, 4)
             .unwrap()
             .with_linewidth(0.3e-9, shape)
             .unwrap()
@@ -40,7 +40,7 @@ fn the_squared_coherence_is_the_transform_of_the_pairs() {
         .into_iter()
         .flat_map(|shape| [single(shape), comb(shape)])
     {
-        if line.shape == LineShape::Lorentzian {
+        if line.shape == PeakShape::Lorentzian {
             continue;
         }
         for path in [1e-6, 20e-6, 90e-6, 200e-6] {
@@ -66,15 +66,15 @@ fn the_squared_coherence_is_the_transform_of_the_pairs() {
 
 #[test]
 fn a_cavity_is_coherent_again_after_a_round_trip() {
-    let comb = SpectralLine::comb(450e-9, 1e-9, 21).unwrap();
+    let comb = Spectrum::comb(450e-9, 1e-9, 21).unwrap();
     let spacing = 1e-9 / 20.0;
     let round_trip = 450e-9_f64.powi(2) / spacing;
     assert_absolute(comb.squared_coherence(round_trip), 1.0, 1e-12);
     assert!(comb.squared_coherence(0.5 * round_trip) < 0.01);
     let modes = comb
-        .with_linewidth(0.002e-9, LineShape::Lorentzian)
+        .with_linewidth(0.002e-9, PeakShape::Lorentzian)
         .unwrap();
-    let alone = SpectralLine::new(450e-9, 0.002e-9, LineShape::Lorentzian).unwrap();
+    let alone = Spectrum::new(450e-9, 0.002e-9, PeakShape::Lorentzian).unwrap();
     let (again, once) = (
         modes.squared_coherence(round_trip),
         alone.squared_coherence(round_trip),
@@ -85,15 +85,15 @@ fn a_cavity_is_coherent_again_after_a_round_trip() {
 #[test]
 fn spreads_are_those_of_the_shapes() {
     let full = TAU * 3e-9 / 650e-9_f64.powi(2);
-    let gaussian = shaped(3e-9, LineShape::Gaussian).wave_number_spread();
+    let gaussian = shaped(3e-9, PeakShape::Gaussian).wave_number_spread();
     assert_relative(gaussian, full / (8.0 * LN_2).sqrt(), 1e-12);
-    let rectangular = shaped(3e-9, LineShape::Rectangular).wave_number_spread();
+    let rectangular = shaped(3e-9, PeakShape::Rectangular).wave_number_spread();
     assert_relative(rectangular, full / 12.0_f64.sqrt(), 1e-12);
-    let two = SpectralLine::comb(650e-9, 3e-9, 2)
+    let two = Spectrum::comb(650e-9, 3e-9, 2)
         .unwrap()
         .wave_number_spread();
     assert_relative(two, 0.5 * full, 1e-12);
-    let lorentzian = |linewidth| shaped(linewidth, LineShape::Lorentzian).wave_number_spread();
+    let lorentzian = |linewidth| shaped(linewidth, PeakShape::Lorentzian).wave_number_spread();
     assert!(lorentzian(0.0) == 0.0 && lorentzian(3e-9).is_infinite());
 }
 
@@ -101,7 +101,7 @@ fn spreads_are_those_of_the_shapes() {
 fn a_comb_stands_about_its_wavelength() {
     let half = 0.5 * TAU * 3e-9 / 650e-9_f64.powi(2);
     for count in [2, 3, 8] {
-        let comb = SpectralLine::comb(650e-9, 3e-9, count).unwrap();
+        let comb = Spectrum::comb(650e-9, 3e-9, count).unwrap();
         for (uniform, end) in [(0.0, -half), (1.0, half)] {
             assert_relative(comb.draw(uniform), end, 1e-12);
         }
@@ -112,8 +112,8 @@ fn a_comb_stands_about_its_wavelength() {
 fn nodes_have_the_moments_of_the_line() {
     // With more than 24 peaks the widths are neglected.
     for (count, is_wide) in [(1, true), (3, true), (24, true), (25, false)] {
-        let comb = SpectralLine::comb(650e-9, 4e-9, count).unwrap();
-        let modes = comb.clone().with_linewidth(0.1e-9, LineShape::Gaussian);
+        let comb = Spectrum::comb(650e-9, 4e-9, count).unwrap();
+        let modes = comb.clone().with_linewidth(0.1e-9, PeakShape::Gaussian);
         let modes = modes.unwrap();
         let nodes = modes.nodes(modes.width, 1000).unwrap();
         let moment = |power| {
@@ -131,7 +131,7 @@ fn nodes_have_the_moments_of_the_line() {
 
 #[test]
 fn peaks_stand_about_their_mean() {
-    let line = SpectralLine::from_peaks(&[[650e-9, 3e300], [651e-9, 1e300]]).unwrap();
+    let line = Spectrum::from_peaks(&[[650e-9, 3e300], [651e-9, 1e300]]).unwrap();
     let mean = 0.75 * TAU / 650e-9 + 0.25 * TAU / 651e-9;
     assert_relative(line.wave_number(), mean, 1e-14);
     let moment: f64 = line
@@ -145,14 +145,14 @@ fn peaks_stand_about_their_mean() {
 #[test]
 fn draws_follow_the_line() {
     let single = |shape| shaped(3e-9, shape);
-    let comb = SpectralLine::comb(650e-9, 5e-9, 3).unwrap();
+    let comb = Spectrum::comb(650e-9, 5e-9, 3).unwrap();
     let modes = comb
         .clone()
-        .with_linewidth(0.3e-9, LineShape::Gaussian)
+        .with_linewidth(0.3e-9, PeakShape::Gaussian)
         .unwrap();
     for line in [
-        single(LineShape::Gaussian),
-        single(LineShape::Rectangular),
+        single(PeakShape::Gaussian),
+        single(PeakShape::Rectangular),
         comb,
         modes,
     ] {
@@ -171,7 +171,7 @@ fn draws_follow_the_line() {
         }
     }
     // Half of a Lorentzian lies within its half width.
-    let line = single(LineShape::Lorentzian);
+    let line = single(PeakShape::Lorentzian);
     assert_relative(line.draw(0.75), line.width, 1e-12);
     assert_relative(line.draw(0.25), -line.width, 1e-12);
     assert_relative(line.draw(1.0), 0.1 * line.wave_number(), 1e-12);
@@ -179,7 +179,7 @@ fn draws_follow_the_line() {
 
 #[test]
 fn the_effective_spread_of_a_gaussian_is_its_spread() {
-    let gaussian = shaped(3e-9, LineShape::Gaussian);
+    let gaussian = shaped(3e-9, PeakShape::Gaussian);
     let spread = gaussian.effective_spread();
     assert_relative(spread, gaussian.wave_number_spread(), 1e-6);
 }
@@ -190,7 +190,7 @@ proptest! {
         linewidth in 0.0..60e-9_f64, shape in 0..3_usize, count in 1..30_usize,
         path in -1e3..1e3_f64,
     ) {
-        let line = SpectralLine::comb(650e-9, linewidth, count).unwrap();
+        let line = Spectrum::comb(650e-9, linewidth, count).unwrap();
         let line = line.with_linewidth(0.1 * linewidth, SHAPES[shape]).unwrap();
         let squared = line.squared_coherence(path);
         prop_assert!((0.0..=1.0 + 1e-12).contains(&squared), "{squared}");
@@ -210,8 +210,8 @@ fn many_peaks_are_the_sum_of_their_pairs() {
         let peaks: Vec<_> = (0..count)
             .map(|i| [650e-9 + 4e-9 * place(i), 1.0 + f64::from(i % 3)])
             .collect();
-        let line = SpectralLine::from_peaks(&peaks).unwrap();
-        let line = line.with_linewidth(linewidth, LineShape::Gaussian).unwrap();
+        let line = Spectrum::from_peaks(&peaks).unwrap();
+        let line = line.with_linewidth(linewidth, PeakShape::Gaussian).unwrap();
         let total: f64 = peaks.iter().map(|peak| peak[1]).sum();
         // ∫ exp(−(κ/scale)²) over a Gaussian difference about κ₀.
         let spread = 1.0 + 4.0 * (line.width / scale).powi(2);

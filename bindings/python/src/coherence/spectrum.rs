@@ -1,4 +1,4 @@
-use tem00_coherence::{self as physics, LineShape};
+use tem00_coherence::{self as physics, PeakShape};
 
 use crate::{
     arrays::LIMIT,
@@ -15,31 +15,31 @@ class! {
     /// linewidth : float
     ///     Full width at half maximum in metres, at most a tenth of the wavelength; 0 for light of
     ///     one wavelength.
-    "tem00.coherence" SpectralLine(physics::SpectralLine)
+    "tem00.coherence" Spectrum(physics::Spectrum)
 }
 
 methods! {
-    impl SpectralLine as this: this.0;
+    impl Spectrum as this: this.0;
 
     #[new]
     #[pyo3(signature = (wavelength, linewidth=0.0))]
     build new(_py; wavelength: f64, linewidth: f64) = {
-        let line = physics::SpectralLine::new(wavelength, linewidth, LineShape::Gaussian);
+        let line = physics::Spectrum::new(wavelength, linewidth, PeakShape::Gaussian);
         Ok(Self(line.or_raise()?))
     };
 
     /// Return a Lorentzian line: long wings, as of a single mode of a diode.
     make lorentzian(wavelength: f64, linewidth: f64) =
-        physics::SpectralLine::new(wavelength, linewidth, LineShape::Lorentzian);
+        physics::Spectrum::new(wavelength, linewidth, PeakShape::Lorentzian);
 
     /// Return a rectangular line, as of a wavelength that is swept during the exposure.
     make rectangular(wavelength: f64, linewidth: f64) =
-        physics::SpectralLine::new(wavelength, linewidth, LineShape::Rectangular);
+        physics::Spectrum::new(wavelength, linewidth, PeakShape::Rectangular);
 
     /// Return ``count`` equal peaks without a width, the first and the last ``span`` apart, in
     /// metres.
     make comb(wavelength: f64, span: f64, count: usize) =
-        physics::SpectralLine::comb(wavelength, span, count).or_raise_renamed(&["peaks"], "count");
+        physics::Spectrum::comb(wavelength, span, count).or_raise_renamed(&["peaks"], "count");
 
     /// Return peaks without a width.
     ///
@@ -56,7 +56,7 @@ methods! {
             return Err(refused("powers", message));
         }
         let peaks: Vec<_> = wavelengths.into_iter().zip(powers).map(<[f64; 2]>::from).collect();
-        physics::SpectralLine::from_peaks(&peaks).or_raise_renamed(&["power"], "powers")
+        physics::Spectrum::from_peaks(&peaks).or_raise_renamed(&["power"], "powers")
     };
 
     /// Wavelength of the mean wave number, in metres.

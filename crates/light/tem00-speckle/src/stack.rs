@@ -1,3 +1,5 @@
+use core::fmt;
+
 use num_complex::Complex;
 use tem00_numerics::{Grid, disc_overlap, parallel};
 
@@ -96,7 +98,7 @@ pub use source::StackSource;
 /// assert!((stack.intensity_at(3.5 - 64.0, 60.25 + 64.0, u + 8.0) - here).abs() < 1e-4);
 /// # Ok::<(), tem00_speckle::SpeckleError>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct SpeckleStack {
     pub(crate) field: PupilField,
     pub(crate) law: PathLaw,
@@ -105,6 +107,16 @@ pub struct SpeckleStack {
     pub(crate) slices: Vec<Slice>,
     /// Variances: one for all slices, or one for each slice.
     pub(crate) variances: Vec<Variance>,
+}
+
+/// Without the samples, which fill a screen a million times.
+impl fmt::Debug for SpeckleStack {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SpeckleStack")
+            .field("size", &self.field.size())
+            .field("path", &self.path())
+            .finish_non_exhaustive()
+    }
 }
 
 impl SpeckleStack {

@@ -87,7 +87,7 @@ def test_a_fixed_case_has_the_values_of_the_rust_crate() -> None:
         np.testing.assert_allclose(got, expected, rtol=1e-9)
     overlaps = tem00.decorrelation.pupil_overlap_correlation(np.minimum(shift.pupil, 1))
     np.testing.assert_array_equal(shift.correlation, overlaps)
-    chosen = "4 patterns of 128 × 80 samples, 64 slices each (20 MiB): speckle of 1.64 px, "
+    chosen = "4 patterns of 128 × 80 samples in 64 slices (20 MiB): speckle of 1.64 px, "
     assert str(speckle).startswith(chosen)
     assert repr(speckle) == f"<Speckle: {speckle}>"
     assert speckle.memory_bytes >> 20 == 20

@@ -52,9 +52,20 @@ impl fmt::Display for ShadingError {
                 "this frame moves the pupil over the speckle by {shift:.3} of its diameters, and \
                  the speckle holds {held:.3}: prepare it for this motion, too"
             ),
+            Self::Speckle(SpeckleError::MemoryLimit { needed, limit }) => write!(
+                f,
+                "the patterns need {:.0} MiB, and the memory limit is {:.0} MiB: raise it \
+                 (`within`), or lower the resolution of the camera",
+                mebibytes(*needed).ceil(),
+                mebibytes(*limit)
+            ),
             Self::Speckle(source) => source.fmt(f),
         }
     }
+}
+
+fn mebibytes(bytes: u64) -> f64 {
+    bytes as f64 / f64::from(1 << 20)
 }
 
 impl error::Error for ShadingError {}

@@ -15,6 +15,9 @@ pub struct PreparedSpeckle(pub(crate) Arc<Patterns>);
 impl PreparedSpeckle {
     /// Returns the speckle of a body in a frame. Call it once per body and frame.
     ///
+    /// Where the law has no value, as after a turn by tens of degrees, the speckle is new, and the
+    /// same in all such frames.
+    ///
     /// # Errors
     ///
     /// Returns an error if the motion shifts the speckle farther than the poses for which it was
@@ -28,9 +31,11 @@ impl PreparedSpeckle {
         let shifts = shifts.filter(|shift| shift.pupil.is_finite());
         let farthest = shifts.max_by(|a, b| a.pupil.total_cmp(&b.pupil));
         let shift = farthest.map_or(0.0, |shift| shift.pupil);
-        // With two frames, all speckle of the second beyond the reach is new.
         let held = frame.reach;
-        if shift > held && (patterns.needs.frames > 2 || held == 0.0) {
+        // All speckle beyond the reach is new, and the same in all frames: right in one frame only.
+        let prepared = patterns.shifts[usize::from(frame.side > 0.0)];
+        let is_the_other = patterns.needs.frames == 2 && shift.to_bits() == prepared.to_bits();
+        if shift > held && !is_the_other {
             return Err(ShadingError::BeyondPoses { shift, held });
         }
         farthest.map_or(Ok(()), |shift| frame.check_crossing(&shift))?;
@@ -118,18 +123,29 @@ impl fmt::Display for PreparedSpeckle {
         let [before, after] = patterns.shifts;
         write!(
             f,
-            "{} of {width} × {height} samples, {slices} {} ({:.0} MiB): speckle of {:.2} px, the \
-             region of {:.0} × {:.0} px repeats nothing, the pupil moves by {:.2} of its diameters \
-             in {} frames",
-            counted(patterns.stacks.len(), "pattern", "patterns"),
-            if slices == 1 { "slice" } else { "slices each" },
+            "{} of {width} × {height} samples in {} ({:.0} MiB): speckle of {:.2} px, the region of \
+             {:.0} × {:.0} px repeats nothing, ",
+            counted(patterns.stacks.len() as u64, "pattern", "patterns"),
+            counted(slices as u64, "slice", "slices"),
             self.memory_bytes() as f64 / f64::from(1 << 20),
             patterns.needs.speckle_size,
             patterns.needs.region[0],
             patterns.needs.region[1],
-            before + after,
-            patterns.needs.frames,
         )?;
+        let frames = counted(patterns.needs.frames.into(), "frame", "frames");
+        let motion = before + after;
+        match patterns.needs.motion {
+            Some(_) if motion == 0.0 => {
+                write!(
+                    f,
+                    "the pupil moves farther than the law reaches in {frames}"
+                )?;
+            }
+            _ => write!(
+                f,
+                "the pupil moves by {motion:.2} of its diameters in {frames}"
+            )?,
+        }
         patterns.bandwidth.as_ref().map_or(Ok(()), |bandwidth| {
             write!(
                 f,
@@ -140,6 +156,6 @@ impl fmt::Display for PreparedSpeckle {
     }
 }
 
-fn counted(count: usize, one: &str, more: &str) -> String {
+fn counted(count: u64, one: &str, more: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { more })
 }

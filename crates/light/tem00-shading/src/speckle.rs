@@ -5,7 +5,9 @@ use tem00_camera::Camera;
 use tem00_coherence::Relief;
 use tem00_decorrelation::ImagingGeometry;
 use tem00_numerics::Refusal;
-use tem00_speckle::{PupilField, SpeckleStack, StackNeeds, StackPlan, incoherent_fractions};
+use tem00_speckle::{
+    PupilField, SpeckleError, SpeckleStack, StackNeeds, StackPlan, incoherent_fractions,
+};
 
 use crate::{
     Bandwidth, Laser, Motion, Perspective, Pose, PreparedSpeckle, ShadingError, SurfaceLight,
@@ -278,18 +280,40 @@ struct Layout {
 }
 
 impl Layout {
+    /// Returns the plan that a memory limit allows, or `None` if no plan within the limit holds the
+    /// motion and the region.
+    fn plan(needs: &StackNeeds, memory_limit: u64) -> Result<Option<StackPlan>, ShadingError> {
+        let needs = StackNeeds {
+            memory_limit,
+            ..*needs
+        };
+        match StackPlan::new(&needs) {
+            Ok(plan) => {
+                let holds = plan.holds_motion(&needs) && plan.holds_region(&needs);
+                Ok(holds.then_some(plan))
+            }
+            Err(SpeckleError::MemoryLimit { .. }) => Ok(None),
+            Err(error) => Err(error.into()),
+        }
+    }
+
     fn new(needs: &StackNeeds, fields: usize) -> Result<Self, ShadingError> {
         let of = |stacks: usize| {
-            let needs = StackNeeds {
-                memory_limit: needs.memory_limit / stacks as u64,
-                ..*needs
-            };
-            let plan = StackPlan::new(&needs)?;
-            let holds = plan.holds_motion(&needs) && plan.holds_region(&needs);
-            holds.then_some(Self { plan, stacks }).ok_or_else(|| {
+            let plan = Self::plan(needs, needs.memory_limit / stacks as u64)?;
+            if let Some(plan) = plan {
+                return Ok(Self { plan, stacks });
+            }
+            let enough = (1..u64::BITS).find_map(|doublings| {
+                let limit = (needs.memory_limit / stacks as u64).max(1);
+                Self::plan(needs, limit.saturating_mul(1 << doublings)).ok()?
+            });
+            let limit = needs.memory_limit;
+            let Some(plan) = enough else {
                 let allowed = "enough for slices over the whole motion of the poses (in bytes)";
-                Refusal::new("memory", needs.memory_limit as f64, allowed).into()
-            })
+                return Err(Refusal::new("memory", limit as f64, allowed).into());
+            };
+            let needed = plan.memory_bytes().saturating_mul(stacks as u64);
+            Err(SpeckleError::MemoryLimit { needed, limit }.into())
         };
         let is_good = |layout: &Self| needs.motion.is_none() || layout.plan.blends_closely();
         match of(fields) {

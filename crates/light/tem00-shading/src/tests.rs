@@ -2,6 +2,7 @@
 
 use proptest::prelude::*;
 use tem00_decorrelation::pupil_overlap_correlation;
+use tem00_speckle::SpeckleError;
 use tem00_statistics::{exponential_cumulative, kolmogorov_smirnov, pixel_contrast};
 use tem00_testkit::{assert_absolute, correlation};
 
@@ -327,12 +328,68 @@ fn what_does_not_fit_is_refused_by_name() {
         short.frame(&pose.into()),
         Err(ShadingError::BeyondPoses { .. })
     ));
-    assert!(speckle.clone().within(1000).prepare().is_err(), "memory");
+    let far = Pose::along(DVec3::X * 50e-3).unwrap();
+    let single = speckle.clone().for_poses(&[far]).prepare().unwrap();
+    assert!(
+        single.frame(&far.into()).is_ok(),
+        "the pose that was prepared"
+    );
+    let farther = single.frame(&Pose::along(DVec3::X * 60e-3).unwrap().into());
+    assert!(
+        matches!(farther, Err(ShadingError::BeyondPoses { .. })),
+        "{farther:?}"
+    );
+    let film: Vec<_> = (1..9_u8)
+        .map(|step| Pose::along(DVec3::X * 1e-3 * f64::from(step)).unwrap())
+        .collect();
+    for poses in [&[][..], &film] {
+        let speckle = speckle.clone().for_poses(poses);
+        let refused = speckle.clone().within(1000).prepare().map(drop);
+        let Err(ShadingError::Speckle(SpeckleError::MemoryLimit {
+            needed,
+            limit: 1000,
+        })) = refused
+        else {
+            panic!("{refused:?}");
+        };
+        assert!(
+            speckle.within(2 * needed).prepare().is_ok(),
+            "{needed} bytes"
+        );
+    }
     let aside = speckle.clone().for_poses(&[pose]);
     let aside = aside.at_points([(DVec3::X, DVec3::Z)]).prepare();
     assert!(matches!(aside, Err(ShadingError::Missing(_))), "{aside:?}");
     assert!(speckle.clone().looks(0).prepare().is_err(), "no looks");
     assert!(speckle.polarisation(1.5).prepare().is_err(), "polarisation");
+}
+
+#[test]
+fn speckle_is_new_where_the_law_has_no_value() {
+    let camera = camera(DVec3::new(-0.05, 0.01, 0.3));
+    let turned = Pose::about(DVec3::ZERO, DVec3::X, 1.0).unwrap();
+    let speckle = Speckle::new(&camera, &laser(), 1).for_poses(&[turned]);
+    let speckle = speckle.prepare().unwrap();
+    let summary = speckle.to_string();
+    assert!(
+        summary.contains("farther than the law reaches"),
+        "{summary}"
+    );
+    let frame = |pose: Pose| speckle.frame(&pose.into()).unwrap();
+    let (before, after) = (frame(Pose::default()), frame(turned));
+    let shift = after.shift(DVec3::ZERO, turned.direction(DVec3::Z));
+    assert!(
+        shift.is_none_or(|shift| shift.pupil.is_infinite()),
+        "{shift:?}"
+    );
+    let pairs = (0..2000).map(|index| {
+        let point = DVec3::X * (1e-5 * f64::from(index) - 1e-2);
+        let now = (turned.point(point), turned.direction(DVec3::Z));
+        [before.factor(point, DVec3::Z), after.factor(now.0, now.1)]
+    });
+    let (a, b): (Vec<_>, Vec<_>) = pairs.map(|[a, b]| (a, b)).unzip();
+    let found = correlation(&a, &b);
+    assert!(found.abs() < 0.2, "correlation {found}");
 }
 
 /// Of a line that is a hundred times as wide as the image, few rays are seen, if any.
@@ -359,7 +416,7 @@ fn the_plan_says_what_it_chose() {
     let pose = Pose::along(DVec3::X * 1e-3).unwrap();
     let text = prepared(1, &[pose, pose]).to_string();
     assert!(text.starts_with("1 pattern of "), "{text}");
-    for part in ["slices each", "MiB", "px repeats nothing", "in 3 frames"] {
+    for part in ["samples in", "MiB", "px repeats nothing", "in 3 frames"] {
         assert!(text.contains(part), "{text}: {part}");
     }
 }

@@ -1,6 +1,7 @@
 use glam::DVec3;
 use tem00_beam::{FanGeometry, FocusCurve, GaussianBeam, LineProfile};
 use tem00_coherence::{SourceExtent, Spectrum};
+use tem00_numerics::check;
 
 use crate::{BeamShape, Laser, LaserDescription, ShadingError};
 
@@ -134,9 +135,15 @@ impl LaserBuilder {
         target: DVec3,
         line_direction: DVec3,
     ) -> Result<Laser, ShadingError> {
+        for (name, point) in [("origin", origin), ("target", target)] {
+            check::each(&point.to_array(), |x| check::coordinate(name, x))?;
+        }
         let spectrum = match self.spectrum {
             Some(spectrum) => spectrum,
-            None => Spectrum::monochromatic(self.wavelength)?,
+            None => {
+                let allowed = [10e-9, 1e-3];
+                Spectrum::monochromatic(check::range("wavelength", self.wavelength, allowed, "m")?)?
+            }
         };
         let focus = self.focus.unwrap_or_else(|| origin.distance(target));
         let shape = match self.line {
@@ -146,6 +153,7 @@ impl LaserBuilder {
                 m_squared: [self.m_squared; 2],
             },
             Some((fan_angle, profile)) => {
+                check::length("thickness", 2.0 * self.waist_radius[1])?;
                 let beam = GaussianBeam::from_waist(spectrum.wavelength(), self.waist_radius[1])?;
                 let on_lens = beam.with_m_squared(self.m_squared)?.radius_at(focus);
                 BeamShape::Line {

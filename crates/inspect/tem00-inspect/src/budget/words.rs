@@ -1,7 +1,7 @@
 //! A budget in sentences.
 
-use tem00_report::report::units::{MICROMETRES, NUMBER, PERCENT};
-use tem00_triangulation::{LightLevel, MeasurementInput, Setup, Simulation};
+use tem00_report::report::units::{MICROMETRES, MILLIMETRES, NUMBER, PERCENT};
+use tem00_triangulation::{LightLevel, LineMethod, MeasurementInput, Setup, Simulation};
 
 use super::{
     answers,
@@ -44,7 +44,7 @@ pub(super) fn verdicts(answer: &Answer, setup: &Setup) -> Vec<String> {
     if level != LightLevel::Good {
         lines.push(format!("The light is not right: {}.", level.advice()));
     }
-    lines.extend(of_trials(answer));
+    lines.extend(of_trials(answer, setup));
     lines
 }
 
@@ -109,14 +109,32 @@ fn result(answer: &Answer) -> String {
     };
     let other = other.map(|(method, found)| format!(" By {method} {}.", length(found)));
     format!(
-        "Expanded uncertainty of a height{exact}: U = {} (95 %, {how}).{}",
+        "Expanded uncertainty of a height{exact}: U = {} (95 %, {how}).{}{}",
         length(expanded),
-        other.unwrap_or_default()
+        other.unwrap_or_default(),
+        away_from_the_reference_plane(answer, expanded).unwrap_or_default()
     )
 }
 
+/// Returns the largest uncertainty within the measuring range, if it is more than a tenth above the
+/// value at the reference plane.
+fn away_from_the_reference_plane(answer: &Answer, expanded: f64) -> Option<String> {
+    let heights = answer.over_range.iter();
+    let known = heights.filter_map(|&(height, combined)| Some((height, combined?)));
+    let (height, combined) = known.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
+    let ratio = combined / answer.budget.combined();
+    (ratio > 1.1).then(|| {
+        format!(
+            " This is its value at the reference plane; within the measuring range it reaches {}, \
+             at {}.",
+            MICROMETRES.text(ratio * expanded),
+            MILLIMETRES.text(height)
+        )
+    })
+}
+
 /// Returns the results of trials that formulas do not give.
-fn of_trials(answer: &Answer) -> Vec<String> {
+fn of_trials(answer: &Answer, setup: &Setup) -> Vec<String> {
     let mut lines = Vec::new();
     let trials = answer.trials.as_ref();
     if answer.is_thin() {
@@ -126,9 +144,14 @@ fn of_trials(answer: &Answer) -> Vec<String> {
         };
         lines.push(answers::thin(answer.budget.speckles(), quote));
     } else if let Some([ratio, _]) = answer.ratio().filter(|ratio| differs(*ratio)) {
+        let why = match setup.description().detector.method {
+            LineMethod::Steger { .. } => {
+                "do not know that this detector also averages neighbouring columns"
+            }
+            _ => "are first order: this detector is not linear under so much noise",
+        };
         lines.push(format!(
-            "Trials find {} times the uncertainty of the formulas, which are first order: this \
-             detector is not linear under so much noise; quote the trials.",
+            "Trials find {} times the uncertainty of the formulas, which {why}; quote the trials.",
             NUMBER.with_digits(3).text(ratio)
         ));
     }

@@ -203,13 +203,12 @@ fn a_line_below_two_speckles_is_quoted_by_trials() {
 
 #[test]
 fn trials_that_refute_the_formulas_are_quoted() {
-    // A detector whose noise is not first order.
     let steger = "--set detector.window=31 --set detector.method=steger";
     let (record, table) = budget(&format!("--trials 40 {steger}"));
     assert_eq!(record["quoted"], "trials");
     let parts = [
         "by trials). By formulas",
-        "not linear under so much noise; quote the trials",
+        "averages neighbouring columns; quote the trials",
     ];
     assert_has(&table, &parts);
     let (record, table) = budget(&format!("--trials 60 {steger} {UNCERTAIN_ANGLE}"));
@@ -218,6 +217,19 @@ fn trials_that_refute_the_formulas_are_quoted() {
         "{table}"
     );
     assert_has(&table, &["quote the virtual experiment"]);
+}
+
+#[test]
+fn the_largest_uncertainty_within_the_measuring_range_is_stated() {
+    const SENTENCE: &str = "within the measuring range it reaches";
+    let (_, short) = budget("--trials 0");
+    assert!(!short.contains(SENTENCE), "{short}");
+    let (record, table) = budget("--trials 0 --set 'camera.resolution=[640, 2000]'");
+    let heights = record["over_range"].as_array().expect("heights");
+    let combined = heights.iter().map(|height| number(&height["combined"]));
+    let ratio = combined.fold(0.0, f64::max) / number(&record["combined"]);
+    let largest = 1e6 * ratio * number(&record["expanded"]);
+    assert_has(&table, &[&format!("{SENTENCE} {largest:.1}"), "µm, at -"]);
 }
 
 #[test]

@@ -220,7 +220,8 @@ quantities! {
     }
     surface [patterns, material] {
         /// number above 0, at most 1: of a Lambertian surface, at the wavelength of the laser. For
-        /// metal take the radiance towards the camera by that of white paper
+        /// metal enter the ratio of its radiance towards the camera to that of white paper in the
+        /// same light
         Reflectance: reflectance = Row::new(field!(surface.reflectance), &PLAIN)
             .within(|_| (f64::MIN_POSITIVE, 1.0), "positive, at most 1").required("0.5");
         /// from 0 to 1: degree of polarisation of the scattered light; 1 for bare metal, 0 for
@@ -229,8 +230,8 @@ quantities! {
             .within(|_| (0.0, 1.0), "from 0 to 1").or("`1`");
         /// length, positive: standard deviation of the height of the relief finer than a resolution
         /// cell, the size of a speckle on the part. It spreads the paths of light that has a
-        /// `linewidth`. The roughness of a drawing, over 0.8 mm, is larger: what is longer than a
-        /// cell tilts it, and spreads no paths
+        /// `linewidth`, and does nothing otherwise. Not the Rq of a drawing, which includes waves up
+        /// to 0.8 mm long: those longer than a cell only tilt it and do not spread the paths
         RmsHeight: rms_height = Row::new(field!(surface.relief.rms_height), &RELIEF)
             .within(|_| (0.0, 1.0), "from 0 to 1 m, of the relief finer than a resolution cell")
             .or("not known: no spread").read_with_others()

@@ -136,6 +136,7 @@ pub(crate) fn conclusion(rows: &[Row]) -> String {
     let said = |(row, verdict): &(&Row, &str)| format!("{}, {verdict}", row.quantity);
     match (all, &*others) {
         (0, _) => "No value is compared with theory.".to_owned(),
+        (1, []) => "The only compared value agrees with theory.".to_owned(),
         (_, []) => format!("All {all} compared values agree with theory."),
         (_, others) => format!(
             "{} of {all} compared values disagree with theory: {}.",

@@ -331,7 +331,7 @@ impl Findings<'_> {
         let cumulative = |light: f64| exponential_cumulative(light / mean);
         let exponential = self.goodness(&samples, cumulative)?;
         self.tests("exponential", &exponential, 2)?;
-        self.assume("what a law was fitted to speaks for it: p-values are on the high side");
+        self.assume("the law was fitted to these same data: p-values are biased high");
         if self.is_coarse() {
             self.assume("the grey levels are too few for the fit of a Gamma law");
             return Ok(None);

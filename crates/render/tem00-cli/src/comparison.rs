@@ -6,6 +6,9 @@ use tem00_report::{
     report::{Cell, Column, Table},
 };
 
+/// The verdict on a value that the theory predicts.
+const AGREES: &str = "agrees";
+
 /// The prediction of the theory for a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
@@ -54,7 +57,7 @@ impl Expectation {
             Self::Open => return None,
         };
         Some(match self {
-            _ if agrees => "agrees".into(),
+            _ if agrees => AGREES.into(),
             Self::Near { value, .. } => {
                 let side = if measured < value { "low" } else { "high" };
                 format!("{side} by {}", rounded((measured - value).abs(), 2))
@@ -86,6 +89,11 @@ impl Row {
             theory,
             verdict: theory.verdict(measured),
         }
+    }
+
+    /// Returns whether the measured value agrees with the theory.
+    pub(crate) fn agrees(&self) -> bool {
+        self.verdict.as_deref() == Some(AGREES)
     }
 
     fn cells(&self) -> [Cell; 5] {
@@ -131,7 +139,7 @@ pub(crate) fn conclusion(rows: &[Row]) -> String {
     let compared = rows
         .iter()
         .filter_map(|row| Some((row, row.verdict.as_deref()?)));
-    let (agree, others): (Vec<_>, Vec<_>) = compared.partition(|(_, verdict)| *verdict == "agrees");
+    let (agree, others): (Vec<_>, Vec<_>) = compared.partition(|(row, _)| row.agrees());
     let all = agree.len() + others.len();
     let said = |(row, verdict): &(&Row, &str)| format!("{}, {verdict}", row.quantity);
     match (all, &*others) {

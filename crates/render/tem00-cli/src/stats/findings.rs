@@ -259,6 +259,7 @@ impl Findings<'_> {
         let factor = value / contrast.value();
         let theory = self.exponential();
         let tolerance = SIGMAS * self.spread(theory, size)? * factor;
+        let with_gaps = self.rows.len();
         self.row("contrast", value, Expectation::near(theory, tolerance));
         let [low, high] = contrast.confidence_interval(CONFIDENCE)?;
         self.open("contrast, from (95 %)", factor * low);
@@ -273,6 +274,13 @@ impl Findings<'_> {
             let tolerance = SIGMAS * self.spread(theory, Some(size))? * factor + uncertainty;
             let near = Expectation::near(theory, tolerance);
             self.row("contrast, if pixels have no gaps", value, near);
+            // Pixels are one or the other: the image is judged by what explains it.
+            let without_gaps = self.rows.len() - 1;
+            for [one, other] in [[with_gaps, without_gaps], [without_gaps, with_gaps]] {
+                if self.rows[one].agrees() && !self.rows[other].agrees() {
+                    self.rows[other].verdict = None;
+                }
+            }
         }
         Ok(())
     }

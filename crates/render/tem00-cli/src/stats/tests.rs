@@ -209,6 +209,16 @@ fn pixels_without_gaps_see_the_contrast_of_their_size() {
     let off = deviation(&found, "contrast, if pixels have no gaps");
     assert!(off < 1.0, "{found:?}");
     assert!(deviation(&found, "contrast") > 2.0, "{found:?}");
+    assert_eq!(
+        row(&found, "contrast").verdict,
+        None,
+        "not judged as points"
+    );
+    let fine = PupilField::new(1024, 512, 10).expect("valid").pattern();
+    let points = measured(Grid::from_fn(1024, 1024, |x, y| fine.values()[(x, y)]));
+    assert!(row(&points, "contrast").agrees(), "{points:?}");
+    let gapless = row(&points, "contrast, if pixels have no gaps");
+    assert_eq!(gapless.verdict, None, "not judged as areas");
 }
 
 #[test]

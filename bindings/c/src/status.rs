@@ -74,6 +74,9 @@ impl From<SpeckleError> for Failure {
 impl From<ShadingError> for Failure {
     fn from(error: ShadingError) -> Self {
         match error {
+            ShadingError::Speckle(SpeckleError::MemoryLimit { .. }) => {
+                Self::new(Status::Memory, "memory_limit", error)
+            }
             ShadingError::Speckle(error) => error.into(),
             ShadingError::Refused(refusal) if refusal.parameter == "memory" => Self::new(
                 Status::Memory,

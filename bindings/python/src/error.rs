@@ -73,6 +73,9 @@ impl IntoPython for SpeckleError {
 impl IntoPython for ShadingError {
     fn into_python(self) -> PyErr {
         match self {
+            Self::Speckle(SpeckleError::MemoryLimit { .. }) => {
+                PyMemoryError::new_err(self.to_string())
+            }
             Self::Speckle(source) => source.into_python(),
             Self::BeyondPoses { .. } => refused("surface", self.to_string()),
             _ => refused(self.parameter().unwrap_or("camera"), self.to_string()),

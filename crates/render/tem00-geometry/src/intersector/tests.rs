@@ -11,7 +11,7 @@ use tem00_decorrelation::RigidMotion;
 use tem00_testkit::{Numbers, assert_absolute};
 
 use super::{primitive::Primitive, *};
-use crate::{Cylinder, MeshInstance, Rectangle, Sphere, TriangleMesh};
+use crate::{Cylinder, MeshInstance, Rectangle, Sphere, TriangleMesh, hierarchy::MeshHierarchy};
 
 fn rectangle(centre: DVec3, half_u: DVec3, half_v: DVec3) -> Shape {
     Shape::Rectangle(Rectangle::new(centre, half_u, half_v).unwrap())

@@ -1,3 +1,5 @@
+use tem00_testkit::on_threads;
+
 use super::*;
 
 #[test]
@@ -50,6 +52,17 @@ fn hierarchy_of_many_triangles_and_brute_force_agree() {
         surfaces.iter().all(|&hits| hits > 10),
         "{surfaces:?} hits of ball and plates"
     );
+}
+
+#[test]
+fn hierarchy_is_the_same_for_any_number_of_threads() {
+    let mesh = ball_between_plates();
+    let corners = |triangle| mesh.corners(triangle);
+    let build = || MeshHierarchy::build(mesh.triangles().len(), corners);
+    let alone = on_threads(1, build);
+    for threads in [2, 3] {
+        assert!(on_threads(threads, build) == alone, "{threads} threads");
+    }
 }
 
 #[test]

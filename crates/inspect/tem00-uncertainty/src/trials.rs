@@ -63,6 +63,5 @@ pub(crate) fn block(
 
 /// Returns the results of `work` for the numbers of a range, in their order.
 pub(crate) fn map<T: Send>(range: Range<u64>, work: impl Fn(u64) -> T + Sync) -> Vec<T> {
-    let numbers: Vec<_> = range.collect();
-    parallel::map(numbers.len(), |index| work(numbers[index]))
+    parallel::map_items_with(range.collect(), |(), _, number| work(number))
 }

@@ -169,8 +169,8 @@ pub(crate) fn in_parallel<T: Send>(
         progress(done.fetch_add(1, Ordering::Relaxed) + 1);
         result
     };
-    let numbers: Vec<u32> = (0..options.trials).collect();
-    let results = parallel::map(numbers.len(), |index| trial(numbers[index]));
+    let numbers = (0..options.trials).collect();
+    let results = parallel::map_items_with(numbers, |(), _, number| trial(number));
     results.into_iter().collect()
 }
 

@@ -166,8 +166,7 @@ pub(super) fn prescan(
     }
     let side = rays_per_side(scene.frames);
     let frames: Vec<u32> = (0..scene.frames).collect();
-    let samples = parallel::map(frames.len(), |index| {
-        let frame = frames[index];
+    let samples = parallel::map_items_with(frames.clone(), |(), _, frame| {
         let change = Change::new(scene, frame);
         let intersector = Intersector::build(&scene.shapes_at(frame))?;
         let keeps = frame.is_multiple_of(scene.frames.div_ceil(KEPT_FRAMES));
@@ -181,8 +180,9 @@ pub(super) fn prescan(
     });
     let samples: Vec<_> = samples.into_iter().collect::<Result<_, TracerError>>()?;
     let seen = laser_groups.seen_points(&samples);
-    let needs = parallel::map_items_with(samples, |(), index, mut samples| {
-        laser_groups.needs(&mut samples, &seen, &Change::new(scene, frames[index]))
+    let samples = frames.into_iter().zip(samples).collect();
+    let needs = parallel::map_items_with(samples, |(), _, (frame, mut samples)| {
+        laser_groups.needs(&mut samples, &seen, &Change::new(scene, frame))
     });
     for (laser, prescans) in prescans.iter_mut().enumerate() {
         for (group, prescan) in prescans.iter_mut().enumerate() {

@@ -46,8 +46,8 @@ impl LaserLight {
         }
     }
 
-    /// Creates light from peaks, see [`SpectrumForm::Peaks`], about the wavelength of their mean wave
-    /// number.
+    /// Creates light from peaks, see [`SpectrumForm::Peaks`], about the wavelength of their mean
+    /// wave number.
     ///
     /// # Errors
     ///

@@ -54,8 +54,8 @@ impl fmt::Display for ShadingError {
             ),
             Self::Speckle(SpeckleError::MemoryLimit { needed, limit }) => write!(
                 f,
-                "the patterns need {:.0} MiB, and the memory limit is {:.0} MiB: raise the limit, or \
-                 lower the resolution of the camera",
+                "the patterns need {:.0} MiB, and the memory limit is {:.0} MiB: raise the limit, \
+                 or lower the resolution of the camera",
                 mebibytes(*needed).ceil(),
                 mebibytes(*limit)
             ),

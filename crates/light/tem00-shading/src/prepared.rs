@@ -32,10 +32,11 @@ impl PreparedSpeckle {
         let farthest = shifts.max_by(|a, b| a.pupil.total_cmp(&b.pupil));
         let shift = farthest.map_or(0.0, |shift| shift.pupil);
         let held = frame.reach;
-        // All speckle beyond the reach is new, and the same in all frames: right in one frame only.
+        // Beyond the reach all frames have the same new speckle, so that only a single one may be
+        // there.
         let prepared = patterns.shifts[usize::from(frame.side > 0.0)];
-        let is_the_other = patterns.needs.frames == 2 && shift.to_bits() == prepared.to_bits();
-        if shift > held && !is_the_other {
+        let is_the_only_one = patterns.needs.frames == 2 && shift.to_bits() == prepared.to_bits();
+        if shift > held && !is_the_only_one {
             return Err(ShadingError::BeyondPoses { shift, held });
         }
         farthest.map_or(Ok(()), |shift| frame.check_crossing(&shift))?;
@@ -123,8 +124,8 @@ impl fmt::Display for PreparedSpeckle {
         let [before, after] = patterns.shifts;
         write!(
             f,
-            "{} of {width} × {height} samples in {} ({:.0} MiB): speckle of {:.2} px, the region of \
-             {:.0} × {:.0} px repeats nothing, ",
+            "{} of {width} × {height} samples in {} ({:.0} MiB): speckle of {:.2} px, the region \
+             of {:.0} × {:.0} px repeats nothing, ",
             counted(patterns.stacks.len() as u64, "pattern", "patterns"),
             counted(slices as u64, "slice", "slices"),
             self.memory_bytes() as f64 / f64::from(1 << 20),

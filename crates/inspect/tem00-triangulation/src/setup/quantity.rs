@@ -230,8 +230,8 @@ quantities! {
             .within(|_| (0.0, 1.0), "from 0 to 1").or("`1`");
         /// length, positive: standard deviation of the height of the relief finer than a resolution
         /// cell, the size of a speckle on the part. It spreads the paths of light that has a
-        /// `linewidth`, and does nothing otherwise. Not the Rq of a drawing, which includes waves up
-        /// to 0.8 mm long: those longer than a cell only tilt it and do not spread the paths
+        /// `linewidth`, and does nothing otherwise. Not the Rq of a drawing, which includes waves
+        /// up to 0.8 mm long: those longer than a cell only tilt it and do not spread the paths
         RmsHeight: rms_height = Row::new(field!(surface.relief.rms_height), &RELIEF)
             .within(|_| (0.0, 1.0), "from 0 to 1 m, of the relief finer than a resolution cell")
             .or("not known: no spread").read_with_others()

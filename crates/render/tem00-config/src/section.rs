@@ -12,8 +12,12 @@ use crate::value::{Value, nearest};
 /// A table that a section may have: its key, and the keys that it may have itself.
 pub type Choice = (&'static str, &'static [&'static str]);
 
-/// Renamed keys: the old and the new name.
-const RENAMED: [(&str, &str); 2] = [("lamp", "light"), ("line_width", "line_thickness")];
+/// Words for a key that are not spelled like it, each with the key.
+const SYNONYMS: [(&str, &str); 3] = [
+    ("lamp", "light"),
+    ("line_width", "line_thickness"),
+    ("roughness", "rms_height"),
+];
 
 /// Table of the file.
 ///
@@ -279,31 +283,32 @@ impl<'a> Section<'a> {
 
     /// Returns the section, or a problem at its first key that is not allowed.
     fn checked(self, parent: Option<&Self>) -> Result<Self, Problem> {
-        let unknown = self
-            .table
-            .keys()
-            .filter(|key| !self.keys.contains(&key.get_ref().as_ref()))
-            .min_by_key(|key| key.span().start);
-        match unknown {
-            None => Ok(self),
-            Some(key) => {
-                let location = self.source.location(key.span());
-                Err(self.unknown(key.get_ref(), parent).at(location))
-            }
+        let mut unknown: Vec<_> = self.table.keys().collect();
+        unknown.retain(|key| !self.keys.contains(&key.get_ref().as_ref()));
+        unknown.sort_by_key(|key| key.span().start);
+        let Some((first, others)) = unknown.split_first() else {
+            return Ok(self);
+        };
+        let location = self.source.location(first.span());
+        let (message, mut help) = self.unknown(first.get_ref(), parent);
+        if !others.is_empty() {
+            let others: Vec<_> = others
+                .iter()
+                .map(|key| format!("`{}`", key.get_ref()))
+                .collect();
+            help += &format!("; also unknown: {}", others.join(", "));
         }
+        Err(Problem::new(message).at(location).with_help(help))
     }
 
-    fn unknown(&self, key: &str, parent: Option<&Self>) -> Problem {
+    /// Returns the message and the help for an unknown key.
+    fn unknown(&self, key: &str, parent: Option<&Self>) -> (String, String) {
         let header = &self.header;
-        let renamed = RENAMED
-            .iter()
-            .find(|(old, new)| *old == key && self.keys.contains(new));
-        let message = match (renamed, nearest(key, self.keys)) {
-            (Some((_, new)), _) => format!("`{key}` in {header} is now named `{new}`"),
-            (_, Some(meant)) => {
-                format!("unknown key `{key}` in {header}; did you mean `{meant}`?")
-            }
-            (None, None) => format!("unknown key `{key}` in {header}"),
+        let mut synonyms = SYNONYMS.iter().filter(|(word, _)| *word == key);
+        let synonym = synonyms.find_map(|(_, meant)| self.keys.contains(meant).then_some(*meant));
+        let hint = match synonym.or_else(|| nearest(key, self.keys)) {
+            Some(meant) => format!("; did you mean `{meant}`?"),
+            None => String::new(),
         };
         let help = match parent {
             Some(parent) if parent.keys.contains(&key) && !parent.is_root => format!(
@@ -312,7 +317,7 @@ impl<'a> Section<'a> {
             ),
             _ => format!("allowed here: {}", self.keys.join(", ")),
         };
-        Problem::new(message).with_help(help)
+        (format!("unknown key `{key}` in {header}{hint}"), help)
     }
 }
 

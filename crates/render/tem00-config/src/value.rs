@@ -109,8 +109,19 @@ impl<'a> Value<'a> {
     }
 
     /// Returns a problem placed at the value, whose quantities are stated in the unit of the value.
+    /// For a bare number that lacks the unit of the message, it says how to write one.
     pub fn problem(&self, message: impl Display) -> Problem {
-        Problem::new(self.retyped(&message.to_string())).at(self.location())
+        let message = message.to_string();
+        let problem = Problem::new(self.retyped(&message)).at(self.location());
+        let is_bare = matches!(self.item.get_ref(), DeValue::Integer(_) | DeValue::Float(_));
+        let named = |dimension: &&&Dimension| {
+            let unit = format!("(in {})", dimension.si_unit);
+            message.contains(&unit)
+        };
+        match DIMENSIONS.iter().find(named).filter(|_| is_bare) {
+            Some(dimension) => problem.with_help(dimension.how_to_write()),
+            None => problem,
+        }
     }
 
     /// Returns a message about this value with its quantities in the unit of this value.

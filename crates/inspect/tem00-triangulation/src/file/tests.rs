@@ -218,12 +218,13 @@ fn what_is_wrong_is_told_at_its_place() {
         wavelength = "650 nm" => wavelength = nan => 2:14 => a finite number
         wavelength = "650 nm"\n =>  => 1:1 => needs the key `wavelength`
         power = "5 mW" => power = 1e300 => 3:9 => at most
-        line_thickness = "0.2 mm" => line_width = 2e-4 => 4:1 => `line_width` in [laser] is now named `line_thickness`
+        line_thickness = "0.2 mm" => line_width = 2e-4 => 4:1 => did you mean `line_thickness`
         line_length = "50 mm" => line_length = 1e-5 => 5:15 => thickness of the line
         f_number = 8 => f_number = 0.1 => 8:12 => from 0.5 to 1000
         [640, 480] => [640] => 10:14 => two numbers of pixels
         [640, 480] => [1048576, 1048576] => 10:14 => pixels
         distance = "300 mm" => distance = 0.02 => 11:12 => focal lengths
+        reflectance = 0.5 => roughness = 0 => 17:1 => did you mean `rms_height`
         reflectance = 0.5 => reflectance = 0 => 17:15 => positive, at most 1
         columns = 1 => columns = 641 => 28:11 => columns of the image
         columns = 1 => columns = 1.5 => 28:11 => a whole number
@@ -243,11 +244,20 @@ fn what_is_wrong_is_told_at_its_place() {
         assert_eq!(format!("{line}:{column}"), position, "{instead}: {error}");
     }
     let (_, without) = PLAIN.split_once("[camera]").unwrap();
-    for text in ["", &format!("[camera]{without}")] {
+    let degrees = changed(&full, &[("angle", "45")]);
+    let unknown = changed(&full, &[("angle", "0.5\nangel = 1\nzoom = 2")]);
+    for (text, part, help) in [
+        ("", "[laser]", "wavelength"),
+        (&format!("[camera]{without}"), "[laser]", "wavelength"),
+        (&degrees, "(in radians), got 45", "such as \"30 deg\""),
+        (&unknown, "did you mean `angle`?", "; also unknown: `zoom`"),
+    ] {
         let error = parse_setup(text).unwrap_err();
-        assert!(error.message().contains("[laser]"), "{error}");
-        let help = error.help().unwrap_or_default();
-        assert!(help.contains("wavelength"), "{error:?}");
+        assert!(error.message().contains(part), "{error}");
+        assert!(
+            error.help().is_some_and(|found| found.contains(help)),
+            "{error:?}"
+        );
     }
 }
 

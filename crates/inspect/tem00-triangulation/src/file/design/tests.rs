@@ -62,7 +62,7 @@ fn what_cannot_be_is_refused_where_it_stands() {
         [design]\n => [design.vary] => 1:1
         [design.vary]\n => varied => 1:1
         [design.vary]\nf_numbr = [1]\n => did you mean `f_number` => 2:1
-        [design.vary]\nline_width = [1e-4]\n => is now named `line_thickness` => 2:1
+        [design.vary]\nline_width = [1e-4]\n => did you mean `line_thickness` => 2:1
         [design.vary]\nf_number = 8\n => a list of values => 2:12
         [design.vary]\nf_number = []\n => a list of values => 2:12
         [design.vary]\nangle = ["3 mm"]\n => an angle => 2:10

@@ -1,6 +1,6 @@
 mod noise;
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
 
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
@@ -161,11 +161,16 @@ pub(crate) fn in_parallel<T: Send>(
     let count = f64::from(options.trials);
     within("trials", count, (10.0, 1e6), "from 10 to a million")?;
     let done = AtomicU64::new(0);
+    let first_failed = AtomicU32::new(u32::MAX);
     let trial = |index: u32| {
-        if cancel.load(Ordering::Relaxed) {
+        // What comes behind a trial that fails is not needed, and what comes before it is done.
+        if cancel.load(Ordering::Relaxed) || index > first_failed.load(Ordering::Relaxed) {
             return Err(TriangulationError::Cancelled);
         }
         let result = trial(index);
+        if result.is_err() {
+            first_failed.fetch_min(index, Ordering::Relaxed);
+        }
         progress(done.fetch_add(1, Ordering::Relaxed) + 1);
         result
     };

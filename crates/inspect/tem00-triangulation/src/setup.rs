@@ -204,6 +204,9 @@ impl Setup {
     fn check_image(&self) -> Result<(), TriangulationError> {
         let [width, height] = self.description.camera.resolution;
         let rows = height as f64;
+        let allowed = "at least 8 columns and 16 rows";
+        within("resolution", width as f64, (8.0, f64::MAX), allowed)?;
+        within("resolution", rows, (16.0, f64::MAX), allowed)?;
         let per_pixel = self.line.speckle_size;
         let allowed = "such that the speckle size λ F (1 + m) is from 1/16 to 64 pixels";
         within("f_number", per_pixel[0], SPECKLE_SIZES, allowed)?;
@@ -217,10 +220,7 @@ impl Setup {
         within(widest, self.line.width, (0.1, rows / 3.0), allowed)?;
         let window = self.description.detector.window as f64;
         let allowed = "at most the number of rows of the image";
-        within("window", window, (1.0, rows), allowed)?;
-        let allowed = "at least 8 columns and 16 rows";
-        within("resolution", width as f64, (8.0, f64::MAX), allowed)?;
-        within("resolution", rows, (16.0, f64::MAX), allowed)
+        within("window", window, (1.0, rows), allowed)
     }
 }
 

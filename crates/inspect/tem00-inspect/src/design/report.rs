@@ -108,7 +108,7 @@ fn list(report: &mut Report, design: &Design<'_>) {
     let figures = figures(design);
     let columns = columns(design, &figures, &listed);
     let mut table = Table::new(
-        "Standard and expanded (95 %) uncertainty of a height",
+        "Standard and expanded (95 %) uncertainty of a height at the reference plane",
         columns,
     );
     for candidate in listed {

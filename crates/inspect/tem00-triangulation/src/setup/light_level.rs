@@ -33,11 +33,11 @@ impl LightLevel {
             Self::SaturatedGrains => {
                 "pixels of bright grains are cut off, and their columns do not count as valid: \
                  lower the exposure or the power by as much as the brightest grains exceed the \
-                 range"
+                 range, or set `exposure = \"auto\"` in [sensor]"
             }
             Self::Saturated => {
                 "the crest of the line is cut off and its position is wrong: lower the exposure or \
-                 the power, or raise the f-number"
+                 the power, raise the f-number, or set `exposure = \"auto\"` in [sensor]"
             }
         }
     }

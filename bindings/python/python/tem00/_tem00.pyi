@@ -1,3 +1,5 @@
+from __future__ import annotations
+
 from tem00 import beam as beam
 from tem00 import coherence as coherence
 from tem00 import decorrelation as decorrelation

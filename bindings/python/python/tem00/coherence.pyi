@@ -1,3 +1,5 @@
+from __future__ import annotations
+
 from typing import ClassVar, SupportsIndex, final, overload
 from tem00._typing import FloatArray, RealArray, Vector
 

@@ -1,3 +1,5 @@
+from __future__ import annotations
+
 from typing import ClassVar, final, overload
 from tem00._results import SpeckleMotion as SpeckleMotion
 from tem00._typing import FloatArray, Numbers, Pair, RealArray, Table, Vector, Vectors

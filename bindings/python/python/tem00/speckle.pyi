@@ -1,3 +1,5 @@
+from __future__ import annotations
+
 from collections.abc import Iterable
 from typing import ClassVar, SupportsIndex, final, overload
 import numpy as np

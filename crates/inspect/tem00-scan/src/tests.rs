@@ -4,7 +4,7 @@ use core::sync::atomic::AtomicBool;
 
 use glam::DVec3;
 use tem00_testkit::{assert_absolute, assert_relative, refuses, rows};
-use tem00_tracer::{Environment, Light, Rotation, Trajectory};
+use tem00_tracer::{Environment, Light, RigidMotion, Rotation, Trajectory};
 use tem00_triangulation::{SensorDescription, Validity};
 
 use crate::{
@@ -23,9 +23,8 @@ fn an_even_radiance_frees_the_electrons_that_the_aperture_tells() {
     let mut measured = measured(SCENE);
     measured.scene.surfaces.truncate(1);
     measured.scene.lasers.truncate(1);
-    measured.scene.surfaces[0].shape = measured.scene.surfaces[0]
-        .shape
-        .translated(DVec3::new(1.0, 1.0, -1.0));
+    let away = RigidMotion::along(DVec3::new(1.0, 1.0, -1.0)).unwrap();
+    measured.scene.surfaces[0].shape = measured.scene.surfaces[0].shape.moved(&away);
     let radiance = 2.5;
     let sky = Environment::constant(radiance).unwrap();
     measured.scene.lights = vec![Light::Environment(sky)];

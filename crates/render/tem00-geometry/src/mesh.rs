@@ -141,17 +141,6 @@ impl TriangleMesh {
         self.bounds
     }
 
-    /// Returns the mesh moved by `displacement`, in metres.
-    #[must_use]
-    pub fn translated(&self, displacement: DVec3) -> Self {
-        let (low, high) = self.bounds;
-        Self {
-            vertices: self.vertices.iter().map(|v| v + displacement).collect(),
-            bounds: (low + displacement, high + displacement),
-            ..self.clone()
-        }
-    }
-
     /// Returns the corners of a triangle, in metres.
     #[inline(always)]
     pub(crate) fn corners(&self, triangle: usize) -> [DVec3; 3] {

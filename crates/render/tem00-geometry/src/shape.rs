@@ -35,19 +35,6 @@ impl Shape {
         }
     }
 
-    /// Returns the shape moved by `displacement`, in metres.
-    #[must_use]
-    pub fn translated(&self, displacement: DVec3) -> Self {
-        let mut shape = self.clone();
-        *match &mut shape {
-            Self::Rectangle(rectangle) => &mut rectangle.centre,
-            Self::Sphere(sphere) => &mut sphere.centre,
-            Self::Cylinder(cylinder) => &mut cylinder.centre,
-            Self::Mesh(instance) => &mut instance.translation,
-        } += displacement;
-        shape
-    }
-
     /// Returns the radius of curvature in metres below which a twentieth of the area curves;
     /// infinite for flat faces. A mesh curves by its vertex normals, and has no sharper edges than
     /// they say.

@@ -76,6 +76,10 @@ fn ball(rings: u32, radius: f64) -> TriangleMesh {
     TriangleMesh::new(vertices, triangles).unwrap()
 }
 
+fn translated(shape: &Shape, displacement: DVec3) -> Shape {
+    shape.moved(&RigidMotion::along(displacement).unwrap())
+}
+
 fn mixed_scene() -> Vec<Shape> {
     let (u, v) = (DVec3::new(0.01, 0.02, 0.02), DVec3::new(0.02, -0.02, 0.01));
     let axis = DVec3::new(1.0, 0.2, 0.3);
@@ -84,7 +88,7 @@ fn mixed_scene() -> Vec<Shape> {
         Shape::from(ball(12, 0.1)),
         sphere(DVec3::new(0.2, 0.1, 0.0), 0.05),
         sphere(DVec3::new(-0.2, 0.15, -0.1), 1e-4),
-        Shape::from(ball(6, 0.004)).translated(DVec3::new(-0.1, -0.2, 0.2)),
+        translated(&ball(6, 0.004).into(), DVec3::new(-0.1, -0.2, 0.2)),
         rectangle(DVec3::new(0.0, 0.2, 0.2), u, v),
         tube(DVec3::new(0.35, -0.3, 0.0), axis, 0.03, 0.2),
     ]
@@ -186,7 +190,7 @@ fn scenes_without_shapes_or_of_impossible_size_are_refused() {
         (sphere(DVec3::ZERO, 1e10), "coordinate of a shape"),
         (sphere(DVec3::ZERO, 1e-13), "extent of all shapes"),
         (
-            sphere(DVec3::ZERO, 1.0).translated(DVec3::NAN),
+            translated(&sphere(f64::MAX * DVec3::X, 1.0), f64::MAX * DVec3::X),
             "coordinate of a shape",
         ),
     ] {

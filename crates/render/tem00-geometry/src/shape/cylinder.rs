@@ -23,7 +23,7 @@ use crate::Refusal;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder {
-    pub(super) centre: DVec3,
+    centre: DVec3,
     axis: DVec3,
     radius: f64,
     length: f64,

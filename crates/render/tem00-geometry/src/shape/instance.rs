@@ -40,7 +40,7 @@ pub struct MeshInstance {
     hierarchy: Arc<OnceLock<MeshHierarchy>>,
     scale: f64,
     rotation: DMat3,
-    pub(super) translation: DVec3,
+    translation: DVec3,
 }
 
 impl PartialEq for MeshInstance {

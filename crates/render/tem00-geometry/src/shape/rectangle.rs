@@ -24,7 +24,7 @@ use crate::Refusal;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rectangle {
-    pub(super) centre: DVec3,
+    centre: DVec3,
     half_u: DVec3,
     half_v: DVec3,
     normal: DVec3,

@@ -18,7 +18,7 @@ use crate::Refusal;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
-    pub(super) centre: DVec3,
+    centre: DVec3,
     radius: f64,
 }
 

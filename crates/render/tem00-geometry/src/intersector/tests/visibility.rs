@@ -3,7 +3,7 @@ use super::*;
 #[test]
 fn a_sheet_one_nanometre_above_half_a_metre_of_floor_hides_the_light() {
     let floor = rectangle(0.5 * DVec3::ONE, 0.5 * DVec3::X, 0.5 * DVec3::Y);
-    let sheet = floor.translated(1e-9 * DVec3::Z);
+    let sheet = translated(&floor, 1e-9 * DVec3::Z);
     let light = DVec3::new(0.5, 0.5, 1.0);
     let (open, covered) = (build(std::slice::from_ref(&floor)), build(&[floor, sheet]));
     for x in [0.1, 0.5, 0.9] {

@@ -5,8 +5,7 @@ use super::*;
 
 #[test]
 fn no_ray_leaves_a_closed_mesh_through_an_edge_or_a_corner() {
-    let mesh = ball(10, 0.1);
-    let shape = Shape::from(mesh).translated(DVec3::new(0.3, 0.2, 0.7));
+    let shape = translated(&ball(10, 0.1).into(), DVec3::new(0.3, 0.2, 0.7));
     let Shape::Mesh(moved) = &shape else {
         unreachable!("still a mesh")
     };

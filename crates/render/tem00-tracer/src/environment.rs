@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use tem00_numerics::{Grid, circle_point_at_turn};
 
 use self::map::RadianceMap;
-use crate::{LightSample, TracerError};
+use crate::{LightSample, TracerError, error::check_light};
 
 /// Light from all around, so far away that it is the same everywhere in the scene.
 ///
@@ -60,13 +60,7 @@ impl Environment {
     ///
     /// Returns an error if the radiance is negative or not finite.
     pub fn constant(radiance: f64) -> Result<Self, TracerError> {
-        if !(radiance >= 0.0 && radiance.is_finite()) {
-            return Err(TracerError::out_of_range(
-                "radiance",
-                radiance,
-                "finite and not negative",
-            ));
-        }
+        check_light("radiance", radiance)?;
         Ok(Self {
             radiance: Radiance::Constant(radiance),
         })

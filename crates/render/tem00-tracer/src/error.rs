@@ -1,4 +1,4 @@
-use core::{error, fmt};
+use core::{error, fmt, ops::RangeBounds};
 
 use tem00_numerics::Refusal;
 use tem00_shading::ShadingError;
@@ -82,6 +82,29 @@ impl TracerError {
             _ => None,
         }
     }
+}
+
+/// Checks that a parameter is in the range that `allowed` says in words.
+pub(crate) fn check(
+    parameter: &'static str,
+    value: f64,
+    range: impl RangeBounds<f64>,
+    allowed: &'static str,
+) -> Result<(), TracerError> {
+    if range.contains(&value) {
+        return Ok(());
+    }
+    Err(TracerError::out_of_range(parameter, value, allowed))
+}
+
+/// Checks that a power or a radiance is possible.
+pub(crate) fn check_light(parameter: &'static str, value: f64) -> Result<(), TracerError> {
+    check(
+        parameter,
+        value,
+        0.0..f64::INFINITY,
+        "finite and not negative",
+    )
 }
 
 impl fmt::Display for TracerError {

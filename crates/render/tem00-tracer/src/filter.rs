@@ -4,7 +4,7 @@ use glam::DVec2;
 use tem00_camera::IMAGE_MARGIN;
 
 use self::table::HalfTable;
-use crate::TracerError;
+use crate::{TracerError, error::check};
 
 /// The largest radius of a filter, in pixels.
 const MAXIMUM_RADIUS: f64 = IMAGE_MARGIN;
@@ -169,18 +169,6 @@ impl FilterSampler {
             }
         }
     }
-}
-
-fn check(
-    parameter: &'static str,
-    value: f64,
-    range: core::ops::RangeInclusive<f64>,
-    allowed: &'static str,
-) -> Result<(), TracerError> {
-    if range.contains(&value) {
-        return Ok(());
-    }
-    Err(TracerError::out_of_range(parameter, value, allowed))
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use tem00_geometry::Rectangle;
 
 pub use self::sample::LightSample;
 use self::spherical_rectangle::SphericalRectangle;
-use crate::{Environment, TracerError};
+use crate::{Environment, TracerError, error::check_light};
 
 /// The solid angle, in steradian, below which near rectangles are sampled by area, as far
 /// rectangles are: its rounding error is 1e−11 of this.
@@ -59,7 +59,7 @@ impl Light {
     ///
     /// Returns an error if the power is negative or not finite, or the position is not finite.
     pub fn point(position: DVec3, power: f64) -> Result<Self, TracerError> {
-        check("power", power)?;
+        check_light("power", power)?;
         if !position.is_finite() {
             return Err(TracerError::Direction {
                 parameter: "position",
@@ -75,7 +75,7 @@ impl Light {
     ///
     /// Returns an error if the radiance is negative or not finite.
     pub fn area(rectangle: Rectangle, radiance: f64) -> Result<Self, TracerError> {
-        check("radiance", radiance)?;
+        check_light("radiance", radiance)?;
         Ok(Self::Area {
             rectangle,
             radiance,
@@ -211,17 +211,6 @@ fn near_image(rectangle: &Rectangle, from: DVec3) -> Option<SphericalRectangle> 
 fn pdf_by_area(rectangle: &Rectangle, direction: DVec3, distance: f64) -> f64 {
     let cosine = -direction.dot(rectangle.normal());
     distance * distance / (rectangle.area() * cosine)
-}
-
-fn check(parameter: &'static str, value: f64) -> Result<(), TracerError> {
-    if value >= 0.0 && value.is_finite() {
-        return Ok(());
-    }
-    Err(TracerError::out_of_range(
-        parameter,
-        value,
-        "finite and not negative",
-    ))
 }
 
 #[cfg(test)]

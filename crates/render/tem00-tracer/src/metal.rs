@@ -6,7 +6,7 @@ use self::tables::{
     ALUMINIUM, BRASS, CHROMIUM, COPPER, GOLD, IRON, NICKEL, PLATINUM, SILVER, STAINLESS_STEEL,
     TITANIUM, TUNGSTEN, Table,
 };
-use crate::TracerError;
+use crate::{TracerError, error::check};
 
 /// A metal, by its measured complex refractive index `n + ik`.
 ///
@@ -145,13 +145,8 @@ impl Metal {
         let Self::Custom { n, k } = self else {
             return Ok(());
         };
-        if !(1e-6..=1e6).contains(&n) {
-            return Err(TracerError::out_of_range("n", n, "between 1e-6 and 1e6"));
-        }
-        if !(0.0..=1e6).contains(&k) {
-            return Err(TracerError::out_of_range("k", k, "between 0 and 1e6"));
-        }
-        Ok(())
+        check("n", n, 1e-6..=1e6, "between 1e-6 and 1e6")?;
+        check("k", k, 0.0..=1e6, "between 0 and 1e6")
     }
 
     /// Checks that the metal was measured at a wavelength.

@@ -1,6 +1,6 @@
 use tem00_camera::Camera;
 
-use crate::{Filter, TracerError};
+use crate::{Filter, TracerError, error::check};
 
 /// The method by which light is followed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -157,13 +157,8 @@ impl RenderOptions {
     ///
     /// Returns an error if an option is out of its range.
     pub fn area(&self, camera: &Camera) -> Result<Crop, TracerError> {
-        if self.samples_per_pixel == 0 {
-            return Err(TracerError::out_of_range(
-                "samples_per_pixel",
-                0.0,
-                "at least 1",
-            ));
-        }
+        let samples = f64::from(self.samples_per_pixel);
+        check("samples_per_pixel", samples, 1.0.., "at least 1")?;
         if let Sampling::TargetError(error) = self.sampling
             && !(error > 0.0 && error.is_finite())
         {

@@ -3,7 +3,7 @@ use core::f64::consts::{PI, TAU};
 use glam::DVec3;
 use tem00_numerics::Grid;
 
-use crate::TracerError;
+use crate::{TracerError, error::check};
 
 /// Columns whose radiances share one entry of the cumulative sums: sums for each column would take
 /// more memory than the map.
@@ -24,16 +24,9 @@ pub(super) struct RadianceMap {
 
 impl RadianceMap {
     pub(super) fn new(radiance: Grid<f32>) -> Result<Self, TracerError> {
-        if let Some(value) = radiance
-            .values()
-            .iter()
-            .find(|value| !(**value >= 0.0 && value.is_finite()))
-        {
-            return Err(TracerError::out_of_range(
-                "radiance",
-                f64::from(*value),
-                "finite and not negative, everywhere in the map",
-            ));
+        let allowed = "finite and not negative, everywhere in the map";
+        for &value in radiance.values() {
+            check("radiance", f64::from(value), 0.0..f64::INFINITY, allowed)?;
         }
         let mut before_block =
             Grid::filled(radiance.width().div_ceil(BLOCK), radiance.height(), 0.0);

@@ -1,7 +1,4 @@
-use core::{
-    f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2},
-    ops::RangeInclusive,
-};
+use core::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
 use tem00_translucence::Medium;
 
@@ -9,7 +6,7 @@ use super::{
     Material, Scattering, conductor::Conductor, dielectric::Dielectric, ggx::Ggx,
     oren_nayar::OrenNayar, plastic::Plastic,
 };
-use crate::{Metal, TracerError};
+use crate::{Metal, TracerError, error::check};
 
 impl Material {
     /// Creates a material that looks equally bright from every side and reflects the fraction
@@ -254,17 +251,4 @@ fn rough_facets(roughness: f64) -> Result<Ggx, TracerError> {
 
 fn check_reflectance(reflectance: f64) -> Result<(), TracerError> {
     check("reflectance", reflectance, 0.0..=1.0, "between 0 and 1")
-}
-
-/// Checks that a parameter is in the range that `allowed` says in words.
-pub(super) fn check(
-    parameter: &'static str,
-    value: f64,
-    range: RangeInclusive<f64>,
-    allowed: &'static str,
-) -> Result<(), TracerError> {
-    if range.contains(&value) {
-        return Ok(());
-    }
-    Err(TracerError::out_of_range(parameter, value, allowed))
 }

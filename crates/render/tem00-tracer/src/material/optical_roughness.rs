@@ -4,8 +4,8 @@ use core::{
     ops::RangeInclusive,
 };
 
-use super::{Material, Scattering, constructors::check};
-use crate::TracerError;
+use super::{Material, Scattering};
+use crate::{TracerError, error::check};
 
 /// The conditions under which a surface has to be rough for speckle theory to hold.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,21 +4,6 @@ use tem00_testkit::{assert_absolute, refuses};
 
 use super::*;
 
-const ALL: [Metal; 12] = [
-    Metal::Aluminium,
-    Metal::Silver,
-    Metal::Gold,
-    Metal::Copper,
-    Metal::Iron,
-    Metal::Chromium,
-    Metal::Nickel,
-    Metal::Titanium,
-    Metal::Tungsten,
-    Metal::Platinum,
-    Metal::Brass,
-    Metal::StainlessSteel,
-];
-
 #[test]
 fn tables_rise_in_wavelength_and_contain_the_measured_range() {
     let tables = [
@@ -96,7 +81,7 @@ fn index_is_the_measurement_at_a_measured_wavelength_and_the_mean_between_two() 
 
 #[test]
 fn wavelengths_outside_the_tables_and_impossible_indices_are_refused() {
-    for metal in ALL {
+    for (_, metal) in Metal::NAMED {
         refuses!(wavelength = 650e-9 => metal.refractive_index(wavelength);
             wavelength: [-650e-9, 0.0, 367e-9, 1.1e-6, 650.0, f64::NAN]);
     }
@@ -145,7 +130,7 @@ proptest! {
 
 #[test]
 fn everything_reflects_at_grazing_incidence_and_nothing_gives_nan() {
-    for metal in ALL {
+    for (_, metal) in Metal::NAMED {
         let index = metal.refractive_index(650e-9).unwrap();
         assert_absolute(fresnel_reflectance(0.0, index), 1.0, 1e-15);
     }

@@ -276,21 +276,14 @@ impl Inspector<'_> {
             return LightFate::LightsFarSide;
         }
         let connection = self.camera.connect(hit.position, lens);
-        let Some(connection) = connection.filter(|found| self.is_rendered(found.pixel)) else {
+        let is_rendered = |pixel| self.area.pixel_at(pixel).is_some();
+        let Some(connection) = connection.filter(|found| is_rendered(found.pixel)) else {
             return LightFate::OutsideImage;
         };
         match self.between(hit, connection.lens_point) {
             Some(by) => LightFate::Hidden { by },
             None => LightFate::Seen,
         }
-    }
-
-    fn is_rendered(&self, pixel: DVec2) -> bool {
-        let area = self.area;
-        let within = |value: f64, start: usize, length: usize| {
-            value >= start as f64 && value < (start + length) as f64
-        };
-        within(pixel.x, area.x, area.width) && within(pixel.y, area.y, area.height)
     }
 
     /// Returns the index of the first shape between a surface point and another point, if any.

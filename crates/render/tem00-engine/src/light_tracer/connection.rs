@@ -1,6 +1,6 @@
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use tem00_geometry::Segment;
-use tem00_tracer::{Crop, Laser, LocalFrame};
+use tem00_tracer::{Laser, LocalFrame};
 
 use super::{
     LightGroup, LightJob, LightSelection, LightTracer,
@@ -99,7 +99,7 @@ impl<'a> Connector<'a> {
     ) -> Option<(Connection<'v>, Segment)> {
         let hit = &met.vertex.hit;
         let seen = self.tracer.camera.connect(hit.position, lens)?;
-        let index = pixel_index(seen.pixel, &self.tracer.area)?;
+        let index = self.tracer.area.pixel_at(seen.pixel)?;
         let towards = (seen.lens_point - hit.position).try_normalize()?;
         let axes = LocalFrame::from_normal(hit.normal_seen_from(towards));
         let sent = met.sent(towards, &axes, self.laser.wavelength());
@@ -151,16 +151,4 @@ impl Met<'_> {
             0.0
         }
     }
-}
-
-/// Returns the number of the pixel at an image point, row by row in `area`, if it is there.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a point of the image is not negative and below 2²⁸"
-)]
-fn pixel_index(pixel: DVec2, area: &Crop) -> Option<usize> {
-    let x = (pixel.x as usize).checked_sub(area.x)?;
-    let y = (pixel.y as usize).checked_sub(area.y)?;
-    (x < area.width && y < area.height).then_some(y * area.width + x)
 }

@@ -3,10 +3,10 @@
 
 use core::sync::atomic::{AtomicBool, Ordering};
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use tem00_camera::Ray;
 use tem00_geometry::Hit;
-use tem00_numerics::cast::{to_f32, to_usize};
+use tem00_numerics::cast::to_f32;
 use tem00_numerics::parallel;
 
 use super::{CERTAIN_SURFACES, Random, Reference};
@@ -177,7 +177,7 @@ impl Reference<'_> {
     ) -> Option<Splat> {
         let (position, surface) = (arrival.hit.position, arrival.hit.surface);
         let seen = self.camera.connect(position, random.pair())?;
-        let pixel = pixel_of(seen.pixel, area)?;
+        let pixel = area.pixel_at(seen.pixel)?;
         let out = (seen.lens_point - position).try_normalize()?;
         if !self
             .intersector
@@ -224,11 +224,4 @@ impl Arrival<'_> {
             0.0
         }
     }
-}
-
-/// Returns the number of the pixel at an image point, row by row in `area`.
-fn pixel_of(pixel: DVec2, area: Crop) -> Option<usize> {
-    let x = to_usize(pixel.x).checked_sub(area.x)?;
-    let y = to_usize(pixel.y).checked_sub(area.y)?;
-    (x < area.width && y < area.height).then_some(y * area.width + x)
 }

@@ -15,19 +15,51 @@
 
 mod connection;
 mod group;
-mod job;
 mod specular_search;
 mod splats;
 
 use core::sync::atomic::{AtomicBool, Ordering};
 
+use tem00_camera::Camera;
+use tem00_geometry::Intersector;
 use tem00_numerics::parallel;
-use tem00_tracer::{LaserLayers, RenderError};
+use tem00_tracer::{Crop, LaserLayers, RenderError, Scene};
 
 pub(crate) use self::group::LightGroup;
-pub(crate) use self::job::{LightJob, LightSelection, LightTracer};
 pub use self::specular_search::has_specular_surfaces_on_both_sides;
 use self::{connection::Connector, splats::SplatFilm};
+use crate::speckle::SpeckleFrame;
+
+/// Follows light from the lasers to the camera, in one frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LightTracer<'a> {
+    pub scene: &'a Scene,
+    /// The camera as it stands in the frame.
+    pub camera: &'a Camera,
+    /// The surfaces as they stand in the frame, and the area lights behind them.
+    pub intersector: &'a Intersector,
+    pub speckle: Option<&'a SpeckleFrame<'a>>,
+    pub frame: u32,
+    /// The maximum number of surfaces that light may meet between laser and camera; `None` for no
+    /// limit.
+    pub max_depth: Option<u32>,
+    pub selection: LightSelection,
+    /// The part of the image that is rendered.
+    pub area: Crop,
+    /// The number of light paths for each laser. The same number gives the same bits in every part
+    /// of the image.
+    pub paths: u64,
+    pub seed: u64,
+}
+
+/// The part of the light that is followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LightSelection {
+    /// All light that reaches the camera from a rough surface.
+    All,
+    /// Light whose first hit is specular: exactly the light that the path tracer cannot find.
+    SpecularFirst,
+}
 
 /// The groups of light paths whose points of phase space are spread evenly.
 #[derive(Clone, Copy, Debug)]
@@ -62,7 +94,7 @@ impl Groups {
 const GROUPS_AT_ONCE: usize = 64;
 
 impl LightTracer<'_> {
-    /// Follows the light of one laser, and adds it to its layers.
+    /// Follows the light of one laser of the scene, and adds it to its layers.
     ///
     /// `progress` receives, from any thread, the number of light paths done since its last call.
     ///
@@ -71,13 +103,13 @@ impl LightTracer<'_> {
     /// Returns [`RenderError::Cancelled`] if `cancel` was set before the end.
     pub(crate) fn trace(
         &self,
-        job: &LightJob,
+        laser: usize,
         layers: &mut LaserLayers,
         progress: &(dyn Fn(u64) + Sync),
         cancel: &AtomicBool,
     ) -> Result<(), RenderError> {
-        let connector = Connector::new(self, job);
-        let groups = Groups::new(job.paths);
+        let connector = Connector::new(self, laser);
+        let groups = Groups::new(self.paths);
         let mut film = SplatFilm::new(self.area);
         for first in (0..groups.count).step_by(GROUPS_AT_ONCE) {
             let left = usize::try_from(groups.count - first).unwrap_or(usize::MAX);

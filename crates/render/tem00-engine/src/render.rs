@@ -12,7 +12,7 @@ use self::pass::PathPass;
 use crate::{
     SpeckleModel,
     integrator::Integrator,
-    light_tracer::{LightJob, LightSelection, LightTracer},
+    light_tracer::{LightSelection, LightTracer},
     sampler::sample_counts,
     survey::{Survey, asks_for_survey},
 };
@@ -73,11 +73,16 @@ pub fn render_frame(
     let intersector = Intersector::build(&scene.shapes_at(frame))?;
     let speckle = speckle.map(|model| {
         let speckle = model.in_frame(scene, frame)?;
-        let map = asks_for_survey(scene, frame, options).then(|| {
-            let change = speckle.change();
-            let survey = Survey::new(scene, change, &intersector, frame, SURVEY_CELLS);
-            survey.with(options.seed, options.max_depth).map()
-        });
+        let survey = Survey {
+            scene,
+            frame,
+            intersector: &intersector,
+            change: speckle.change(),
+            seed: options.seed,
+            max_depth: options.max_depth,
+            cells: SURVEY_CELLS,
+        };
+        let map = asks_for_survey(scene, frame, options).then(|| survey.map());
         let below = SpeckleBelow::in_frame(scene, frame, &intersector)?;
         let speckle = speckle.with_light_below(below);
         Ok::<_, TracerError>(speckle.with_multiple_light(map.flatten()))
@@ -99,17 +104,24 @@ pub fn render_frame(
     };
     let mut rendered = pass.render()?;
     if let Some(selection) = selection {
+        let camera = integrator.camera();
+        let pixels = (camera.width() * camera.height()) as u64;
         let tracer = LightTracer {
             scene,
-            camera: integrator.camera(),
+            camera,
             intersector: &intersector,
             speckle: speckle.as_ref(),
             frame,
             max_depth: options.max_depth,
             selection,
             area,
+            // As many for each laser as the whole image has camera samples.
+            paths: pixels * u64::from(options.samples_per_pixel),
+            seed: options.seed,
         };
-        add_light_traced(&tracer, options, &mut rendered, progress, cancel)?;
+        for (laser, layers) in rendered.lasers.iter_mut().enumerate() {
+            tracer.trace(laser, layers, progress, cancel)?;
+        }
     }
     Ok(rendered)
 }
@@ -124,28 +136,6 @@ fn light_traced(scene: &Scene, options: &RenderOptions) -> Option<LightSelection
         Method::Path if options.samples_beams() || !scene.has_specular_surfaces() => None,
         Method::Path => Some(LightSelection::SpecularFirst),
     }
-}
-
-/// Adds the light that is followed from the lasers: as many paths for each laser as the whole image
-/// has camera samples.
-fn add_light_traced(
-    tracer: &LightTracer<'_>,
-    options: &RenderOptions,
-    frame: &mut Frame,
-    progress: &(dyn Fn(u64) + Sync),
-    cancel: &AtomicBool,
-) -> Result<(), RenderError> {
-    let pixels = tracer.camera.width() * tracer.camera.height();
-    let paths = pixels as u64 * u64::from(options.samples_per_pixel);
-    for (laser, layers) in frame.lasers.iter_mut().enumerate() {
-        let job = LightJob {
-            laser,
-            paths,
-            seed: options.seed,
-        };
-        tracer.trace(&job, layers, progress, cancel)?;
-    }
-    Ok(())
 }
 
 #[cfg(test)]

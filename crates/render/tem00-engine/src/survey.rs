@@ -26,18 +26,18 @@ use crate::{
 
 /// Survey of a frame at some resolution.
 pub(crate) struct Survey<'a> {
-    scene: &'a Scene,
-    frame: u32,
+    pub scene: &'a Scene,
+    pub frame: u32,
     /// The surfaces as they stand in the frame.
-    intersector: &'a Intersector,
+    pub intersector: &'a Intersector,
     /// The motion since the reference frame.
-    change: &'a Change,
-    seed: u64,
+    pub change: &'a Change,
+    pub seed: u64,
     /// The maximum number of surfaces that light may meet between laser and camera; `None` for no
     /// limit.
-    max_depth: Option<u32>,
+    pub max_depth: Option<u32>,
     /// The number of cells along the longer side of the image.
-    cells: usize,
+    pub cells: usize,
 }
 
 /// Separates the random numbers of a survey from the random numbers of a render.
@@ -78,11 +78,18 @@ impl SpecklePlan {
     /// of a surface is not a sum of patterns, if something moves in more than 262,144 frames, or if
     /// the patterns of no frame fit the memory that the scene allows.
     pub fn new(scene: &Scene, seed: u64) -> Result<Self, TracerError> {
-        let options = &scene.render;
+        let max_depth = scene.render.max_depth;
         Self::with_survey(scene, seed, &|frame, intersector, change| {
-            let survey = Survey::new(scene, change, intersector, frame, PLANNED_CELLS);
-            let survey = survey.with(seed, options.max_depth);
-            asks_for_survey(scene, frame, options).then(|| survey.map())?
+            let survey = Survey {
+                scene,
+                frame,
+                intersector,
+                change,
+                seed,
+                max_depth,
+                cells: PLANNED_CELLS,
+            };
+            asks_for_survey(scene, frame, &scene.render).then(|| survey.map())?
         })
     }
 }
@@ -124,7 +131,16 @@ pub fn cascade_notes(scene: &Scene) -> Result<Vec<CascadeNote>, TracerError> {
     let frame = scene.reference_frame;
     let intersector = Intersector::build(&scene.shapes_at(frame))?;
     let change = Change::new(scene, frame);
-    let map = Survey::new(scene, &change, &intersector, frame, PLANNED_CELLS).map();
+    let survey = Survey {
+        scene,
+        frame,
+        intersector: &intersector,
+        change: &change,
+        seed: 0,
+        max_depth: scene.render.max_depth,
+        cells: PLANNED_CELLS,
+    };
+    let map = survey.map();
     let notes = map.iter().flat_map(MultipleMap::strongest_cascades);
     Ok(notes
         .filter(|(_, variance)| *variance > CASCADE)
@@ -140,35 +156,6 @@ pub fn cascade_notes(scene: &Scene) -> Result<Vec<CascadeNote>, TracerError> {
 const CASCADE: f64 = 0.05;
 
 impl<'a> Survey<'a> {
-    /// Creates the survey of a frame in `cells` cells along the longer side of the image; the
-    /// intersector holds the surfaces as they stand in the frame.
-    pub(crate) const fn new(
-        scene: &'a Scene,
-        change: &'a Change,
-        intersector: &'a Intersector,
-        frame: u32,
-        cells: usize,
-    ) -> Self {
-        Self {
-            scene,
-            frame,
-            intersector,
-            change,
-            seed: 0,
-            max_depth: scene.render.max_depth,
-            cells,
-        }
-    }
-
-    /// Returns the survey with options of a render.
-    pub(crate) const fn with(self, seed: u64, max_depth: Option<u32>) -> Self {
-        Self {
-            seed,
-            max_depth,
-            ..self
-        }
-    }
-
     /// Follows light from the lasers, connects the surfaces that it meets with points that the
     /// camera sees, and returns the multiple light found there, if any.
     pub(crate) fn map(&self) -> Option<MultipleMap> {

@@ -3,7 +3,7 @@ use tem00_geometry::Segment;
 use tem00_tracer::{Laser, LocalFrame};
 
 use super::{
-    LightGroup, LightJob, LightSelection, LightTracer,
+    LightGroup, LightSelection, LightTracer,
     splats::{Splat, Splats},
 };
 use crate::{
@@ -17,7 +17,8 @@ use crate::{
 #[derive(Debug)]
 pub(super) struct Connector<'a> {
     tracer: &'a LightTracer<'a>,
-    job: LightJob,
+    /// The index of the laser in the scene.
+    index: usize,
     /// The laser as it stands in the frame.
     laser: Laser,
 }
@@ -36,11 +37,11 @@ struct Connection<'a> {
 }
 
 impl<'a> Connector<'a> {
-    pub(super) fn new(tracer: &'a LightTracer<'a>, job: &LightJob) -> Self {
+    pub(super) fn new(tracer: &'a LightTracer<'a>, index: usize) -> Self {
         Self {
             tracer,
-            job: *job,
-            laser: tracer.scene.lasers[job.laser].in_frame(tracer.frame),
+            index,
+            laser: tracer.scene.lasers[index].in_frame(tracer.frame),
         }
     }
 
@@ -53,9 +54,9 @@ impl<'a> Connector<'a> {
             laser: &self.laser,
             max_depth: tracer.max_depth,
             key: DrawKey {
-                seed: self.job.seed,
+                seed: tracer.seed,
                 frame: tracer.frame,
-                laser: self.job.laser,
+                laser: self.index,
                 group,
             },
             paths,
@@ -127,7 +128,7 @@ impl<'a> Connector<'a> {
         let radiance = connection.radiance;
         let is_single = connection.met.walker.rough == 0;
         let speckle = self.tracer.speckle;
-        let factor = |speckle: &SpeckleFrame<'_>| speckle.factor(self.job.laser, &connection.point);
+        let factor = |speckle: &SpeckleFrame<'_>| speckle.factor(self.index, &connection.point);
         splats.push(Splat {
             pixel: connection.index,
             single: if is_single { radiance } else { 0.0 },

@@ -55,6 +55,8 @@ fn try_trace(
         max_depth: None,
         selection: LightSelection::All,
         area: scene.render.area(&scene.camera).unwrap(),
+        paths,
+        seed,
     };
     change(&mut tracer);
     let film = Film::new(&FilmLayout {
@@ -65,10 +67,8 @@ fn try_trace(
         light_traced: true,
     });
     let mut layers = film.unwrap().into_frame().lasers.remove(0);
-    let laser = 0;
-    let job = LightJob { laser, paths, seed };
     let cancel = AtomicBool::new(cancelled);
-    tracer.trace(&job, &mut layers, &|_| (), &cancel)?;
+    tracer.trace(0, &mut layers, &|_| (), &cancel)?;
     Ok(layers)
 }
 

@@ -163,10 +163,9 @@ impl<'a> Integrator<'a> {
             // Choose how the paths continue.
             self.scatter(batch);
         }
-        if self.speckle.is_some() {
-            batch.settle(self.speckle, &self.rules);
-        } else {
-            batch.settle_without_speckle();
+        match self.speckle {
+            Some(speckle) => batch.settle(speckle, &self.rules),
+            None => batch.settle_without_speckle(),
         }
     }
 

@@ -242,17 +242,15 @@ impl LaserLookUps {
         self.below.clear();
     }
 
-    /// Returns the factors of a laser at the points, each with its slot; 1 without a model.
+    /// Returns the factors of a laser at the points, each with its slot.
     fn look_up(
         &mut self,
-        speckle: Option<&SpeckleFrame<'_>>,
+        speckle: &SpeckleFrame<'_>,
         laser: usize,
     ) -> impl Iterator<Item = (usize, f64)> {
         self.factors.clear();
         self.factors.resize(self.points.len(), 1.0);
-        if let Some(speckle) = speckle {
-            speckle.factors(laser, &self.points, &self.singles, &mut self.factors);
-        }
+        speckle.factors(laser, &self.points, &self.singles, &mut self.factors);
         let slots = self.slots.iter().copied();
         slots.zip(self.factors.iter().copied())
     }
@@ -268,7 +266,7 @@ impl Batch<'_> {
 
     /// Gives the light of the samples its speckle, and those without light a factor where `rules`
     /// want it.
-    pub(super) fn settle(&mut self, speckle: Option<&SpeckleFrame<'_>>, rules: &PathRules) {
+    pub(super) fn settle(&mut self, speckle: &SpeckleFrame<'_>, rules: &PathRules) {
         let lasers = self.laser_samples.len() / self.samples.len().max(1);
         let SpeckleLookUps {
             samples,
@@ -293,7 +291,7 @@ impl Batch<'_> {
             for (sample, point) in samples.iter().zip(&*points) {
                 let slot = sample * lasers + laser;
                 let light = self.laser_samples[slot].below;
-                let below = speckle.and_then(|speckle| speckle.below(laser, point.surface));
+                let below = speckle.below(laser, point.surface);
                 if let (true, Some(below)) = (light > 0.0, below) {
                     look_ups.slots.push(slot);
                     look_ups.points.push(SpecklePoint {

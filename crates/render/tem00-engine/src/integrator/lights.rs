@@ -13,33 +13,21 @@ use crate::sampler::Use;
 impl<'a> Integrator<'a> {
     /// Connects every rough surface point to a point of every light.
     pub(super) fn connect_to_lights(&self, batch: &mut Batch<'a>) {
-        if self.rules.light_events == LightEvents::Scattering {
-            return self.connect_to_points(batch);
-        }
+        let is_left_to_rays = self.rules.light_events == LightEvents::Scattering;
         for (index, light) in self.scene.lights.iter().enumerate() {
-            self.connect_all(index, light, batch);
-        }
-    }
-
-    /// Connects to the lights that no ray can meet.
-    fn connect_to_points(&self, batch: &mut Batch<'a>) {
-        for (index, light) in self.scene.lights.iter().enumerate() {
-            if !can_be_met(light) {
-                self.connect_all(index, light, batch);
+            if is_left_to_rays && can_be_met(light) {
+                continue;
             }
-        }
-    }
-
-    fn connect_all(&self, index: usize, light: &Light, batch: &mut Batch<'a>) {
-        for path in 0..batch.paths.len() {
-            if !batch.vertices[path].is_specular() {
-                self.connect_to_light(index, light, path, batch);
+            for path in 0..batch.paths.len() {
+                if !batch.vertices[path].is_specular() {
+                    self.connect_to_light(index, light, path, batch);
+                }
+                if batch.connections.is_full() {
+                    batch.resolve_connections(self.intersector);
+                }
             }
-            if batch.connections.is_full() {
-                batch.resolve_connections(self.intersector);
-            }
+            batch.resolve_connections(self.intersector);
         }
-        batch.resolve_connections(self.intersector);
     }
 
     fn connect_to_light(&self, index: usize, light: &Light, path: usize, batch: &mut Batch<'a>) {

@@ -18,7 +18,7 @@ use self::{
     sample::{FrameSample, add_multiple_light, frame_samples},
 };
 use super::{
-    change::{Change, ReferencePoint},
+    change::{Change, ReferencePoint, moves},
     multiple::MultipleMap,
 };
 
@@ -150,11 +150,7 @@ pub(super) fn prescan(
 ) -> Result<Vec<Vec<MotionPrescan>>, TracerError> {
     let still = MotionPrescan::of_image(&scene.camera);
     let mut prescans = vec![vec![still; laser_groups.count()]; scene.lasers.len()];
-    let moves = |laser: usize| {
-        let mut surfaces = 0..scene.surfaces.len();
-        surfaces.any(|surface| scene.speckle_moves(laser, surface))
-    };
-    if !(0..scene.lasers.len()).any(moves) {
+    if !moves(scene) {
         return Ok(prescans);
     }
     if scene.frames > MAX_FRAMES {

@@ -6,7 +6,6 @@ use std::{
     path::Path,
 };
 
-use num_complex::Complex;
 use tem00_config::open_input;
 use tem00_numerics::{Grid, MemoryError, check_memory};
 use thiserror::Error;
@@ -242,11 +241,6 @@ pub(super) fn grid<T>(width: usize, height: usize, values: Vec<T>) -> Result<Gri
         width: width as u64,
         height: height as u64,
     })
-}
-
-/// Returns |U|² in `f32`, the intensity of a complex amplitude.
-pub(super) fn intensity(amplitude: Complex<f32>) -> f32 {
-    amplitude.norm_sqr()
 }
 
 #[cfg(test)]

@@ -108,19 +108,20 @@ fn ascii(text: &str) -> String {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use std::io::Cursor;
 
     use exr::prelude::MetaData;
 
     use super::*;
 
-    fn example() -> [Grid<f32>; 3] {
+    pub(in crate::image) fn example() -> [Grid<f32>; 3] {
         // Speckle spans many orders of magnitude, hence the powers.
         [1, 2, 3].map(|k| Grid::from_fn(7, 5, |x, y| (0.1 * (x + 7 * y * k) as f32).exp()))
     }
 
-    fn written([red, green, blue]: &[Grid<f32>; 3]) -> Vec<u8> {
+    /// A file of the program: a part of a larger image.
+    pub(in crate::image) fn written([red, green, blue]: &[Grid<f32>; 3]) -> Vec<u8> {
         let mut file = Cursor::new(Vec::new());
         let layer = |name: &str, wavelength, comments: &str, channels| Layer {
             name: name.into(),

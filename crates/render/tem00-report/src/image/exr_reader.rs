@@ -228,37 +228,17 @@ mod tests {
     use exr::prelude::{
         Encoding, Image, ImageAttributes, IntegerBounds, LayerAttributes, WritableImage,
     };
-    use tem00_numerics::Grid;
     use tem00_testkit::rows;
 
     use super::*;
-    use crate::image::{Layer, LoadedImage, Reading, write_exr};
+    use crate::image::{
+        LoadedImage, Reading,
+        exr_file::tests::{example, written},
+    };
 
     fn read_light(file: &[u8], channel: Option<&str>) -> Result<LoadedImage, ImageError> {
         let samples = read(Cursor::new(file), channel)?;
         samples.judged(None)?.light(&Reading::default())
-    }
-
-    fn example() -> [Grid<f32>; 3] {
-        // Speckle spans many orders of magnitude, hence the powers.
-        [1, 2, 3].map(|k| Grid::from_fn(7, 5, |x, y| (0.1 * (x + 7 * y * k) as f32).exp()))
-    }
-
-    /// A file of the program.
-    fn written([red, green, blue]: &[Grid<f32>; 3]) -> Vec<u8> {
-        let mut file = Cursor::new(Vec::new());
-        let layer = |name: &str, channels| Layer {
-            name: name.into(),
-            wavelength: None,
-            comments: String::new(),
-            channels,
-        };
-        let layers = [
-            layer("total", vec![("R", red), ("G", green), ("B", blue)]),
-            layer("laser 0", vec![("speckle", green), ("incoherent", blue)]),
-        ];
-        write_exr(&mut file, &layers, None).expect("written");
-        file.into_inner()
     }
 
     /// A file of parts, with `/` between them, with channels of two pixels behind their names and

@@ -3,7 +3,7 @@ use std::io::Read;
 use crate::npy::{NpyError, NpyReader};
 
 use super::{
-    common::{ImageError, MAXIMUM_PIXELS, check_room, checked_area, intensity},
+    common::{ImageError, MAXIMUM_PIXELS, check_room, checked_area},
     raw_file::{BYTES_PER_PIXEL, Samples},
     selection::Components,
 };
@@ -27,7 +27,7 @@ pub(super) fn read(reader: impl Read) -> Result<Samples, ImageError> {
     let element_type = file.element_type();
     let (values, interpretation) = if file.is_complex() {
         let amplitude = file.into_complex(MEMORY)?;
-        (amplitude.map(|&u| intensity(u)), "squared magnitudes")
+        (amplitude.map(|u| u.norm_sqr()), "squared magnitudes")
     } else {
         let values = file.into_real(MEMORY).map_err(|error| match error {
             NpyError::ElementType { found, .. } => ImageError::ValueType(found),
@@ -47,21 +47,14 @@ pub(super) fn read(reader: impl Read) -> Result<Samples, ImageError> {
 
 #[cfg(test)]
 mod tests {
-    use crate::npy::write_npy;
     use num_complex::Complex;
     use tem00_numerics::Grid;
 
     use super::*;
-    use crate::image::{LoadedImage, Reading};
-
-    /// An array as NumPy writes it, except for the blanks behind the header.
-    fn array(element_type: &str, shape: &str, values: &[u8]) -> Vec<u8> {
-        let text =
-            format!("{{'descr': '{element_type}', 'fortran_order': False, 'shape': {shape}, }}");
-        let length = u16::try_from(text.len()).expect("a short header");
-        let start = [&b"\x93NUMPY\x01\x00"[..], &length.to_le_bytes()].concat();
-        [&start, text.as_bytes(), values].concat()
-    }
+    use crate::{
+        image::{LoadedImage, Reading},
+        npy::{tests::array, write_npy},
+    };
 
     fn light(file: &[u8]) -> Result<LoadedImage, ImageError> {
         read(file)?.judged(None)?.light(&Reading::default())

@@ -29,7 +29,10 @@ use tem00_numerics::check_memory;
 use self::curve::StoredCurve;
 use self::frame::{BIT_DEPTH, stated_bit_depth};
 pub use self::frame::{GreyFrame, RawFormat, RawImage};
-pub(super) use self::{frame::BYTES_PER_PIXEL, samples::Samples};
+pub(super) use self::{
+    frame::{BIT_DEPTHS, BYTES_PER_PIXEL},
+    samples::Samples,
+};
 use super::common::{
     ImageError, MAX_DEFLATION, check_length, check_room, checked_area, name_of, open,
 };

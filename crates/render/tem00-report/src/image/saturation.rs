@@ -1,5 +1,7 @@
 //! The judgement from which value on an image is saturated.
 
+use super::raw_file::BIT_DEPTHS;
+
 /// The number of values below the largest with which a pile at the largest value is compared.
 const NEIGHBOURS: usize = 16;
 
@@ -11,9 +13,6 @@ const FEWEST: usize = 8;
 /// The peak of a line without noise, A − c d² at the distance d, has `√1` pixels within a step of A
 /// for each `√2 − √1` within the next one: 2.4 times as many.
 const PILE: usize = 4;
-
-/// The bits that cameras give to grey values.
-const CAMERA_BITS: [u32; 5] = [8, 10, 12, 14, 16];
 
 /// Returns the value from which on a component is saturated; infinite if it is not known.
 ///
@@ -37,7 +36,7 @@ pub(super) fn saturation_level(values: impl Iterator<Item = f32>, full: Option<f
 
 fn is_largest_of_a_camera(value: f32) -> bool {
     let is = |value: f32, number: u32| value.to_bits() == (number as f32).to_bits();
-    CAMERA_BITS.into_iter().any(|bits| {
+    BIT_DEPTHS.into_iter().any(|bits| {
         let largest = (1_u32 << bits) - 1;
         is(value, largest) || is(value, largest << (16 - bits))
     })

@@ -24,7 +24,8 @@ fn header(version: u8, text: &str) -> Vec<u8> {
     file
 }
 
-fn array(descr: &str, shape: &str, values: &[u8]) -> Vec<u8> {
+/// An array as NumPy writes it, except for the blanks behind the header.
+pub(crate) fn array(descr: &str, shape: &str, values: &[u8]) -> Vec<u8> {
     let text = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': {shape}, }}\n");
     [&header(1, &text), values].concat()
 }

@@ -9,8 +9,8 @@ use crate::kind::of_ending;
 /// The text entry that holds the bits of a grey value.
 pub(super) const BIT_DEPTH: &str = "bit_depth";
 
-/// The bits that a grey value may have.
-pub(super) const BIT_DEPTHS: [u32; 5] = [8, 10, 12, 14, 16];
+/// The bits that cameras give to grey values.
+pub(in crate::image) const BIT_DEPTHS: [u32; 5] = [8, 10, 12, 14, 16];
 
 /// The memory needed to keep a pixel as a number, to find lines there and to draw them, in bytes.
 pub(in crate::image) const BYTES_PER_PIXEL: usize = 28;

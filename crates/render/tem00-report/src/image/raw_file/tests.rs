@@ -7,7 +7,7 @@ use png::{BitDepth, ColorType, Encoder};
 use tem00_numerics::Grid;
 use tiff::encoder::{TiffEncoder, colortype};
 
-use super::{frame::BIT_DEPTHS, *};
+use super::*;
 use crate::npy::tests::hex;
 
 fn raw(file: &[u8], format: RawFormat, channel: Option<&str>) -> Result<RawImage, ImageError> {

@@ -99,10 +99,6 @@ pub(crate) fn automatic_exposure(frame: &Frame) -> Exposure {
 }
 
 /// Writes the preview with the radiance `white` shown as white.
-///
-/// # Errors
-///
-/// Returns a failure if the file cannot be written.
 pub(crate) fn write_preview(
     path: &Path,
     picture: &Picture,
@@ -124,10 +120,6 @@ pub(crate) fn write_preview(
 
 /// Writes all layers of a frame whose whole image has `size` pixels: the picture in linear sRGB,
 /// the layers of each laser and of the lights, depth, normal and sample count.
-///
-/// # Errors
-///
-/// Returns a failure if the file cannot be written.
 pub(crate) fn write_layers(
     path: &Path,
     frame: &Frame,

@@ -123,10 +123,9 @@ impl<'a> Render<'a> {
         for line in plan.to_string().lines() {
             note(&format!("speckle: {line}"));
         }
-        let notes = roughness_notes(&self.scene);
-        note_roughness(&notes.map_err(|error| tracer_failure(&self.args.common.scene, &error))?);
-        let cascades = cascade_notes(&self.scene);
-        for line in cascades.map_err(|error| tracer_failure(&self.args.common.scene, &error))? {
+        let refused = |error| tracer_failure(&self.args.common.scene, &error);
+        note_roughness(&roughness_notes(&self.scene).map_err(refused)?);
+        for line in cascade_notes(&self.scene).map_err(refused)? {
             note(&format!("speckle: {line}"));
         }
         for line in plan.correlation_notes() {
@@ -137,7 +136,7 @@ impl<'a> Render<'a> {
                 .map(Patterns::Reference),
             false => SpeckleModel::generate(&self.scene, plan).map(Patterns::Engine),
         };
-        let model = model.map_err(|error| tracer_failure(&self.args.common.scene, &error))?;
+        let model = model.map_err(refused)?;
         interrupt::check()?;
         Ok(Some(model))
     }

@@ -26,10 +26,6 @@ pub(super) struct Fingerprint(String);
 
 impl Fingerprint {
     /// Takes the fingerprint of a render of a scene, read from `files`, with `choices`.
-    ///
-    /// # Errors
-    ///
-    /// Returns a failure if one of the files cannot be read.
     pub(super) fn of(
         scene: &Scene,
         files: &[PathBuf],
@@ -55,10 +51,6 @@ impl Fingerprint {
 }
 
 /// Returns the hash of the bytes of a file and of their number.
-///
-/// # Errors
-///
-/// Returns an error if the file cannot be read.
 pub(super) fn hash_of_file(path: &Path) -> io::Result<String> {
     let mut hash = Fnv::default();
     hash.add_file(path)?;
@@ -175,38 +167,21 @@ impl Record {
     }
 
     /// Writes the record, the last step in finishing a frame.
-    ///
-    /// # Errors
-    ///
-    /// Returns a failure if the file cannot be written.
     pub(super) fn write(&self, path: &Path) -> Result<(), Failure> {
-        write_json(path, self)
+        write_atomically(path, |file| {
+            serde_json::to_writer_pretty(&mut *file, self)?;
+            writeln!(file)
+        })
+        .map_err(|error: io::Error| Failure::writing(path, error))
     }
 }
 
 /// Removes the record of a frame that is about to change.
-///
-/// # Errors
-///
-/// Returns a failure if there is a record and it cannot be removed.
 pub(super) fn forget(path: &Path) -> Result<(), Failure> {
     match fs::remove_file(path) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(Failure::writing(path, error)),
         _ => Ok(()),
     }
-}
-
-/// Writes JSON and a line feed.
-///
-/// # Errors
-///
-/// Returns a failure if the file cannot be written.
-pub(super) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
-    write_atomically(path, |file| {
-        serde_json::to_writer_pretty(&mut *file, value)?;
-        writeln!(file)
-    })
-    .map_err(|error: io::Error| Failure::writing(path, error))
 }
 
 impl fmt::Display for Fingerprint {

@@ -5,7 +5,7 @@ use std::path::Path;
 use png::BitDepth;
 
 use super::{
-    done, folder,
+    folder,
     helpers::{noise, pattern, rounded, write, write_png},
     patterns::{measured, stats},
     refused,
@@ -18,37 +18,6 @@ fn speckle(folder: &Path) -> Vec<f64> {
 
 fn is_saturated(folder: &Path, arguments: &str) -> bool {
     measured(&stats(folder, arguments), "saturated fraction of pixels") > 1e-3
-}
-
-#[test]
-fn saturation_of_speckle_is_one_judgement_whatever_the_bits_and_where_they_lie() {
-    let folder = folder();
-    let path = |name: &str| folder.path().join(name);
-    let light = speckle(folder.path());
-    // The largest value and the step of two values: 10, 12 and 14 bits, in the lower and the upper
-    // bits of a word, and values clipped by what a camera computes.
-    for (largest, step) in [
-        (4_095, 1),
-        (1_023, 1),
-        (16_383, 1),
-        (65_520, 16),
-        (65_472, 64),
-        (65_535, 1),
-        (3_931, 1),
-        (235, 1),
-    ] {
-        let full = f64::from(largest);
-        for (exposure, is_clipped) in [(0.9, false), (1.5, true)] {
-            let case = format!("{largest} in steps of {step}, exposure {exposure}");
-            write_png(&path("s.png"), [256, 256], BitDepth::Sixteen, |x, y| {
-                let value = if is_clipped { 0.2 } else { 0.04 } * full * light[256 * y + x];
-                [rounded(
-                    (f64::from(step) * (value / f64::from(step)).round()).min(full),
-                )]
-            });
-            assert_eq!(is_saturated(folder.path(), "s.png"), is_clipped, "{case}");
-        }
-    }
 }
 
 #[test]
@@ -176,34 +145,4 @@ fn signed_numbers_are_light_about_a_black_level() {
     let mean = measured(&stats(folder.path(), "a.npy --black-level 0"), "mean");
     let expected = (0..400).map(|i| f64::from(i % 90 - 5)).sum::<f64>() / 400.0;
     assert!((mean / expected - 1.0).abs() < 1e-6, "{mean}");
-}
-
-#[test]
-fn photographs_that_claim_more_than_they_hold_are_refused_at_once() {
-    let folder = folder();
-    let photograph = include_bytes!("../../../tem00-report/src/image/raw_file/data/grey.jpg");
-    let position = |mark| photograph.windows(2).position(|pair| pair == [0xff, mark]);
-    let mut claim = photograph.to_vec();
-    let frame = position(0xc0).expect("a frame");
-    // 4096 rows of 65,535 pixels, and 41 kB of a comment.
-    claim[frame + 5..frame + 9].copy_from_slice(&[0x10, 0x00, 0xff, 0xff]);
-    let comment = [&[0xff, 0xfe, 0xa0, 0x02][..], &[b' '; 0xa000]].concat();
-    claim.splice(2..2, comment);
-    // The coded data of the photograph begin behind the header of its scan, of ten bytes.
-    let scan = position(0xda).expect("a scan") + 10;
-    let coded = photograph.len() - 2 - scan;
-    let cut = |kept: usize| [&photograph[..scan + kept], &[0xff, 0xd9]].concat();
-    write(folder.path(), "whole.jpg", photograph);
-    done(folder.path(), "stats whole.jpg");
-    for (content, part) in [
-        (claim, "cannot hold"),
-        (cut(coded / 50), "before its last pixel"),
-        (cut(coded / 2), "before its last pixel"),
-        (cut(coded - 4), "before its last pixel"),
-    ] {
-        write(folder.path(), "a.jpg", content);
-        let start = std::time::Instant::now();
-        refused(folder.path(), "stats a.jpg", &[part]);
-        assert!(start.elapsed().as_secs() < 5, "{part}: it took its time");
-    }
 }

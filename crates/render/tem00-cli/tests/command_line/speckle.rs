@@ -19,26 +19,3 @@ fn the_speckle_of_a_lens_is_told_without_a_scene() {
     let half = &found["decorrelation"][4]["half"];
     assert!(half.is_null(), "light along the sight: {half}");
 }
-
-#[test]
-fn gold_hardly_reflects_blue() {
-    // Gold is yellow because it hardly reflects blue.
-    let table = text(&done(folder().path(), "list metals --wavelength 450nm").stdout);
-    let mut rows = table.lines().map(str::split_whitespace);
-    let mut gold = rows
-        .find(|row| row.clone().next() == Some("gold"))
-        .expect("gold");
-    let reflectance: f64 = gold.nth(3).expect("a column").parse().expect("a number");
-    assert!(reflectance < 0.42, "{reflectance}");
-}
-
-#[test]
-fn a_listed_surface_can_be_rendered() {
-    let folder = scene_folder();
-    let milled = SCENE.replace(
-        "[[surface]]",
-        "[[surface]]\nconductor.finish = \"milled steel\"",
-    );
-    write(folder.path(), "a.toml", milled);
-    done(folder.path(), "render a.toml --spp 1");
-}

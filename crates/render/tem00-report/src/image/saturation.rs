@@ -86,13 +86,16 @@ mod tests {
         for (step, limit) in [
             (1.0, 4_095.0),
             (1.0, 1_023.0),
+            (1.0, 16_383.0),
             (16.0, 65_520.0),
             (64.0, 65_472.0),
             // Clipped by what a camera computes: black level, white balance, range of video.
             (1.0, 3_931.0),
             (1.0, 235.0),
         ] {
-            assert_level(speckle(0.2 * f64::from(limit), step, limit), full, limit);
+            let limited = |mean: f64| speckle(mean * f64::from(limit), step, limit);
+            assert_level(limited(0.2), full, limit);
+            assert_level(limited(0.04), full, 65_535.0);
         }
         // One pixel at the largest value of a camera is enough.
         let one = speckle(50.0, 1.0, 900.0).chain([1_023.0]);

@@ -237,6 +237,18 @@ fn photographs_without_all_of_their_data_are_refused() {
             "a restart is missing"
         );
     }
+    // 4096 rows of 65,535 pixels, and 41 kB of a comment.
+    let mut claim = GREY_JPEG.to_vec();
+    let frame = marker(GREY_JPEG, 0xc0);
+    claim[frame + 5..frame + 9].copy_from_slice(&[0x10, 0x00, 0xff, 0xff]);
+    claim.splice(
+        2..2,
+        [&[0xff, 0xfe, 0xa0, 0x02][..], &[b' '; 0xa000]].concat(),
+    );
+    let told = raw(&claim, RawFormat::Jpeg, None)
+        .expect_err("a claim")
+        .to_string();
+    assert!(told.contains("cannot hold"), "{told}");
 }
 
 #[test]

@@ -8,8 +8,8 @@ use tem00_beam::{AngularProfile, FanGeometry, LineProfile};
 use tem00_geometry::{MeshInstance, Shape};
 use tem00_scene::SceneFile;
 use tem00_tracer::{
-    BeamShape, Environment, Light, Material, Medium, PeakShape, RenderOptions, Rotation, Scene,
-    SpeckleSettings, Spectrum, Surface, Trajectory,
+    BeamShape, Environment, Light, Material, Medium, RenderOptions, Rotation, Scene,
+    SpeckleSettings, Surface, Trajectory,
 };
 use tempfile::TempDir;
 
@@ -72,7 +72,7 @@ fn profiles_may_be_tables() {
 }
 
 #[test]
-fn materials_and_spectra_are_those_of_their_constructors() {
+fn materials_are_those_of_their_constructors() {
     let degrees = |angle: f64| angle * PI / 180.0;
     for (keys, expected) in [
         ("oren_nayar = {}", Material::oren_nayar(0.8, degrees(20.0))),
@@ -101,48 +101,6 @@ fn materials_and_spectra_are_those_of_their_constructors() {
     ] {
         let scene = parse(&format!("{}{keys}\n", minimal())).unwrap();
         assert_eq!(scene.surfaces[0].material, expected.unwrap(), "{keys}");
-    }
-    let peaks = Spectrum::from_peaks(&[[448e-9, 1.0], [451e-9, 2.0]]).unwrap();
-    let wide = |width, shape| Spectrum::new(650e-9, width, shape).unwrap();
-    for (keys, expected) in [
-        ("linewidth = 8e-9", wide(8e-9, PeakShape::Gaussian)),
-        (
-            "linewidth = 8e-9\nspectrum = \"gaussian\"",
-            wide(8e-9, PeakShape::Gaussian),
-        ),
-        (
-            "linewidth = 8e-9\nspectrum = \"lorentzian\"",
-            wide(8e-9, PeakShape::Lorentzian),
-        ),
-        (
-            "linewidth = 8e-9\nspectrum = \"rectangular\"",
-            wide(8e-9, PeakShape::Rectangular),
-        ),
-        (
-            "linewidth = \"2 nm\"\nspectrum = \"comb\"\nlines = 5",
-            Spectrum::comb(650e-9, 2e-9, 5).unwrap(),
-        ),
-        (
-            "spectrum = [[\"448 nm\", 1], [\"451 nm\", 2]]",
-            peaks.clone(),
-        ),
-        (
-            "spectrum = [[\"448 nm\", 1], [\"451 nm\", 2]]\nlinewidth = \"1 nm\"",
-            peaks.with_linewidth(1e-9, PeakShape::Gaussian).unwrap(),
-        ),
-    ] {
-        let has_peaks = keys.contains("[[");
-        let wavelength = if has_peaks {
-            ""
-        } else {
-            "wavelength = \"650 nm\"\n"
-        };
-        let scene = parse(&with(
-            "wavelength = \"650 nm\"\n",
-            &format!("{wavelength}{keys}\n"),
-        ));
-        let line = scene.unwrap().lasers[0].spectrum().clone();
-        assert_eq!(line, expected, "{keys}");
     }
 }
 

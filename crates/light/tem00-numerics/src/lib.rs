@@ -15,6 +15,7 @@
 pub mod cast;
 pub mod check;
 mod circle;
+mod crop;
 #[cfg(feature = "fft")]
 mod fft;
 mod fractions;
@@ -32,6 +33,7 @@ mod shown;
 mod vectorised;
 
 pub use circle::{circle_point_at_eighth, circle_point_at_turn};
+pub use crop::Crop;
 #[cfg(feature = "fft")]
 pub use fft::{Fft2, Fft2Error, Fft2Scratch};
 pub use fractions::fractions;

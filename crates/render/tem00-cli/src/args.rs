@@ -9,9 +9,10 @@ mod speckle;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use tem00_numerics::Crop;
 use tem00_report::{
     args::{CompletionsArgs, ManArgs, black_level, crop},
-    image::{Crop, Transfer},
+    image::Transfer,
 };
 use tem00_speckle::Pupil;
 

@@ -276,7 +276,7 @@ impl Inspector<'_> {
             return LightFate::LightsFarSide;
         }
         let connection = self.camera.connect(hit.position, lens);
-        let is_rendered = |pixel| self.area.pixel_at(pixel).is_some();
+        let is_rendered = |pixel: DVec2| self.area.pixel_at(pixel.into()).is_some();
         let Some(connection) = connection.filter(|found| is_rendered(found.pixel)) else {
             return LightFate::OutsideImage;
         };

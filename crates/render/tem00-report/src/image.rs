@@ -14,7 +14,7 @@ mod selection;
 
 pub(crate) use self::png_file::write_png;
 pub use self::{
-    common::{Crop, Format, ImageError, Transfer, open},
+    common::{Format, ImageError, Transfer, open},
     exr_file::{Layer, Window, write_exr},
     png_file::{write_grey_png, write_rgb_png},
 };

@@ -97,11 +97,8 @@ fn crop(value: &Value<'_>, camera: &Camera) -> Result<Crop, Problem> {
         width: pixels(&width, 1)?,
         height: pixels(&height, 1)?,
     };
-    let inside = |start: usize, length: usize, size: usize| {
-        start.checked_add(length).is_some_and(|end| end <= size)
-    };
     let [columns, rows] = [camera.width(), camera.height()];
-    if inside(crop.x, crop.width, columns) && inside(crop.y, crop.height, rows) {
+    if crop.lies_in([columns, rows]) {
         Ok(crop)
     } else {
         Err(value.must_be(format_args!(

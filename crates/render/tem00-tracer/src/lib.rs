@@ -48,7 +48,7 @@ pub use light::{Light, LightSample};
 pub use local_frame::LocalFrame;
 pub use material::{BsdfSample, Material, OpticalRoughness, OpticalRoughnessQuery};
 pub use metal::Metal;
-pub use options::{Crop, LaserEvents, LightEvents, Method, RenderOptions, Sampling};
+pub use options::{LaserEvents, LightEvents, Method, RenderOptions, Sampling};
 pub use reference::{ReferenceSpeckle, render_reference};
 pub use render_error::RenderError;
 pub use scene::{Scene, SpeckleSettings, Surface, SurfaceSpeckle};
@@ -67,6 +67,9 @@ pub use tem00_coherence::{PeakShape, Relief, Spectrum};
 
 /// Bodies that let light in.
 pub use tem00_translucence::{Material as NamedMedium, Medium, MediumDescription};
+
+/// A part of an image.
+pub use tem00_numerics::Crop;
 
 /// Motion of rigid bodies.
 pub use tem00_decorrelation::RigidMotion;

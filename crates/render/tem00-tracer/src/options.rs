@@ -1,6 +1,5 @@
-use glam::DVec2;
 use tem00_camera::Camera;
-use tem00_numerics::cast::to_usize;
+use tem00_numerics::Crop;
 
 use crate::{Filter, TracerError, error::check};
 
@@ -80,30 +79,6 @@ pub enum Sampling {
     /// the pixel is darker. The samples of the pilot are not used for the image, so that it is as
     /// unbiased as with even samples. Light that is followed from the lasers does not count.
     TargetError(f64),
-}
-
-/// A rectangle of pixels: the part of an image that is rendered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Crop {
-    /// The first column.
-    pub x: usize,
-    /// The first row.
-    pub y: usize,
-    /// The number of columns, at least 1.
-    pub width: usize,
-    /// The number of rows, at least 1.
-    pub height: usize,
-}
-
-impl Crop {
-    /// Returns the number of the pixel at an image point, in pixels, row by row in the rectangle,
-    /// if it is there.
-    pub fn pixel_at(&self, point: DVec2) -> Option<usize> {
-        let from_corner = point - DVec2::new(self.x as f64, self.y as f64);
-        let [x, y] = from_corner.to_array().map(to_usize);
-        let is_inside = from_corner.cmpge(DVec2::ZERO).all() && x < self.width && y < self.height;
-        is_inside.then_some(y * self.width + x)
-    }
 }
 
 /// Options for rendering a frame.

@@ -100,7 +100,7 @@ impl<'a> Connector<'a> {
     ) -> Option<(Connection<'v>, Segment)> {
         let hit = &met.vertex.hit;
         let seen = self.tracer.camera.connect(hit.position, lens)?;
-        let index = self.tracer.area.pixel_at(seen.pixel)?;
+        let index = self.tracer.area.pixel_at(seen.pixel.into())?;
         let towards = (seen.lens_point - hit.position).try_normalize()?;
         let axes = LocalFrame::from_normal(hit.normal_seen_from(towards));
         let sent = met.sent(towards, &axes, self.laser.wavelength());

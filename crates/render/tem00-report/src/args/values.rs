@@ -1,7 +1,7 @@
 //! Values of options, as text.
 
-use crate::image::Crop;
 use tem00_config::LENGTH;
+use tem00_numerics::Crop;
 
 pub fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {

@@ -7,7 +7,7 @@ use std::{
 };
 
 use tem00_config::open_input;
-use tem00_numerics::{Grid, MemoryError, check_memory};
+use tem00_numerics::{Crop, Grid, MemoryError, check_memory};
 use thiserror::Error;
 
 use crate::kind::of_ending;
@@ -48,19 +48,6 @@ pub enum Transfer {
     Linear,
     /// sRGB curve, as in pictures for the screen.
     Srgb,
-}
-
-/// A rectangle of pixels: a part of an image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Crop {
-    /// The first column.
-    pub x: usize,
-    /// The first row.
-    pub y: usize,
-    /// The number of columns, at least 1.
-    pub width: usize,
-    /// The number of rows, at least 1.
-    pub height: usize,
 }
 
 /// Options for reading an image.
@@ -172,21 +159,6 @@ pub enum ImageError {
     },
     #[error("--black-level {black_level} is not below the largest value of the image, {largest}")]
     BlackLevel { black_level: f64, largest: f64 },
-}
-
-/// Checks that a rectangle lies in an image.
-pub(super) fn check_inside(crop: Crop, [width, height]: [usize; 2]) -> Result<(), ImageError> {
-    let inside = |start: usize, length: usize, size: usize| {
-        start.checked_add(length).is_some_and(|end| end <= size)
-    };
-    if inside(crop.x, crop.width, width) && inside(crop.y, crop.height, height) {
-        return Ok(());
-    }
-    Err(ImageError::Crop {
-        crop,
-        width,
-        height,
-    })
 }
 
 /// Opens a file of an image.

@@ -177,7 +177,7 @@ impl Reference<'_> {
     ) -> Option<Splat> {
         let (position, surface) = (arrival.hit.position, arrival.hit.surface);
         let seen = self.camera.connect(position, random.pair())?;
-        let pixel = area.pixel_at(seen.pixel)?;
+        let pixel = area.pixel_at(seen.pixel.into())?;
         let out = (seen.lens_point - position).try_normalize()?;
         if !self
             .intersector

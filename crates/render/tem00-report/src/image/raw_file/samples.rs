@@ -1,7 +1,7 @@
-use tem00_numerics::{Grid, cast::to_f32};
+use tem00_numerics::{Crop, Grid, cast::to_f32};
 
 use super::super::{
-    common::{Crop, ImageError, LoadedImage, Reading, check_inside, grid},
+    common::{ImageError, LoadedImage, Reading, grid},
     orientation::turned,
     saturation::saturation_level,
     selection::{Components, Selection},
@@ -127,7 +127,14 @@ impl JudgedSamples {
     /// Returns the part of the pixels in a rectangle; the whole image determines what is saturated.
     pub(in crate::image) fn cropped(self, crop: Crop) -> Result<Self, ImageError> {
         let whole = &self.samples;
-        check_inside(crop, [whole.width, whole.height])?;
+        let (width, height) = (whole.width, whole.height);
+        if !crop.lies_in([width, height]) {
+            return Err(ImageError::Crop {
+                crop,
+                width,
+                height,
+            });
+        }
         let components = whole.components.names().len();
         let row = |y: usize| {
             let start = components * (y * whole.width + crop.x);

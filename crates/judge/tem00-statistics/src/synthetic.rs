@@ -11,19 +11,29 @@ use tem00_numerics::{Fft2, Grid};
 /// The speckle size is `size / diameter` pixels. `diameter` is even.
 pub(crate) fn speckle_tile(size: usize, diameter: usize, seed: u64) -> (Grid<f32>, usize) {
     let (aperture, count) = phasor_disc(diameter, seed);
-    let side = aperture.width();
-    let transform = Fft2::with_aperture(size, size, side, side).unwrap();
     let scale = f32::from(count).recip();
-    let tile = transform.forward(&aperture, |_, _, field| field.norm_sqr() * scale);
+    let tile = transformed(&aperture, size).map(|field| field.norm_sqr() * scale);
     (tile, usize::from(count))
 }
 
 /// Returns the complex field of such a pattern, up to a phase that is linear in x and y.
 pub(crate) fn field_tile(size: usize, diameter: usize, seed: u64) -> Grid<Complex<f32>> {
-    let (aperture, _) = phasor_disc(diameter, seed);
+    transformed(&phasor_disc(diameter, seed).0, size)
+}
+
+fn transformed(aperture: &Grid<Complex<f32>>, size: usize) -> Grid<Complex<f32>> {
     let side = aperture.width();
     let transform = Fft2::with_aperture(size, size, side, side).unwrap();
-    transform.forward(&aperture, |_, _, field| field)
+    transform.forward(aperture, |_, _, field| field)
+}
+
+/// Exponential samples of mean 1.
+pub(crate) fn exponential_samples(count: usize, rng: &mut ChaCha8Rng) -> Vec<f64> {
+    (0..count).map(|_| exponential_sample(rng)).collect()
+}
+
+pub(crate) fn exponential_sample(rng: &mut ChaCha8Rng) -> f64 {
+    -(1.0 - rng.random::<f64>()).ln()
 }
 
 fn phasor_disc(diameter: usize, seed: u64) -> (Grid<Complex<f32>>, u16) {

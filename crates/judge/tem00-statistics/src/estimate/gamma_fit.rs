@@ -204,15 +204,16 @@ fn trigamma(mut x: f64) -> f64 {
 mod tests {
     use core::f64::consts::PI;
 
-    use rand::{RngExt, SeedableRng};
+    use rand::SeedableRng;
     use rand_chacha::ChaCha8Rng;
     use tem00_testkit::{assert_absolute, assert_relative};
 
     use super::*;
+    use crate::{Moments, synthetic::exponential_sample};
 
     /// Sums of `shape` exponential samples.
     fn gamma_samples(shape: u32, count: usize, rng: &mut ChaCha8Rng) -> Vec<f64> {
-        let mut sum = || (0..shape).map(|_| -(1.0 - rng.random::<f64>()).ln()).sum();
+        let mut sum = || (0..shape).map(|_| exponential_sample(rng)).sum();
         (0..count).map(|_| sum()).collect()
     }
 

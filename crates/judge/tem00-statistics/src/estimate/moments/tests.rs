@@ -1,17 +1,11 @@
 use proptest::prelude::*;
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use tem00_numerics::cast::to_f32;
 use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
-use crate::synthetic::speckle_tile;
-
-fn exponential_samples(count: usize, rng: &mut ChaCha8Rng) -> Vec<f64> {
-    (0..count)
-        .map(|_| -(1.0 - rng.random::<f64>()).ln())
-        .collect()
-}
+use crate::synthetic::{exponential_samples, speckle_tile};
 
 #[test]
 fn moments_of_small_integers_are_exact() {

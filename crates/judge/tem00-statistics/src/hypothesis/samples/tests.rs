@@ -3,7 +3,10 @@ use rand_chacha::ChaCha8Rng;
 use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
-use crate::exponential_cumulative;
+use crate::{
+    exponential_cumulative,
+    synthetic::{exponential_sample, exponential_samples},
+};
 
 const ROUNDS: u32 = 2_000;
 
@@ -30,13 +33,9 @@ fn assert_uniform(p_value: impl FnMut(u32) -> f64) {
     assert!(distance < 27.877, "not uniform: χ² = {distance}");
 }
 
-fn exponential(rng: &mut ChaCha8Rng) -> f64 {
-    -(1.0 - rng.random::<f64>()).ln()
-}
-
 /// A normal deviate by the Box–Muller method.
 fn normal(rng: &mut ChaCha8Rng) -> f64 {
-    (2.0 * exponential(rng)).sqrt() * (2.0 * PI * rng.random::<f64>()).cos()
+    (2.0 * exponential_sample(rng)).sqrt() * (2.0 * PI * rng.random::<f64>()).cos()
 }
 
 /// Samples whose empirical distribution has the distance `distance` from the uniform law.
@@ -96,7 +95,7 @@ fn both_sides_of_a_step_count() {
 fn p_values_of_kolmogorov_and_smirnov_are_uniform() {
     let mut rng = ChaCha8Rng::seed_from_u64(21);
     assert_uniform(|_| {
-        let samples: Vec<f64> = (0..100).map(|_| exponential(&mut rng)).collect();
+        let samples = exponential_samples(100, &mut rng);
         let outcome = kolmogorov_smirnov(&samples, exponential_cumulative).unwrap();
         outcome.p_value
     });

@@ -1,7 +1,7 @@
 use core::{error, fmt};
 use std::borrow::Cow;
 
-use tem00_numerics::{Fft2Error, Refusal, RefusedValue, Shown};
+use tem00_numerics::{Fft2Error, Grid, Refusal, RefusedValue, Shown};
 
 use crate::axis::Axis;
 
@@ -17,13 +17,6 @@ pub enum StatisticsError {
         index: usize,
         /// The value of the sample.
         value: f64,
-    },
-    /// There are too few samples.
-    Samples {
-        /// The number of given samples.
-        given: usize,
-        /// The smallest number that determines the result.
-        needed: usize,
     },
     /// The Fourier transform of the grid could not be planned.
     Transform(Fft2Error),
@@ -75,17 +68,20 @@ impl StatisticsError {
         Self::Refused(Refusal::new(parameter, value.into(), allowed).at(index))
     }
 
-    /// Refuses a window over an image.
-    pub(crate) fn window(window: usize, (width, height): (usize, usize)) -> Self {
-        let allowed =
-            format!("at least 2 pixels wide and fit into the image of {width} × {height}");
-        Self::refused("window", window, allowed)
+    /// Refuses a number of samples below `needed`.
+    pub(crate) fn too_few_samples(given: usize, needed: usize) -> Self {
+        Self::refused("samples", given, format!("at least {needed}"))
     }
 
-    /// Refuses what a distribution function returned at a sample.
-    pub(crate) fn probability(sample: f64, value: f64) -> Self {
-        let allowed = format!("from 0 to 1 at {}", Shown(sample));
-        Self::refused("cumulative", value, allowed)
+    /// Checks that a window is wider than a pixel and fits into an image.
+    pub(crate) fn check_window<T>(window: usize, image: &Grid<T>) -> Result<(), Self> {
+        let (width, height) = (image.width(), image.height());
+        if (2..=width.min(height)).contains(&window) {
+            return Ok(());
+        }
+        let allowed =
+            format!("at least 2 pixels wide and fit into the image of {width} × {height}");
+        Err(Self::refused("window", window, allowed))
     }
 
     /// Returns the name of the refused argument, as constructors and functions call it.
@@ -105,7 +101,7 @@ impl StatisticsError {
     pub const fn parameter(&self) -> &'static str {
         match self {
             Self::Refused(refusal) => refusal.parameter(),
-            Self::NotPositive { .. } | Self::Samples { .. } => "samples",
+            Self::NotPositive { .. } => "samples",
             Self::Transform(..) => "image",
             Self::Unresolved { .. } | Self::TooCoarse { .. } => "lags",
             Self::DegreesOfFreedom { .. } => "constraints",
@@ -122,9 +118,6 @@ impl fmt::Display for StatisticsError {
                 "samples must be positive, got {} at index {index}",
                 Shown(*value)
             ),
-            Self::Samples { given, needed } => {
-                write!(f, "samples must be at least {needed}, got {given}")
-            }
             Self::Transform(reason) => write!(f, "grid must have a Fourier transform: {reason}"),
             Self::Unresolved { axis, neighbours } => write!(
                 f,

@@ -1,6 +1,6 @@
 use statrs::function::gamma::digamma;
 
-use crate::{GammaIntensity, Moments, StatisticsError, estimate::moments::Scaled};
+use crate::{GammaIntensity, StatisticsError, estimate::moments::Scaled};
 
 /// A Gamma distribution fitted to samples: their mean and the shape M, the number of degrees of
 /// freedom.
@@ -149,14 +149,7 @@ where
 {
     let scaled = Scaled::new(samples)?;
     scaled.check_varies()?;
-    if scaled.mean <= f64::EPSILON {
-        let mean = Moments::from_samples(samples)?.mean();
-        return Err(StatisticsError::refused(
-            "samples",
-            mean,
-            StatisticsError::MEAN,
-        ));
-    }
+    scaled.check_mean()?;
     Ok(scaled)
 }
 

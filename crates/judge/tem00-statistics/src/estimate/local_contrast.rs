@@ -55,12 +55,9 @@ use crate::{
 ///
 /// - J. D. Briers and S. Webster, *Laser speckle contrast analysis (LASCA)*, 1996.
 pub fn local_contrast(image: &Grid<f32>, window: usize) -> Result<Grid<f32>, StatisticsError> {
-    let size = (image.width(), image.height());
-    if window < 2 || window > size.0.min(size.1) {
-        return Err(StatisticsError::window(window, size));
-    }
+    StatisticsError::check_window(window, image)?;
     check_finite(image.values())?;
-    let (width, height) = (size.0 - window + 1, size.1 - window + 1);
+    let (width, height) = (image.width() - window + 1, image.height() - window + 1);
     let mut contrasts = Vec::with_capacity(width * height);
     let mut pixels = Vec::with_capacity(window * window);
     for y in 0..height {
@@ -69,23 +66,13 @@ pub fn local_contrast(image: &Grid<f32>, window: usize) -> Result<Grid<f32>, Sta
             for row in y..y + window {
                 pixels.extend_from_slice(&image.row(row)[x..x + window]);
             }
-            contrasts.push(contrast_of(&pixels)?);
+            let scaled = Scaled::new(&pixels)?;
+            scaled.check_mean()?;
+            contrasts.push(to_f32(scaled.standard_deviation / scaled.mean));
         }
     }
     let at = |x: usize, y: usize| contrasts[y * width + x];
     Ok(Grid::from_fn(width, height, at))
-}
-
-fn contrast_of(pixels: &[f32]) -> Result<f32, StatisticsError> {
-    let scaled = Scaled::new(pixels)?;
-    if scaled.mean <= f64::EPSILON {
-        return Err(StatisticsError::refused(
-            "samples",
-            scaled.mean * scaled.unit,
-            StatisticsError::MEAN,
-        ));
-    }
-    Ok(to_f32(scaled.standard_deviation / scaled.mean))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 use core::f64::consts::SQRT_2;
 
 use statrs::function::erf::erf_inv;
-use tem00_numerics::{Grid, parallel::map_pieces};
+use tem00_numerics::{Grid, check, parallel::map_pieces};
 
 use crate::{StatisticsError, space::second_order::pixels_per_contrast_sample};
 
@@ -114,13 +114,7 @@ impl Contrast {
     {
         let scaled = Scaled::new(samples)?;
         let (mean, deviation) = (scaled.mean, scaled.standard_deviation);
-        if mean <= f64::EPSILON {
-            return Err(StatisticsError::refused(
-                "samples",
-                mean * scaled.unit,
-                StatisticsError::MEAN,
-            ));
-        }
+        scaled.check_mean()?;
         let value = deviation / mean;
         // The influence of one sample on s / m, (Δ² − s²) / 2sm − Δ s / m².
         let influence = |sample: T| {
@@ -155,13 +149,9 @@ impl Contrast {
     ///
     /// Returns an error unless `speckle_size` is positive and finite.
     pub fn with_speckle_size(self, speckle_size: f64) -> Result<Self, StatisticsError> {
-        if !(speckle_size > 0.0 && speckle_size.is_finite()) {
-            return Err(StatisticsError::refused(
-                "speckle_size",
-                speckle_size,
-                "positive and finite, in pixels",
-            ));
-        }
+        let holds = speckle_size > 0.0 && speckle_size.is_finite();
+        let allowed = "positive and finite, in pixels";
+        check::that(holds, "speckle_size", speckle_size, "", allowed)?;
         Ok(Self {
             standard_error: self.standard_error * pixels_per_contrast_sample(speckle_size).sqrt(),
             ..self
@@ -201,9 +191,8 @@ impl Contrast {
     /// # Ok::<(), tem00_statistics::StatisticsError>(())
     /// ```
     pub fn confidence_interval(&self, level: f64) -> Result<[f64; 2], StatisticsError> {
-        if !(level > 0.0 && level < 1.0) {
-            return Err(StatisticsError::refused("level", level, "between 0 and 1"));
-        }
+        let holds = level > 0.0 && level < 1.0;
+        check::that(holds, "level", level, "", "between 0 and 1")?;
         if self.value <= 0.0 {
             return Ok([self.value; 2]);
         }
@@ -324,6 +313,18 @@ impl Scaled {
         }
     }
 
+    /// Returns an error unless the mean is positive and above the rounding errors of the samples.
+    pub(crate) fn check_mean(&self) -> Result<(), StatisticsError> {
+        if self.mean > f64::EPSILON {
+            return Ok(());
+        }
+        Err(StatisticsError::refused(
+            "samples",
+            self.mean * self.unit,
+            StatisticsError::MEAN,
+        ))
+    }
+
     /// Returns the distance of a sample above the mean, in standard deviations.
     pub(crate) fn standardise(&self, sample: impl Into<f64>) -> f64 {
         (sample.into() / self.unit - self.mean) / self.standard_deviation
@@ -343,13 +344,7 @@ fn range<T>(samples: &[T]) -> Result<(f64, f64), StatisticsError>
 where
     T: Copy + Into<f64> + Sync,
 {
-    if samples.len() < 2 {
-        return Err(StatisticsError::Samples {
-            given: samples.len(),
-            needed: 2,
-        });
-    }
-    check_finite(samples)?;
+    check_samples(samples, 2)?;
     let wider = |(low, high): (f64, f64), [l, h]: [f64; 2]| (low.min(l), high.max(h));
     let none = (f64::INFINITY, f64::NEG_INFINITY);
     let ranges = map_pieces(samples, |_, piece| {
@@ -365,6 +360,17 @@ fn sum<T: Copy + Sync>(samples: &[T], term: impl Fn(T) -> f64 + Sync) -> f64 {
         piece.iter().map(|&x| term(x)).sum::<f64>()
     });
     sums.into_iter().sum()
+}
+
+/// Returns an error for fewer than `needed` samples, and at the first that is not finite.
+pub(crate) fn check_samples<T>(samples: &[T], needed: usize) -> Result<(), StatisticsError>
+where
+    T: Copy + Into<f64> + Sync,
+{
+    if samples.len() < needed {
+        return Err(StatisticsError::too_few_samples(samples.len(), needed));
+    }
+    check_finite(samples)
 }
 
 /// Returns an error at the first sample that is not finite.

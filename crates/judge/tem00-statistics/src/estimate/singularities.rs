@@ -167,10 +167,7 @@ impl VortexDensity {
     ) -> Result<Self, StatisticsError> {
         let (columns, rows) = cells(field, boundary);
         if columns * rows == 0 {
-            return Err(StatisticsError::Samples {
-                given: field.values().len(),
-                needed: 4,
-            });
+            return Err(StatisticsError::too_few_samples(field.values().len(), 4));
         }
         Ok(Self {
             count: phase_singularities(field, boundary)?.len(),

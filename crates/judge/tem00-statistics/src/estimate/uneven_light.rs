@@ -220,10 +220,8 @@ impl FlatImage {
     /// Returns an error if the window is smaller than two pixels or larger than the image, a pixel
     /// is not finite, or a local mean is not positive.
     pub fn new(image: &Grid<f32>, window: usize) -> Result<Self, StatisticsError> {
+        StatisticsError::check_window(window, image)?;
         let size = (image.width(), image.height());
-        if window < 2 || window > size.0.min(size.1) {
-            return Err(StatisticsError::window(window, size));
-        }
         moments::check_finite(image.values())?;
         let means = local_means(image, window / 2);
         let of =

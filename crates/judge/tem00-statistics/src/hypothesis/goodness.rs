@@ -1,6 +1,6 @@
 use crate::{
-    StatisticsError, TestOutcome, chi_squared, estimate::moments::check_finite, kolmogorov_smirnov,
-    test::GreyLevels,
+    StatisticsError, TestOutcome, chi_squared, estimate::moments::check_samples,
+    hypothesis::samples::checked_probability, kolmogorov_smirnov, test::GreyLevels,
 };
 
 /// The number of bins of the χ² test.
@@ -60,8 +60,8 @@ impl GoodnessOfFit {
     /// Returns an error if there is no sample, one is not finite, or `cumulative` returns a value
     /// outside [0, 1].
     pub fn new(samples: &[f64], cumulative: impl Fn(f64) -> f64) -> Result<Self, StatisticsError> {
-        check_samples(samples)?;
-        let probability = |&sample: &f64| checked(sample, cumulative(sample));
+        check_samples(samples, 1)?;
+        let probability = |&sample: &f64| checked_probability(sample, cumulative(sample));
         Ok(Self {
             places: samples.iter().map(probability).collect::<Result<_, _>>()?,
             edges: (1..BINS).map(quantile).collect(),
@@ -80,10 +80,10 @@ impl GoodnessOfFit {
         levels: &GreyLevels,
         cumulative: impl Fn(f64) -> f64,
     ) -> Result<Self, StatisticsError> {
-        check_samples(samples)?;
+        check_samples(samples, 1)?;
         let cells = (0..levels.count()).flat_map(|index| levels.cell(index));
         for edge in cells {
-            checked(edge, cumulative(edge))?;
+            checked_probability(edge, cumulative(edge))?;
         }
         let edge = |index| cumulative(levels.cell(index)[0]);
         Ok(Self {
@@ -139,25 +139,6 @@ impl GoodnessOfFit {
         let mut edges: Vec<f64> = (1..BINS).map(quantile).filter_map(nearest).collect();
         edges.dedup_by(|next, edge| *next <= *edge);
         edges
-    }
-}
-
-fn check_samples(samples: &[f64]) -> Result<(), StatisticsError> {
-    if samples.is_empty() {
-        return Err(StatisticsError::Samples {
-            given: 0,
-            needed: 1,
-        });
-    }
-    check_finite(samples)
-}
-
-/// Checks the probability that a distribution function returned at a sample.
-fn checked(sample: f64, value: f64) -> Result<f64, StatisticsError> {
-    if (0.0..=1.0).contains(&value) {
-        Ok(value)
-    } else {
-        Err(StatisticsError::probability(sample, value))
     }
 }
 

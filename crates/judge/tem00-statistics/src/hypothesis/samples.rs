@@ -1,11 +1,11 @@
 use core::f64::consts::PI;
 
 use statrs::function::{beta::beta_reg, gamma::gamma_ur};
-use tem00_numerics::check;
+use tem00_numerics::{Shown, check};
 
 use crate::{
     StatisticsError,
-    estimate::moments::{Scaled, check_finite},
+    estimate::moments::{Scaled, check_samples},
 };
 
 /// Outcome of a test of a hypothesis.
@@ -71,13 +71,7 @@ pub fn kolmogorov_smirnov<T>(
 where
     T: Copy + Into<f64> + Sync,
 {
-    if samples.is_empty() {
-        return Err(StatisticsError::Samples {
-            given: 0,
-            needed: 1,
-        });
-    }
-    check_finite(samples)?;
+    check_samples(samples, 1)?;
     let mut sorted: Vec<f64> = samples.iter().map(|&x| x.into()).collect();
     sorted.sort_unstable_by(f64::total_cmp);
     let distance = largest_distance(&sorted, cumulative)?;
@@ -88,6 +82,16 @@ where
     })
 }
 
+/// Checks the probability that a distribution function returned at a sample.
+pub(crate) fn checked_probability(sample: f64, value: f64) -> Result<f64, StatisticsError> {
+    if (0.0..=1.0).contains(&value) {
+        Ok(value)
+    } else {
+        let allowed = format!("from 0 to 1 at {}", Shown(sample));
+        Err(StatisticsError::refused("cumulative", value, allowed))
+    }
+}
+
 /// Returns the largest distance between the empirical distribution of `sorted` and `cumulative`.
 fn largest_distance(
     sorted: &[f64],
@@ -96,10 +100,7 @@ fn largest_distance(
     let count = sorted.len() as f64;
     let mut distance = 0.0_f64;
     for (index, &sample) in sorted.iter().enumerate() {
-        let value = cumulative(sample);
-        if !(0.0..=1.0).contains(&value) {
-            return Err(StatisticsError::probability(sample, value));
-        }
+        let value = checked_probability(sample, cumulative(sample))?;
         // The empirical distribution jumps from one to the other at the sample.
         let (below, above) = (index as f64 / count, (index + 1) as f64 / count);
         distance = distance.max(value - below).max(above - value);
@@ -253,9 +254,7 @@ pub fn t_test_mean<T>(samples: &[T], mean: f64) -> Result<TestOutcome, Statistic
 where
     T: Copy + Into<f64> + Sync,
 {
-    if !mean.is_finite() {
-        return Err(StatisticsError::refused("mean", mean, "finite"));
-    }
+    check::finite("mean", mean, "")?;
     let scaled = Scaled::new(samples)?;
     scaled.check_varies()?;
     let count = samples.len() as f64;

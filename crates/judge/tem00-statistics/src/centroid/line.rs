@@ -2,7 +2,7 @@ use core::f64::consts::PI;
 
 use libm::erf;
 
-use tem00_numerics::quadrature::integrate;
+use tem00_numerics::{check, quadrature::integrate};
 
 use crate::{
     StatisticsError, airy_autocovariance,
@@ -99,8 +99,8 @@ impl SpeckledLine {
     /// Returns an error if the half-width is below 0.01, if the height is negative, or if either is
     /// above 10⁶.
     pub fn new(radius: f64, row_height: f64) -> Result<Self, StatisticsError> {
-        check("radius", radius, [0.01, 1e6], "from 0.01 to 1e6")?;
-        check("row_height", row_height, [0.0, 1e6], "from 0 to 1e6")?;
+        check_range("radius", radius, [0.01, 1e6], "from 0.01 to 1e6")?;
+        check_range("row_height", row_height, [0.0, 1e6], "from 0 to 1e6")?;
         Ok(Self {
             spread: 0.5 * radius,
             row_height,
@@ -117,7 +117,7 @@ impl SpeckledLine {
     pub fn with_window(self, half_width: f64) -> Result<Self, StatisticsError> {
         let min = 0.2 * self.spread;
         let allowed = "at least a tenth of the half-width of the line";
-        check("half_width", half_width, [min, f64::INFINITY], allowed)?;
+        check_range("half_width", half_width, [min, f64::INFINITY], allowed)?;
         Ok(Self {
             window: half_width,
             ..self
@@ -191,17 +191,14 @@ fn autocovariance(lag: f64) -> f64 {
     }
 }
 
-fn check(
+fn check_range(
     parameter: &'static str,
     value: f64,
     [min, max]: [f64; 2],
     allowed: &'static str,
 ) -> Result<(), StatisticsError> {
-    if (min..=max).contains(&value) {
-        Ok(())
-    } else {
-        Err(StatisticsError::refused(parameter, value, allowed))
-    }
+    let holds = (min..=max).contains(&value);
+    Ok(check::that(holds, parameter, value, "", allowed)?)
 }
 
 #[cfg(test)]

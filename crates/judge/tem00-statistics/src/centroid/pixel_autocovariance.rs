@@ -1,6 +1,6 @@
 use core::f64::consts::PI;
 
-use tem00_numerics::{quadrature::for_each_node, sinc};
+use tem00_numerics::{check, quadrature::for_each_node, sinc};
 
 use crate::{StatisticsError, centroid::row_spectrum::Row};
 
@@ -71,7 +71,7 @@ impl PixelAutocovariance {
     /// Returns an error if a pixel is larger than the pitch, if a length is negative or not finite,
     /// if there are no pixels or no columns, or if they span more than 4096 speckle sizes.
     pub fn new(column: &PixelColumn) -> Result<Self, StatisticsError> {
-        check(column)?;
+        check_column(column)?;
         let row = Row::of_pixels(
             column.size[0],
             column.pitch[0],
@@ -126,23 +126,17 @@ impl PixelAutocovariance {
     }
 }
 
-fn check(column: &PixelColumn) -> Result<(), StatisticsError> {
-    let refuse =
-        |parameter, value, allowed| Err(StatisticsError::refused(parameter, value, allowed));
+fn check_column(column: &PixelColumn) -> Result<(), StatisticsError> {
     let counts = [column.averaged_columns, column.pixels];
     for (axis, count) in counts.into_iter().enumerate() {
         let [size, pitch] = [column.size[axis], column.pitch[axis]];
-        if !(pitch > 0.0 && pitch.is_finite()) {
-            return refuse("pitch", pitch, "positive and finite");
-        }
-        if !(0.0..=pitch).contains(&size) {
-            return refuse("size", size, "at least 0 and at most the pitch");
-        }
+        check::positive("pitch", pitch, "")?;
+        let allowed = "at least 0 and at most the pitch";
+        check::that((0.0..=pitch).contains(&size), "size", size, "", allowed)?;
         let name = ["averaged_columns", "pixels"][axis];
-        if count == 0 || count as f64 * pitch > LONGEST {
-            let allowed = "at least 1 and span at most 4096 speckle sizes";
-            return refuse(name, count as f64, allowed);
-        }
+        let allowed = "at least 1 and span at most 4096 speckle sizes";
+        let holds = count > 0 && count as f64 * pitch <= LONGEST;
+        check::that(holds, name, count, "", allowed)?;
     }
     Ok(())
 }

@@ -4,6 +4,7 @@ use num_complex::Complex;
 use tem00_numerics::{
     Fft2, Fft2Scratch, Grid,
     cast::{to_f32, to_usize},
+    check,
 };
 
 use crate::{
@@ -112,14 +113,9 @@ pub fn autocovariance_from_spectrum(spectrum: &Grid<f32>) -> Result<Grid<f32>, S
     check_finite(spectrum.values())?;
     let mut lags = transformed_back(spectrum)?;
     let variance = lags[(0, 0)];
-    if !(variance > 0.0 && variance.is_finite()) {
-        let allowed = "positive in the sum of its values";
-        return Err(StatisticsError::refused(
-            "spectrum",
-            f64::from(variance),
-            allowed,
-        ));
-    }
+    let allowed = "positive in the sum of its values";
+    let holds = variance > 0.0 && variance.is_finite();
+    check::that(holds, "spectrum", f64::from(variance), "", allowed)?;
     lags.for_each_row_mut(|_, row| row.iter_mut().for_each(|lag| *lag /= variance));
     Ok(lags)
 }
@@ -199,8 +195,8 @@ pub struct Ring {
 /// # Ok::<(), tem00_statistics::StatisticsError>(())
 /// ```
 pub fn radial_average(grid: &Grid<f32>, step: [f64; 2]) -> Result<Vec<Ring>, StatisticsError> {
-    if let Some(&bad) = step.iter().find(|&&s| !(s > 0.0 && s.is_finite())) {
-        return Err(StatisticsError::refused("step", bad, "positive and finite"));
+    for size in step {
+        check::positive("step", size, "")?;
     }
     check_finite(grid.values())?;
     let width = step[0].max(step[1]);
@@ -266,13 +262,7 @@ impl Ring {
 /// # Ok::<(), tem00_statistics::StatisticsError>(())
 /// ```
 pub fn decorrelated_samples(grid: &Grid<f32>, stride: usize) -> Result<Vec<f64>, StatisticsError> {
-    if stride == 0 {
-        return Err(StatisticsError::refused(
-            "stride",
-            stride as f64,
-            "at least 1",
-        ));
-    }
+    check::that(stride > 0, "stride", stride, "", "at least 1")?;
     check_finite(grid.values())?;
     // At least one sample along each axis, and none closer than a stride to the first of the next
     // period.

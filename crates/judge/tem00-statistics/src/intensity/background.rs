@@ -1,5 +1,7 @@
 use core::f64::consts::SQRT_2;
 
+use tem00_numerics::check;
+
 use crate::{
     StatisticsError,
     intensity::bessel::{rician_cumulative, scaled_bessel_i0},
@@ -53,15 +55,8 @@ impl CoherentBackground {
     ///
     /// Returns an error unless `beam_ratio` is finite and not negative.
     pub fn new(beam_ratio: f64) -> Result<Self, StatisticsError> {
-        if beam_ratio >= 0.0 && beam_ratio.is_finite() {
-            Ok(Self { beam_ratio })
-        } else {
-            Err(StatisticsError::refused(
-                "beam_ratio",
-                beam_ratio,
-                "finite and not negative",
-            ))
-        }
+        let beam_ratio = check::not_negative("beam_ratio", beam_ratio, "")?;
+        Ok(Self { beam_ratio })
     }
 
     /// Creates the law with the contrast C: `r = s (1 + s) / C²` with `s = √(1 − C²)`.
@@ -70,13 +65,7 @@ impl CoherentBackground {
     ///
     /// Returns an error unless `0.001 ≤ contrast ≤ 1`.
     pub fn from_contrast(contrast: f64) -> Result<Self, StatisticsError> {
-        if !(1e-3..=1.0).contains(&contrast) {
-            return Err(StatisticsError::refused(
-                "contrast",
-                contrast,
-                "from 0.001 to 1",
-            ));
-        }
+        let contrast = check::range("contrast", contrast, [1e-3, 1.0], "")?;
         let root = ((1.0 - contrast) * (1.0 + contrast)).sqrt();
         Ok(Self {
             beam_ratio: root * (1.0 + root) / (contrast * contrast),

@@ -1,6 +1,7 @@
 use core::f64::consts::TAU;
 
 use statrs::function::gamma::{gamma_lr, ln_gamma};
+use tem00_numerics::check;
 
 use crate::StatisticsError;
 
@@ -99,11 +100,9 @@ impl GammaIntensity {
     ///
     /// Returns an error unless `1 ≤ shape ≤ 10⁶`. Averaging never removes a degree of freedom.
     pub fn new(shape: f64) -> Result<Self, StatisticsError> {
-        if (1.0..=MAXIMUM_SHAPE).contains(&shape) {
-            Ok(Self { shape })
-        } else {
-            Err(StatisticsError::refused("shape", shape, "from 1 to 1e6"))
-        }
+        let holds = (1.0..=MAXIMUM_SHAPE).contains(&shape);
+        check::that(holds, "shape", shape, "", "from 1 to 1e6")?;
+        Ok(Self { shape })
     }
 
     /// Creates the law with the contrast C: M = 1 / C².
@@ -112,16 +111,9 @@ impl GammaIntensity {
     ///
     /// Returns an error unless `0.001 ≤ contrast ≤ 1`.
     pub fn from_contrast(contrast: f64) -> Result<Self, StatisticsError> {
-        if (MINIMUM_CONTRAST..=1.0).contains(&contrast) {
-            let shape = (contrast * contrast).recip();
-            Ok(Self { shape })
-        } else {
-            Err(StatisticsError::refused(
-                "contrast",
-                contrast,
-                "from 0.001 to 1",
-            ))
-        }
+        let contrast = check::range("contrast", contrast, [MINIMUM_CONTRAST, 1.0], "")?;
+        let shape = (contrast * contrast).recip();
+        Ok(Self { shape })
     }
 
     /// Returns the shape M, the number of degrees of freedom.

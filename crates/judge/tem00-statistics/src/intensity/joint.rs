@@ -1,3 +1,5 @@
+use tem00_numerics::check;
+
 use crate::{
     StatisticsError, exponential_density,
     intensity::bessel::{rician_cumulative, scaled_bessel_i0},
@@ -49,17 +51,12 @@ impl JointIntensity {
     /// Returns an error unless `0 ≤ amplitude_correlation < 1`: at 1 the two intensities are equal
     /// and have no joint density.
     pub fn new(amplitude_correlation: f64) -> Result<Self, StatisticsError> {
-        if (0.0..1.0).contains(&amplitude_correlation) {
-            Ok(Self {
-                amplitude_correlation,
-            })
-        } else {
-            Err(StatisticsError::refused(
-                "amplitude_correlation",
-                amplitude_correlation,
-                "at least 0 and below 1",
-            ))
-        }
+        let holds = (0.0..1.0).contains(&amplitude_correlation);
+        let (name, allowed) = ("amplitude_correlation", "at least 0 and below 1");
+        check::that(holds, name, amplitude_correlation, "", allowed)?;
+        Ok(Self {
+            amplitude_correlation,
+        })
     }
 
     /// Returns the magnitude μ of the correlation of the amplitudes.

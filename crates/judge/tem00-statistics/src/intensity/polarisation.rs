@@ -1,3 +1,5 @@
+use tem00_numerics::check;
+
 use crate::{StatisticsError, exponential_cumulative, exponential_density};
 
 /// Distribution of the intensity of partially polarised speckle.
@@ -44,15 +46,12 @@ impl PartiallyPolarised {
     ///
     /// Returns an error unless `0 ≤ degree ≤ 1`.
     pub fn new(degree: f64) -> Result<Self, StatisticsError> {
-        if (0.0..=1.0).contains(&degree) {
-            Ok(Self { degree })
-        } else {
-            Err(StatisticsError::refused(
-                "degree",
-                degree,
-                "a degree of polarisation from 0 to 1",
-            ))
-        }
+        let (holds, allowed) = (
+            (0.0..=1.0).contains(&degree),
+            "a degree of polarisation from 0 to 1",
+        );
+        check::that(holds, "degree", degree, "", allowed)?;
+        Ok(Self { degree })
     }
 
     /// Returns the degree of polarisation P.

@@ -1,4 +1,4 @@
-use tem00_numerics::fractions;
+use tem00_numerics::{check, fractions};
 
 use crate::{
     StatisticsError,
@@ -84,13 +84,8 @@ impl IncoherentSum {
                 count: group.len() as f64,
             })
             .collect();
-        if shares.len() > Self::MAX_DIFFERENT {
-            return Err(StatisticsError::refused(
-                "weights",
-                shares.len() as f64,
-                "of at most 65536 different values",
-            ));
-        }
+        let (count, allowed) = (shares.len(), "of at most 65536 different values");
+        check::that(count <= Self::MAX_DIFFERENT, "weights", count, "", allowed)?;
         Ok(Self { shares })
     }
 

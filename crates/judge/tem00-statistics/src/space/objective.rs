@@ -1,6 +1,6 @@
 use core::f64::consts::PI;
 
-use tem00_numerics::{jinc, sinc};
+use tem00_numerics::{check, jinc, sinc};
 
 use crate::StatisticsError;
 
@@ -77,36 +77,23 @@ impl ObjectiveSpeckle {
     /// positive and finite.
     pub fn new(wavelength: f64, distance: f64, area: LitArea) -> Result<Self, StatisticsError> {
         let is_length = |x: f64| x > 0.0 && x.is_finite();
-        if !is_length(wavelength) {
-            return Err(StatisticsError::refused(
-                "wavelength",
-                wavelength,
-                "positive and finite, in metres",
-            ));
-        }
-        if !is_length(distance) {
-            return Err(StatisticsError::refused(
-                "distance",
-                distance,
-                "positive and finite, in metres",
-            ));
+        for (name, length) in [("wavelength", wavelength), ("distance", distance)] {
+            let allowed = "positive and finite, in metres";
+            check::that(is_length(length), name, length, "", allowed)?;
         }
         let lengths = match area {
             LitArea::Disc { diameter } => [diameter; 2],
             LitArea::Rectangle { width, height } => [width, height],
             LitArea::GaussianSpot { radius } => [radius; 2],
         };
-        match lengths.into_iter().find(|&length| !is_length(length)) {
-            Some(bad) => Err(StatisticsError::refused(
-                "area",
-                bad,
-                "positive and finite in every length, in metres",
-            )),
-            None => Ok(Self {
-                scale: wavelength * distance,
-                area,
-            }),
+        for length in lengths {
+            let allowed = "positive and finite in every length, in metres";
+            check::that(is_length(length), "area", length, "", allowed)?;
         }
+        Ok(Self {
+            scale: wavelength * distance,
+            area,
+        })
     }
 
     /// Returns the speckle size along x and y, in metres: λz divided by the diameter or the sides

@@ -72,11 +72,6 @@ impl GreyLevels {
         })
     }
 
-    /// Returns the fraction of the pixels at the largest level.
-    pub const fn share_of_largest(&self) -> f64 {
-        self.largest
-    }
-
     /// Returns the number of levels, which is at least two.
     pub const fn count(&self) -> usize {
         self.levels.len()

@@ -1,7 +1,7 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use crate::{
-    RigidMotion, SamplePlane, WaveError,
+    Refusal, RigidMotion, SamplePlane,
     length::{axes_from, checked_length, checked_position},
 };
 
@@ -26,7 +26,7 @@ use crate::{
 /// // A magnification of 0.2.
 /// let image = camera.project(DVec3::new(1e-3, -2e-3, 0.0)).unwrap();
 /// assert!((image - DVec2::new(0.2e-3, -0.4e-3)).length() < 1e-15);
-/// # Ok::<(), tem00_wave::WaveError>(())
+/// # Ok::<(), tem00_wave::Refusal>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -47,16 +47,13 @@ pub struct Lens {
 }
 
 impl Lens {
-    fn checked(self) -> Result<Self, WaveError> {
+    fn checked(self) -> Result<Self, Refusal> {
         checked_length(self.pupil_diameter, "pupil_diameter")?;
         checked_length(self.focus_distance, "focus_distance")?;
         checked_length(self.pupil_to_image, "pupil_to_image")?;
         Ok(self)
     }
 }
-
-/// Condition on the point at which a camera looks.
-const VIEW: &str = "at a finite vector from the camera that is not zero, in metres";
 
 impl Camera {
     /// Creates a camera from the centre of its pupil, in metres, and its axes: right, up, and from
@@ -67,7 +64,7 @@ impl Camera {
     /// Returns an error if a component of the centre is not finite or above 10 km, if the axes are
     /// not right-handed and orthonormal within 10⁻⁶, or if a length of the lens is not between 1 pm
     /// and 10 km.
-    pub fn new(pupil_centre: DVec3, axes: DMat3, lens: Lens) -> Result<Self, WaveError> {
+    pub fn new(pupil_centre: DVec3, axes: DMat3, lens: Lens) -> Result<Self, Refusal> {
         let gram = axes.transpose() * axes;
         let orthonormal = gram.abs_diff_eq(DMat3::IDENTITY, 1e-6) && axes.determinant() > 0.0;
         let axes = orthonormal
@@ -75,7 +72,7 @@ impl Camera {
             .flatten()
             .ok_or_else(|| {
                 let allowed = "right-handed and orthonormal within 1e-6";
-                WaveError::refused("axes", axes.to_cols_array(), allowed)
+                Refusal::new("axes", axes.to_cols_array(), allowed)
             })?;
         Ok(Self {
             pupil_centre: checked_position(pupil_centre, "position")?,
@@ -96,16 +93,16 @@ impl Camera {
         [pupil_centre, target]: [DVec3; 2],
         up: DVec3,
         lens: Lens,
-    ) -> Result<Self, WaveError> {
+    ) -> Result<Self, Refusal> {
         let back = pupil_centre - target;
-        let towards_camera = back
-            .try_normalize()
-            .ok_or_else(|| WaveError::vector("target", back, VIEW))?;
-        let axes = axes_from(up.cross(towards_camera), towards_camera).ok_or(WaveError::vector(
-            "up",
-            up,
-            "finite, not zero and not along the view",
-        ))?;
+        let towards_camera = back.try_normalize().ok_or_else(|| {
+            let allowed = "at a finite vector from the camera that is not zero, in metres";
+            Refusal::new("target", back.to_array(), allowed)
+        })?;
+        let axes = axes_from(up.cross(towards_camera), towards_camera).ok_or_else(|| {
+            let allowed = "finite, not zero and not along the view";
+            Refusal::new("up", up.to_array(), allowed)
+        })?;
         Self::new(pupil_centre, axes, lens)
     }
 
@@ -150,7 +147,7 @@ impl Camera {
     ///
     /// Returns an error if the step, in metres, is not between 1 pm and 10 km, or if the number of
     /// samples along a side is zero or above 2¹⁴.
-    pub fn pupil_plane(&self, step: f64, samples: usize) -> Result<SamplePlane, WaveError> {
+    pub fn pupil_plane(&self, step: f64, samples: usize) -> Result<SamplePlane, Refusal> {
         let steps = [self.axes.x_axis * step, self.axes.y_axis * step];
         SamplePlane::new(DVec3::ZERO, steps, [samples; 2])
             .map(|plane| plane.about(self.pupil_centre))

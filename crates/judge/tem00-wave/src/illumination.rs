@@ -2,10 +2,10 @@ use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{DMat3, DVec3};
 use num_complex::Complex;
-use tem00_numerics::Shown;
+use tem00_numerics::{Shown, check};
 
 use crate::{
-    RigidMotion, WaveError,
+    Refusal, RigidMotion,
     length::{axes_from, checked_direction, checked_length, checked_position, checked_wavelength},
     phasor::phasor,
 };
@@ -46,7 +46,7 @@ use crate::{
 /// let rayleigh_range = 49.646e-3;
 /// let amplitude = beam.amplitude_at(DVec3::new(0.0, 0.0, rayleigh_range));
 /// assert!((amplitude.norm() - 0.5_f64.sqrt()).abs() < 1e-5);
-/// # Ok::<(), tem00_wave::WaveError>(())
+/// # Ok::<(), tem00_wave::Refusal>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Illumination {
@@ -113,7 +113,7 @@ impl Illumination {
     ///
     /// Returns an error if the wavelength is not between 0.1 nm and 1 m, or if the direction is
     /// zero or not finite.
-    pub fn plane(wavelength: f64, direction: DVec3) -> Result<Self, WaveError> {
+    pub fn plane(wavelength: f64, direction: DVec3) -> Result<Self, Refusal> {
         let z = checked_direction(direction, "direction")?;
         Ok(Self {
             wavelength: checked_wavelength(wavelength)?,
@@ -129,7 +129,7 @@ impl Illumination {
     ///
     /// Returns an error if the wavelength is not between 0.1 nm and 1 m, or if a component of the
     /// position is not finite or above 10 km.
-    pub fn point(wavelength: f64, position: DVec3) -> Result<Self, WaveError> {
+    pub fn point(wavelength: f64, position: DVec3) -> Result<Self, Refusal> {
         Ok(Self {
             wavelength: checked_wavelength(wavelength)?,
             origin: checked_position(position, "position")?,
@@ -149,7 +149,7 @@ impl Illumination {
     /// Returns an error if the wavelength is not between 0.1 nm and 1 m, if the waist radius is not
     /// between the paraxial limit 2λ/π and 10 km, if a component of the waist's position is not
     /// finite or above 10 km, or if the direction is zero or not finite.
-    pub fn gaussian_beam(beam: &BeamDescription) -> Result<Self, WaveError> {
+    pub fn gaussian_beam(beam: &BeamDescription) -> Result<Self, Refusal> {
         let wavelength = checked_wavelength(beam.wavelength)?;
         let z = checked_direction(beam.direction, "direction")?;
         Ok(Self {
@@ -182,29 +182,24 @@ impl Illumination {
     /// 10 km, if a direction is zero or not finite, if the opening is parallel to the direction, if
     /// the half-angle is not between 0 and π/2, or if the waist distance is not finite or above 10
     /// km in magnitude.
-    pub fn fan(fan: &FanDescription) -> Result<Self, WaveError> {
+    pub fn fan(fan: &FanDescription) -> Result<Self, Refusal> {
         let wavelength = checked_wavelength(fan.wavelength)?;
         checked_direction(fan.direction, "direction")?;
-        if !(fan.half_angle > 0.0 && fan.half_angle < FRAC_PI_2) {
-            return Err(WaveError::refused(
-                "half_angle",
-                fan.half_angle,
-                "between 0 and π/2, in radians",
-            ));
-        }
+        let holds = fan.half_angle > 0.0 && fan.half_angle < FRAC_PI_2;
+        let allowed = "between 0 and π/2, in radians";
+        check::that(holds, "half_angle", fan.half_angle, "", allowed)?;
         let waist = DVec3::new(0.0, 0.0, fan.waist_distance);
         checked_position(waist, "waist_distance").map_err(|_| {
             let allowed = "finite and at most 1e4 in magnitude, in metres";
-            WaveError::refused("waist_distance", fan.waist_distance, allowed)
+            Refusal::new("waist_distance", fan.waist_distance, allowed)
         })?;
         Ok(Self {
             wavelength,
             origin: checked_position(fan.apex, "position")?,
-            axes: axes_from(fan.opening, fan.direction).ok_or(WaveError::vector(
-                "opening",
-                fan.opening,
-                "finite, not zero and not along the direction of the fan",
-            ))?,
+            axes: axes_from(fan.opening, fan.direction).ok_or_else(|| {
+                let allowed = "finite, not zero and not along the direction of the fan";
+                Refusal::new("opening", fan.opening.to_array(), allowed)
+            })?,
             wave: Wave::Fan {
                 half_angle_tangent: fan.half_angle.tan(),
                 rayleigh_range: rayleigh_range(wavelength, fan.waist_radius)?,
@@ -290,12 +285,12 @@ struct Mode {
     transverse: Complex<f64>,
 }
 
-fn rayleigh_range(wavelength: f64, waist_radius: f64) -> Result<f64, WaveError> {
+fn rayleigh_range(wavelength: f64, waist_radius: f64) -> Result<f64, Refusal> {
     let radius = checked_length(waist_radius, "waist_radius")?;
     let minimum = 2.0 * wavelength / PI;
     if radius < minimum {
         let allowed = format!("at least the paraxial limit of {} m", Shown(minimum));
-        return Err(WaveError::refused("waist_radius", waist_radius, allowed));
+        return Err(Refusal::new("waist_radius", waist_radius, allowed));
     }
     Ok(0.5 * TAU * radius * radius / wavelength)
 }

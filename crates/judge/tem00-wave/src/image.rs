@@ -2,10 +2,10 @@ use core::f64::consts::TAU;
 
 use glam::{DMat2, DVec2, DVec3};
 use num_complex::Complex;
-use tem00_numerics::{Fft2, Grid, Shown, cast::to_c32};
+use tem00_numerics::{Fft2, Grid, Shown, cast::to_c32, check};
 
 use crate::{
-    Camera, Field, LitSurface, SamplePlane, WaveError,
+    Camera, Field, LitSurface, Refusal, SamplePlane,
     field::largest_magnitude,
     length::{checked_length, checked_wavelength},
     phasor::phasor,
@@ -63,7 +63,7 @@ use crate::{
 /// let image = window.image(&RoughSurface::from_scatterers(vec![point])?.lit_by(&light));
 /// // 1 over the distance of 0.3 m.
 /// assert!((image.amplitude()[(32, 32)].norm() - 3.333).abs() < 1e-3);
-/// # Ok::<(), tem00_wave::WaveError>(())
+/// # Ok::<(), tem00_wave::Refusal>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct ImageWindow {
@@ -100,25 +100,19 @@ impl ImageWindow {
     /// Returns an error if the wavelength is not between 0.1 nm and 1 m, if the centre is not
     /// finite or more than 10 · `pupil_to_image` from the axis, if the step is not between 1 pm and
     /// the speckle size, or if the number of samples is not between 2 and 2¹³.
-    pub fn new(camera: &Camera, sampling: &ImageSampling) -> Result<Self, WaveError> {
+    pub fn new(camera: &Camera, sampling: &ImageSampling) -> Result<Self, Refusal> {
         let lens = camera.lens();
         let wavelength = checked_wavelength(sampling.wavelength)?;
         checked_length(sampling.step, "step")?;
         let tau = sampling.centre / lens.pupil_to_image;
-        if tau.is_nan() || tau.length() > 10.0 {
-            return Err(WaveError::refused(
-                "centre",
-                sampling.centre.length(),
-                "within 10 pupil-to-image distances of the axis, in metres",
-            ));
-        }
-        if !(2..=1 << 13).contains(&sampling.samples) {
-            return Err(WaveError::refused(
-                "samples",
-                sampling.samples as f64,
-                "from 2 to 8192 along a side",
-            ));
-        }
+        let (holds, off_axis) = (tau.length() <= 10.0, sampling.centre.length());
+        let allowed = "within 10 pupil-to-image distances of the axis, in metres";
+        check::that(holds, "centre", off_axis, "", allowed)?;
+        let (holds, allowed) = (
+            (2..=1 << 13).contains(&sampling.samples),
+            "from 2 to 8192 along a side",
+        );
+        check::that(holds, "samples", sampling.samples, "", allowed)?;
         let lattice = PupilLattice::new(camera, sampling, tau);
         let [width, height] = lattice
             .samples()
@@ -276,11 +270,11 @@ fn origin(middle: usize, size: usize) -> Vec<Complex<f64>> {
         .collect()
 }
 
-fn step_error(step: f64, wavelength: f64, camera: &Camera) -> WaveError {
+fn step_error(step: f64, wavelength: f64, camera: &Camera) -> Refusal {
     let lens = camera.lens();
     let speckle_size = wavelength * lens.pupil_to_image / lens.pupil_diameter;
     let allowed = format!("below the speckle size of {} m", Shown(speckle_size));
-    WaveError::refused("step", step, allowed)
+    Refusal::new("step", step, allowed)
 }
 
 #[cfg(test)]

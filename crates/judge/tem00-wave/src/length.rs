@@ -3,8 +3,9 @@
 use core::ops::RangeInclusive;
 
 use glam::{DMat3, DVec3};
+use tem00_numerics::check;
 
-use crate::WaveError;
+use crate::Refusal;
 
 /// Lengths from 1 pm to 10 km.
 pub(crate) const LENGTHS: RangeInclusive<f64> = 1e-12..=1e4;
@@ -12,53 +13,31 @@ pub(crate) const LENGTHS: RangeInclusive<f64> = 1e-12..=1e4;
 /// Wavelengths from 0.1 nm to 1 m.
 pub(crate) const WAVELENGTHS: RangeInclusive<f64> = 1e-10..=1.0;
 
-pub(crate) fn checked_length(length: f64, parameter: &'static str) -> Result<f64, WaveError> {
-    if LENGTHS.contains(&length) {
-        Ok(length)
-    } else {
-        Err(WaveError::refused(
-            parameter,
-            length,
-            "from 1e-12 to 1e4, in metres",
-        ))
-    }
+pub(crate) fn checked_length(length: f64, parameter: &'static str) -> Result<f64, Refusal> {
+    let (holds, allowed) = (LENGTHS.contains(&length), "from 1e-12 to 1e4, in metres");
+    check::that(holds, parameter, length, "", allowed).map(|()| length)
 }
 
-pub(crate) fn checked_wavelength(wavelength: f64) -> Result<f64, WaveError> {
-    if WAVELENGTHS.contains(&wavelength) {
-        Ok(wavelength)
-    } else {
-        Err(WaveError::refused(
-            "wavelength",
-            wavelength,
-            "from 1e-10 to 1, in metres",
-        ))
-    }
+pub(crate) fn checked_wavelength(wavelength: f64) -> Result<f64, Refusal> {
+    let holds = WAVELENGTHS.contains(&wavelength);
+    let allowed = "from 1e-10 to 1, in metres";
+    check::that(holds, "wavelength", wavelength, "", allowed).map(|()| wavelength)
 }
 
-pub(crate) fn checked_position(
-    position: DVec3,
-    parameter: &'static str,
-) -> Result<DVec3, WaveError> {
+pub(crate) fn checked_position(position: DVec3, parameter: &'static str) -> Result<DVec3, Refusal> {
     // A comparison with NaN is false.
-    if position.abs().cmple(DVec3::splat(*LENGTHS.end())).all() {
-        Ok(position)
-    } else {
-        Err(WaveError::vector(
-            parameter,
-            position,
-            "finite and at most 1e4 in each component, in metres",
-        ))
-    }
+    let holds = position.abs().cmple(DVec3::splat(*LENGTHS.end())).all();
+    let allowed = "finite and at most 1e4 in each component, in metres";
+    check::that(holds, parameter, position.to_array(), "", allowed).map(|()| position)
 }
 
 pub(crate) fn checked_direction(
     direction: DVec3,
     parameter: &'static str,
-) -> Result<DVec3, WaveError> {
+) -> Result<DVec3, Refusal> {
     direction
         .try_normalize()
-        .ok_or_else(|| WaveError::vector(parameter, direction, "finite and not zero"))
+        .ok_or_else(|| Refusal::new(parameter, direction.to_array(), "finite and not zero"))
 }
 
 /// Returns right-handed axes whose third column is `third` and whose first is `first` without its

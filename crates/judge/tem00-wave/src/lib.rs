@@ -35,7 +35,6 @@
 
 mod camera;
 mod correlation;
-mod error;
 mod field;
 mod heights;
 mod illumination;
@@ -53,7 +52,6 @@ mod surface;
 
 pub use camera::{Camera, Lens};
 pub use correlation::{Estimate, FieldCorrelation};
-pub use error::WaveError;
 pub use field::Field;
 pub use glam::{DMat3, DVec2, DVec3};
 pub use illumination::{BeamDescription, FanDescription, Illumination};
@@ -65,4 +63,4 @@ pub use patch::{Amplitudes, Arrangement, PatchDescription, Roughness, Scatterer}
 pub use plane::SamplePlane;
 pub use shift::{Shift, displacement_between};
 pub use surface::RoughSurface;
-pub use tem00_numerics::Grid;
+pub use tem00_numerics::{Grid, Refusal};

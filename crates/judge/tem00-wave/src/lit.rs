@@ -38,7 +38,7 @@ use crate::{Field, Illumination, RoughSurface, SamplePlane, sum::Sources};
 /// // Two million wavelengths away: back in phase, and the inverse distance.
 /// let field = lit.field_at(DVec3::Z);
 /// assert!((field - 1.0).norm() < 1e-8);
-/// # Ok::<(), tem00_wave::WaveError>(())
+/// # Ok::<(), tem00_wave::Refusal>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct LitSurface {

@@ -1,6 +1,10 @@
 use glam::{DMat3, DVec3};
+use tem00_numerics::check;
 
-use crate::{WaveError, length::checked_position};
+use crate::{
+    Refusal,
+    length::{checked_direction, checked_position},
+};
 
 /// A rigid motion: a rotation about a point, then a translation.
 ///
@@ -22,7 +26,7 @@ use crate::{WaveError, length::checked_position};
 ///
 /// let lifted = turn.then(&RigidMotion::translation(DVec3::Z)?);
 /// assert!((lifted.point(DVec3::X) - DVec3::new(1.0, 0.0, 1.0)).length() < 1e-15);
-/// # Ok::<(), tem00_wave::WaveError>(())
+/// # Ok::<(), tem00_wave::Refusal>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidMotion {
@@ -43,7 +47,7 @@ impl RigidMotion {
     /// # Errors
     ///
     /// Returns an error if a component is not finite or above 10 km.
-    pub fn translation(by: DVec3) -> Result<Self, WaveError> {
+    pub fn translation(by: DVec3) -> Result<Self, Refusal> {
         Ok(Self {
             translation: checked_position(by, "translation")?,
             ..Self::IDENTITY
@@ -57,13 +61,9 @@ impl RigidMotion {
     ///
     /// Returns an error if the axis is zero or not finite, if the angle is not finite, or if a
     /// component of the centre is not finite or above 10 km.
-    pub fn rotation(axis: DVec3, angle: f64, centre: DVec3) -> Result<Self, WaveError> {
-        let unit =
-            axis.try_normalize()
-                .ok_or(WaveError::vector("axis", axis, "finite and not zero"))?;
-        if !angle.is_finite() {
-            return Err(WaveError::refused("angle", angle, "finite, in radians"));
-        }
+    pub fn rotation(axis: DVec3, angle: f64, centre: DVec3) -> Result<Self, Refusal> {
+        let unit = checked_direction(axis, "axis")?;
+        check::that(angle.is_finite(), "angle", angle, "", "finite, in radians")?;
         let centre = checked_position(centre, "centre")?;
         let rotation = DMat3::from_axis_angle(unit, angle);
         Ok(Self {

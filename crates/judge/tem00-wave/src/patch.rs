@@ -1,8 +1,9 @@
 use glam::{DMat3, DVec3};
 use num_complex::Complex;
+use tem00_numerics::check;
 
 use crate::{
-    WaveError,
+    Refusal,
     length::{axes_from, checked_direction, checked_length, checked_position},
     random::{Purpose, Random},
 };
@@ -108,16 +109,12 @@ pub(crate) struct PatchFrame {
 }
 
 impl PatchFrame {
-    pub(crate) fn new(patch: &PatchDescription) -> Result<Self, WaveError> {
+    pub(crate) fn new(patch: &PatchDescription) -> Result<Self, Refusal> {
         let [columns, rows] = patch.scatterers;
         let count = columns.checked_mul(rows);
-        if !count.is_some_and(|count| (1..=MAX_SCATTERERS).contains(&count)) {
-            return Err(WaveError::refused(
-                "scatterers",
-                columns as f64 * rows as f64,
-                COUNT,
-            ));
-        }
+        let holds = count.is_some_and(|count| (1..=MAX_SCATTERERS).contains(&count));
+        let count = columns as f64 * rows as f64;
+        check::that(holds, "scatterers", count, "", COUNT)?;
         for side in patch.size {
             checked_length(side, "size")?;
         }
@@ -125,11 +122,10 @@ impl PatchFrame {
         let spacing = [0, 1].map(|i| patch.size[i] / patch.scatterers[i] as f64);
         Ok(Self {
             centre: checked_position(patch.centre, "centre")?,
-            axes: axes_from(patch.along, patch.normal).ok_or(WaveError::vector(
-                "along",
-                patch.along,
-                "finite, not zero and not along the normal",
-            ))?,
+            axes: axes_from(patch.along, patch.normal).ok_or_else(|| {
+                let allowed = "finite, not zero and not along the normal";
+                Refusal::new("along", patch.along.to_array(), allowed)
+            })?,
             size: patch.size,
             spacing,
         })

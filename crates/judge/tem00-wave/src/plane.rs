@@ -1,9 +1,10 @@
 use core::ops::Range;
 
 use glam::DVec3;
+use tem00_numerics::check;
 
 use crate::{
-    WaveError,
+    Refusal,
     length::{LENGTHS, checked_length, checked_position},
 };
 
@@ -23,7 +24,7 @@ use crate::{
 ///
 /// // Of a square of 5 × 5, a disc of radius 2.5 steps leaves out the corners.
 /// assert_eq!(plane.within(2.5e-3)?.open_samples(), 21);
-/// # Ok::<(), tem00_wave::WaveError>(())
+/// # Ok::<(), tem00_wave::Refusal>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SamplePlane {
@@ -41,24 +42,16 @@ impl SamplePlane {
     ///
     /// Returns an error if a component of the centre is not finite or above 10 km, if a step is not
     /// between 1 pm and 10 km long, or if the number of samples is zero or above 2²⁸.
-    pub fn new(centre: DVec3, steps: [DVec3; 2], samples: [usize; 2]) -> Result<Self, WaveError> {
+    pub fn new(centre: DVec3, steps: [DVec3; 2], samples: [usize; 2]) -> Result<Self, Refusal> {
         const MAX: usize = 1 << 28;
         let count = samples[0].checked_mul(samples[1]);
-        if !count.is_some_and(|count| (1..=MAX).contains(&count)) {
-            return Err(WaveError::refused(
-                "samples",
-                samples[0] as f64 * samples[1] as f64,
-                "from 1 to 2²⁸ in all",
-            ));
-        }
+        let holds = count.is_some_and(|count| (1..=MAX).contains(&count));
+        let count = samples[0] as f64 * samples[1] as f64;
+        check::that(holds, "samples", count, "", "from 1 to 2²⁸ in all")?;
         for step in steps {
-            if !LENGTHS.contains(&step.length()) {
-                return Err(WaveError::vector(
-                    "steps",
-                    step,
-                    "from 1e-12 to 1e4 long, in metres",
-                ));
-            }
+            let holds = LENGTHS.contains(&step.length());
+            let allowed = "from 1e-12 to 1e4 long, in metres";
+            check::that(holds, "steps", step.to_array(), "", allowed)?;
         }
         Ok(Self {
             centre: checked_position(centre, "centre")?,
@@ -89,7 +82,7 @@ impl SamplePlane {
     /// # Errors
     ///
     /// Returns an error if the radius is not between 1 pm and 10 km.
-    pub fn within(self, radius: f64) -> Result<Self, WaveError> {
+    pub fn within(self, radius: f64) -> Result<Self, Refusal> {
         Ok(Self {
             radius: Some(checked_length(radius, "radius")?),
             ..self

@@ -1,9 +1,10 @@
 use glam::DVec3;
+use tem00_numerics::check;
 
 use crate::{
-    Amplitudes, PatchDescription, RigidMotion, Roughness, Scatterer, WaveError,
+    Amplitudes, PatchDescription, Refusal, RigidMotion, Roughness, Scatterer,
     heights::add_heights,
-    length::{checked_length, checked_position},
+    length::{LENGTHS, checked_position},
     patch::{COUNT, PatchFrame},
     random::{Purpose, Random},
 };
@@ -39,7 +40,7 @@ use crate::{
 ///     seed: 1,
 /// })?;
 /// assert_eq!(surface.scatterers().len(), 20_000);
-/// # Ok::<(), tem00_wave::WaveError>(())
+/// # Ok::<(), tem00_wave::Refusal>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoughSurface {
@@ -61,7 +62,7 @@ impl RoughSurface {
     /// not finite or above 10 km, if a direction is zero or not finite, if `along` is parallel to
     /// the normal, if the number of scatterers is zero or above 2²⁸, or if a height or correlation
     /// length is negative, not finite or above 10 km.
-    pub fn patch(patch: &PatchDescription) -> Result<Self, WaveError> {
+    pub fn patch(patch: &PatchDescription) -> Result<Self, Refusal> {
         let frame = PatchFrame::new(patch)?;
         let mut scatterers = frame.arranged(patch);
         match patch.roughness {
@@ -72,16 +73,11 @@ impl RoughSurface {
                 rms,
                 correlation_length,
             } => {
-                let height = |h: f64| h == 0.0 || checked_length(h, "rms").is_ok();
-                if !height(rms) {
-                    return Err(WaveError::refused("rms", rms, ZERO_OR_LENGTH));
-                }
-                if !height(correlation_length) {
-                    return Err(WaveError::refused(
-                        "correlation_length",
-                        correlation_length,
-                        ZERO_OR_LENGTH,
-                    ));
+                let lengths = [("rms", rms), ("correlation_length", correlation_length)];
+                for (name, length) in lengths {
+                    let holds = length == 0.0 || LENGTHS.contains(&length);
+                    let allowed = "0 or from 1e-12 to 1e4, in metres";
+                    check::that(holds, name, length, "", allowed)?;
                 }
                 add_heights(
                     &mut scatterers,
@@ -100,10 +96,8 @@ impl RoughSurface {
     ///
     /// Returns an error if there are no scatterers, or if a component of a position or amplitude is
     /// not finite or above 10⁴ m in magnitude.
-    pub fn from_scatterers(scatterers: Vec<Scatterer>) -> Result<Self, WaveError> {
-        if scatterers.is_empty() {
-            return Err(WaveError::refused("scatterers", 0.0, COUNT));
-        }
+    pub fn from_scatterers(scatterers: Vec<Scatterer>) -> Result<Self, Refusal> {
+        check::that(!scatterers.is_empty(), "scatterers", 0.0, "", COUNT)?;
         for scatterer in &scatterers {
             checked_position(scatterer.position, "position")?;
             let amplitude = scatterer.amplitude;
@@ -129,9 +123,6 @@ impl RoughSurface {
         }
     }
 }
-
-/// Condition on the heights of a rough surface and their correlation length.
-const ZERO_OR_LENGTH: &str = "0 or from 1e-12 to 1e4, in metres";
 
 fn randomise(scatterers: &mut [Scatterer], amplitudes: Amplitudes, seed: u64) {
     let mut random = Random::new(seed, Purpose::Amplitudes);

@@ -56,7 +56,7 @@ pub use field::Field;
 pub use glam::{DMat3, DVec2, DVec3};
 pub use illumination::{BeamDescription, FanDescription, Illumination};
 pub use image::{ImageSampling, ImageWindow};
-pub use lit::{LitSurface, Progress};
+pub use lit::LitSurface;
 pub use motion::RigidMotion;
 pub use num_complex::Complex;
 pub use patch::{Amplitudes, Arrangement, PatchDescription, Roughness, Scatterer};

@@ -1,6 +1,3 @@
-use core::time::Duration;
-use std::sync::atomic::{AtomicU64, Ordering};
-
 use glam::DVec3;
 use num_complex::Complex;
 use tem00_numerics::Grid;
@@ -43,57 +40,24 @@ use crate::{Field, Illumination, RoughSurface, SamplePlane, sum::Sources};
 #[derive(Clone, Debug, PartialEq)]
 pub struct LitSurface {
     sources: Sources,
-    scatterers: usize,
     wavelength: f64,
-}
-
-/// Progress of a long sum.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Progress {
-    /// Terms summed so far.
-    pub done: u64,
-    /// Total number of terms.
-    pub total: u64,
-}
-
-impl Progress {
-    /// Returns the remaining computing time from the elapsed time: all terms cost the same.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use core::time::Duration;
-    /// use tem00_wave::Progress;
-    ///
-    /// let progress = Progress { done: 2_000_000, total: 10_000_000 };
-    /// assert_eq!(progress.remaining(Duration::from_secs(3)), Some(Duration::from_secs(12)));
-    /// ```
-    pub fn remaining(&self, elapsed: Duration) -> Option<Duration> {
-        let factor = self.total.saturating_sub(self.done) as f64 / self.done as f64;
-        Duration::try_from_secs_f64(elapsed.as_secs_f64() * factor).ok()
-    }
 }
 
 impl RoughSurface {
     /// Returns the surface under a light, whose scattered field can then be computed.
     pub fn lit_by(&self, illumination: &Illumination) -> LitSurface {
-        LitSurface::new(self, illumination)
+        let sources = self.scatterers().iter().map(|scatterer| {
+            let incident = illumination.amplitude_at(scatterer.position);
+            (scatterer.position, scatterer.amplitude * incident)
+        });
+        LitSurface {
+            sources: sources.collect(),
+            wavelength: illumination.wavelength(),
+        }
     }
 }
 
 impl LitSurface {
-    fn new(surface: &RoughSurface, illumination: &Illumination) -> Self {
-        let sources = surface.scatterers().iter().map(|scatterer| {
-            let incident = illumination.amplitude_at(scatterer.position);
-            (scatterer.position, scatterer.amplitude * incident)
-        });
-        Self {
-            sources: sources.collect(),
-            scatterers: surface.scatterers().len(),
-            wavelength: illumination.wavelength(),
-        }
-    }
-
     /// Returns the wavelength λ of the light, in metres.
     pub const fn wavelength(&self) -> f64 {
         self.wavelength
@@ -104,36 +68,14 @@ impl LitSurface {
         self.sources.wave_at(point, self.wavelength)
     }
 
-    /// Returns the number of terms in the field on a plane: scatterers times samples.
-    pub fn terms_on(&self, plane: &SamplePlane) -> u64 {
-        self.scatterers as u64 * plane.open_samples() as u64
-    }
-
     /// Returns the complex amplitude at the samples of a plane.
     pub fn field_on(&self, plane: &SamplePlane) -> Field {
-        self.field_with_progress(plane, |_| ())
-    }
-
-    /// Computes the field like [`field_on`](Self::field_on), and calls `report` after each row of
-    /// samples.
-    ///
-    /// Rows are finished in any order, by several threads with the feature `parallel`.
-    pub fn field_with_progress(
-        &self,
-        plane: &SamplePlane,
-        report: impl Fn(Progress) + Sync,
-    ) -> Field {
         let [width, height] = plane.samples();
         let mut amplitude = Grid::filled(width, height, Complex::new(0.0, 0.0));
-        let (done, total) = (AtomicU64::new(0), self.terms_on(plane));
         amplitude.for_each_row_mut(|y, row| {
-            let open = plane.open_in_row(y);
-            for x in open.clone() {
+            for x in plane.open_in_row(y) {
                 row[x] = self.field_at(plane.point(x, y));
             }
-            let terms = self.scatterers as u64 * open.len() as u64;
-            let done = done.fetch_add(terms, Ordering::Relaxed) + terms;
-            report(Progress { done, total });
         });
         Field::new(amplitude)
     }

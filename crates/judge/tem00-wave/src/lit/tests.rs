@@ -1,4 +1,3 @@
-use std::sync::Mutex;
 use tem00_testkit::assert_absolute;
 
 use super::*;
@@ -61,39 +60,6 @@ fn source_and_receiver_may_be_exchanged() {
         (there - back).norm() < 1e-8 * there.norm(),
         "{there} {back}"
     );
-}
-
-#[test]
-fn progress_counts_every_term_once() {
-    let lit = patch(100, Amplitudes::Unit, 1).lit_by(&plane_wave());
-    let steps = [DVec3::X * 1e-4, DVec3::Y * 1e-4];
-    let plane = SamplePlane::new(DVec3::Z, steps, [20, 20])
-        .and_then(|plane| plane.within(0.8e-3))
-        .expect("a plane");
-    let reports = Mutex::new(Vec::new());
-    let field = lit.field_with_progress(&plane, |progress| {
-        reports.lock().expect("no panic").push(progress);
-    });
-    assert_eq!(field, lit.field_on(&plane));
-    let reports = reports.into_inner().expect("no panic");
-    assert_eq!(reports.len(), 20);
-    let total = 100 * plane.open_samples() as u64;
-    assert_eq!(lit.terms_on(&plane), total);
-    assert!(reports.iter().all(|report| report.total == total), "total");
-    let max = reports.iter().map(|report| report.done).max();
-    assert_eq!(max, Some(total));
-}
-
-#[test]
-fn no_time_is_known_before_the_first_term() {
-    let start = Progress { done: 0, total: 10 };
-    assert_eq!(start.remaining(Duration::from_secs(1)), None);
-    assert_eq!(start.remaining(Duration::ZERO), None);
-    let end = Progress {
-        done: 10,
-        total: 10,
-    };
-    assert_eq!(end.remaining(Duration::from_secs(1)), Some(Duration::ZERO));
 }
 
 #[test]

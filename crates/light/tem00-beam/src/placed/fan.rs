@@ -213,7 +213,6 @@ impl<F: Fan> PhaseSpace for F {
         along.min(1.0) * chance(&line.y, dz, target.y, line.cutoff)
     }
 
-    /// Computed in double precision, because the square of a very large slope overflows.
     fn reach(&self, l: f64) -> Reach {
         let slope = self.profile().largest_slope(self.line().cutoff);
         let line = self.line();
@@ -301,9 +300,7 @@ impl LineLight {
         let last = if far > 0.0 { far * wide } else { far * narrow };
         [first - slant - slack, last - slant + slack]
     }
-}
 
-impl LineLight {
     /// Returns the light with the profile of a Gaussian in the variable of this code.
     #[inline(always)]
     fn gaussian_in(&self, code: f64) -> Self {

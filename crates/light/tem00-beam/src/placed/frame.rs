@@ -68,9 +68,7 @@ impl Frame {
             ..self
         }
     }
-}
 
-impl Frame {
     /// Transforms a point of the world into the frame.
     #[inline(always)]
     pub(crate) fn local_from_world_point(&self, p: [f64; 3]) -> [f64; 3] {

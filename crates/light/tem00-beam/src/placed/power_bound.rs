@@ -1,4 +1,4 @@
-//! Bounds of the fraction of the power that reaches a box, in double precision.
+//! Bounds of the fraction of the power that reaches a box.
 
 use core::f64::consts::FRAC_2_PI;
 

@@ -260,9 +260,8 @@ impl PhaseSpace for SpotLight {
 
     fn fraction_bound(&self, target: &LocalBox) -> f64 {
         let along = |axis: &Axis, range: [f64; 2]| {
-            let axis = Axis::from_row(axis.to_row());
             let dz = target.z.map(|z| z - axis.z0);
-            chance(&axis, dz, range, self.cutoff)
+            chance(axis, dz, range, self.cutoff)
         };
         along(&self.x, target.x) * along(&self.y, target.y)
     }

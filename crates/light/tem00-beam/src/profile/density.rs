@@ -189,13 +189,12 @@ impl SlopeProfile for SlopeDensity {
     }
 
     fn between(&self, a: f64, b: f64) -> f64 {
-        let density = self;
         let [a, b] = [a, b].map(|u| u.clamp(-STEEPEST, STEEPEST));
         match (a < 0.0, b < 0.0) {
-            (true, true) => density.tail(b) - density.tail(a),
-            (true, false) => 1.0 - density.tail(a) - density.tail(-b),
+            (true, true) => self.tail(b) - self.tail(a),
+            (true, false) => 1.0 - self.tail(a) - self.tail(-b),
             // The upper tail keeps its digits where 1 minus the tail loses them.
-            (false, _) => density.tail(-a) - density.tail(-b),
+            (false, _) => self.tail(-a) - self.tail(-b),
         }
     }
 }
@@ -226,9 +225,7 @@ impl SlopeDensity {
         };
         density / self.mass
     }
-}
 
-impl SlopeDensity {
     /// The uniform density with its roll-off.
     fn rolled_off(&self, v: f64) -> f64 {
         let scale = 1.0 / (SQRT_2 * self.sigma);

@@ -142,19 +142,6 @@ fn a_placed_light_is_the_laser_in_another_frame() {
 }
 
 #[test]
-fn lights_say_what_they_were_placed_with() {
-    let tabulated = laser(table(), FocusCurve::EqualDistance, 0.5);
-    for light in [&spot() as &dyn Emitter, &powell(), &*place(&tabulated)] {
-        let said = [light.power(), light.wavelength()];
-        assert_eq!(said.map(f64::to_bits), [POWER, 650e-9].map(f64::to_bits));
-        assert_eq!(DVec3::from(light.origin()), PLACEMENT.origin);
-        let axis = DVec3::from(light.axis());
-        let miss = axis.distance(PLACEMENT.direction.normalize());
-        assert_absolute(miss, 0.0, 1e-15);
-    }
-}
-
-#[test]
 fn next_event_and_flux_light_a_surface_alike() {
     let spot = spot();
     let lights: [(&dyn Emitter, DVec3); 2] = [

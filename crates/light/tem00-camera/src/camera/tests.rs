@@ -71,16 +71,3 @@ fn pixels_see_the_solid_angle_of_the_sensor() {
     // The midpoint rule has an error of (pitch/d)²/24 · ∂²/∂x² cos³ ≈ 1e−9.
     assert_relative(sum, exact, 1e-7);
 }
-
-proptest! {
-    #[test]
-    fn projection_inverts_the_ray(
-        x in 0.0_f64..640.0, y in 0.0_f64..480.0, depth in 0.01_f64..10.0,
-    ) {
-        let camera = Camera::new(description()).unwrap();
-        let ray = camera.ray(DVec2::new(x, y));
-        let image = camera.project(ray.origin + depth * ray.direction).unwrap();
-        // 1e4 pixels of image distance, times a few roundings.
-        prop_assert!(image.distance(DVec2::new(x, y)) < 1e-10, "{image}");
-    }
-}

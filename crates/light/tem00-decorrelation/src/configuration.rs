@@ -100,23 +100,6 @@ impl Configuration {
     /// Returns an error if the point no longer lies in front of the camera, or if the light has no
     /// direction there. The speckle, if any, is then decorrelated.
     pub fn moved(&self, motions: &RigidMotions) -> Result<Self, Refusal> {
-        self.moved_into(motions, self.illumination.moved(&motions.source))
-    }
-
-    /// Returns the state after surface and camera have moved, lit by other light, which is given as
-    /// it is after the motion.
-    ///
-    /// The motion of the source is ignored.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if the point no longer lies in front of the camera, or if the new light has
-    /// no direction there.
-    pub fn moved_into(
-        &self,
-        motions: &RigidMotions,
-        illumination: Illumination,
-    ) -> Result<Self, Refusal> {
         let point = motions.surface.point(self.point);
         let pupil = motions.camera.point(self.pupil);
         let camera = self.sight.camera().turned(motions.camera.rotation());
@@ -124,7 +107,7 @@ impl Configuration {
             wavelength: self.wavelength,
             point,
             surface_axes: motions.surface.rotation() * self.surface_axes,
-            illumination,
+            illumination: self.illumination.moved(&motions.source),
             to_source: DVec3::ZERO,
             sight: LineOfSight::new(&camera, pupil - point)?,
             pupil,

@@ -257,7 +257,8 @@ mod tests {
                 normal: surface.direction(normal),
                 to_source,
             });
-            let Ok(after) = before.moved_into(&motions, light[1]) else {
+            let moved = before.moved(&motions);
+            let Ok(after) = moved.and_then(|state| state.with_illumination(light[1])) else {
                 prop_assert_eq!(found.tangent_displacement, DVec2::INFINITY);
                 return Ok(());
             };

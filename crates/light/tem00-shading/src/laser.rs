@@ -5,7 +5,7 @@ mod wave;
 use glam::DVec3;
 use tem00_beam::{
     AstigmaticBeam, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight, LineProfile,
-    LocatedBeam, NextEvent, NextEventSlices, Placement, Refusal, SpotLight, TabulatedLineLight,
+    LocatedBeam, NextEventSlices, Placement, Refusal, SpotLight, TabulatedLineLight,
 };
 use tem00_coherence::{SourceExtent, Spectrum};
 use tem00_decorrelation::RigidMotion;
@@ -206,10 +206,7 @@ impl Laser {
     /// Returns the light of the laser at `point` as a delta light, or `None` where it sends no
     /// light. The light comes from one direction, along the mean energy flow at the point.
     pub fn next_event(&self, point: DVec3) -> Option<LaserEvent> {
-        let event = match &self.source {
-            Source::Spot { light, .. } => light.next_event(point.to_array()),
-            Source::Line { line, light } => line_event(line, light, point.to_array()),
-        }?;
+        let event = self.with_emitter(|light| light.next_event(point.to_array()))?;
         Some(LaserEvent {
             point: event.point.into(),
             wi: event.wi.into(),
@@ -220,16 +217,7 @@ impl Laser {
     /// Computes for each point the result of [`next_event`](Self::next_event), up to rounding of
     /// the aperture point, in less time.
     pub fn next_events(&self, events: &mut LaserEventBatch) {
-        match &self.source {
-            Source::Spot { light, .. } => events.by(light),
-            Source::Line { line, light } => match line.profile() {
-                LineProfile::Tabulated(profile) => events.by(&TabulatedLineLight {
-                    line: *light,
-                    knots: profile.knots(),
-                }),
-                _ => events.by(light),
-            },
-        }
+        self.with_emitter(|light| events.by(light));
     }
 
     /// Returns the placed light as plain data, for a custom kernel; the table of a tabulated
@@ -284,23 +272,13 @@ fn beam(wavelength: f64, waist_radius: f64, m_squared: f64) -> Result<GaussianBe
     GaussianBeam::from_waist(wavelength, waist_radius)?.with_m_squared(m_squared)
 }
 
-/// Places a line; the table of a tabulated profile is left to [`line_event`].
+/// Places a line, without the table of a tabulated profile.
 fn line_light(line: &LaserLine, placement: &Placement, power: f64) -> Result<LineLight, Refusal> {
     match line.profile() {
         LineProfile::Tabulated(_) => {
             TabulatedLineLight::place(line, placement, power).map(|light| light.line)
         }
         _ => LineLight::place(line, placement, power),
-    }
-}
-
-fn line_event(line: &LaserLine, light: &LineLight, point: [f64; 3]) -> Option<NextEvent> {
-    match line.profile() {
-        LineProfile::Tabulated(profile) => {
-            let (line, knots) = (*light, profile.knots());
-            TabulatedLineLight { line, knots }.next_event(point)
-        }
-        _ => light.next_event(point),
     }
 }
 
@@ -325,7 +303,7 @@ impl LaserEventBatch {
         }
     }
 
-    fn by(&mut self, light: &impl Emitter) {
+    fn by(&mut self, light: &dyn Emitter) {
         let [x, y, z] = &self.points;
         for values in &mut self.events {
             values.resize(x.len(), 0.0);

@@ -101,12 +101,9 @@ impl Laser {
     /// Returns the distance, in metres, at which the ray from `origin` along the unit `direction`
     /// crosses the plane of the aperture from the lit side, or `None` if it does not.
     pub fn aperture_distance(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
-        let (aperture, axis) = match &self.source {
-            Source::Spot { light, .. } => (light.origin, light.ez),
-            Source::Line { light, .. } => (light.origin, light.ez),
-        };
-        let axis = DVec3::from_array(axis);
-        let height = (origin - DVec3::from_array(aperture)).dot(axis);
+        let [aperture, axis] =
+            self.with_emitter(|light| [light.origin(), light.axis()].map(DVec3::from_array));
+        let height = (origin - aperture).dot(axis);
         let descent = -direction.dot(axis);
         let distance = height / descent;
         (height >= 0.0 && descent > 0.0 && distance.is_finite()).then_some(distance)

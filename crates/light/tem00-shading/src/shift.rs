@@ -127,9 +127,7 @@ impl SpeckleLaw<'_> {
             }
         }
     }
-}
 
-impl SpeckleLaw<'_> {
     /// Returns the change of the speckle of a point that is lit from the unit vectors `to_source`,
     /// in the reference frame and in the current frame, or `None` where the law has no value.
     pub fn shift_under(&self, to_source: [DVec3; 2], point: SeenPoint) -> Option<SpeckleShift> {

@@ -40,19 +40,7 @@ impl Laser {
     /// # Ok::<(), tem00_shading::ShadingError>(())
     /// ```
     pub fn spot(wavelength: f64, waist_radius: f64) -> LaserBuilder {
-        LaserBuilder::of_spot(wavelength, waist_radius)
-    }
-
-    /// Begins the description of a laser line with a vacuum wavelength and a thickness in focus
-    /// (1/e², full width), both in metres, and a full fan angle, in radians.
-    pub fn line(wavelength: f64, thickness: f64, fan_angle: f64) -> LaserBuilder {
-        LaserBuilder::of_line(wavelength, thickness, fan_angle)
-    }
-}
-
-impl LaserBuilder {
-    fn of_spot(wavelength: f64, waist_radius: f64) -> Self {
-        Self {
+        LaserBuilder {
             wavelength,
             spectrum: None,
             source_extent: SourceExtent::default(),
@@ -64,13 +52,17 @@ impl LaserBuilder {
         }
     }
 
-    fn of_line(wavelength: f64, thickness: f64, fan_angle: f64) -> Self {
-        Self {
+    /// Begins the description of a laser line with a vacuum wavelength and a thickness in focus
+    /// (1/e², full width), both in metres, and a full fan angle, in radians.
+    pub fn line(wavelength: f64, thickness: f64, fan_angle: f64) -> LaserBuilder {
+        LaserBuilder {
             line: Some((fan_angle, LineProfile::GaussianTan)),
-            ..Self::of_spot(wavelength, 0.5 * thickness)
+            ..Self::spot(wavelength, 0.5 * thickness)
         }
     }
+}
 
+impl LaserBuilder {
     /// Sets the power of the beam, in watts.
     pub const fn power(mut self, power: f64) -> Self {
         self.power = power;

@@ -2,7 +2,6 @@
 
 mod exposure;
 mod sum;
-mod transform;
 
 pub use exposure::Exposure;
 pub use sum::incoherent_fractions;

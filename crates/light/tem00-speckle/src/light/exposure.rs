@@ -1,14 +1,12 @@
-use core::f64::consts::PI;
+use core::f64::consts::{PI, TAU};
 
 use num_complex::Complex;
 use tem00_numerics::{
     Fft2, Grid,
-    cast::to_c32,
-    cast::{to_f32, to_usize},
-    sinc,
+    cast::{to_c32, to_f32, to_signed, to_usize},
+    check, sinc,
 };
 
-use super::transform::{frequency, plan, to_complex, wave};
 use crate::{PupilField, SpeckleError, SpecklePattern, SpeckleScratch};
 
 /// Exposure during which the pattern moves or changes, or both, at a constant rate.
@@ -74,11 +72,8 @@ impl Exposure {
     ///
     /// Returns an error unless the drift along both axes is within ±`MAX_IMAGE_DRIFT`.
     pub fn with_image_drift(mut self, drift: [f64; 2]) -> Result<Self, SpeckleError> {
-        check(
-            drift,
-            Self::MAX_IMAGE_DRIFT,
-            "within ±1e6 speckle sizes in the image",
-        )?;
+        let allowed = "within ±1e6 speckle sizes in the image";
+        check_drift(drift, Self::MAX_IMAGE_DRIFT, allowed)?;
         self.image_drift = drift;
         Ok(self)
     }
@@ -90,11 +85,8 @@ impl Exposure {
     ///
     /// Returns an error unless the drift along both axes is within ±`MAX_PUPIL_DRIFT`.
     pub fn with_pupil_drift(mut self, drift: [f64; 2]) -> Result<Self, SpeckleError> {
-        check(
-            drift,
-            Self::MAX_PUPIL_DRIFT,
-            "within ±128 diameters over the pupil",
-        )?;
+        let allowed = "within ±128 diameters over the pupil";
+        check_drift(drift, Self::MAX_PUPIL_DRIFT, allowed)?;
         self.pupil_drift = drift;
         Ok(self)
     }
@@ -178,7 +170,8 @@ struct Smear {
 impl Smear {
     fn new([width, height]: [usize; 2], samples: [f64; 2], moments: usize) -> Self {
         Self {
-            transform: plan([width, height]),
+            transform: Fft2::new(width, height)
+                .unwrap_or_else(|_| unreachable!("a pattern has samples")),
             drift: [samples[0] / width as f64, samples[1] / height as f64],
             moments,
             sum: Grid::filled(width, height, Complex::new(0.0, 0.0)),
@@ -202,12 +195,11 @@ impl Smear {
         let [x, y] = [turns(0), turns(1)];
         let [shift_x, shift_y] = [shift(&x), shift(&y)];
         let part = PI / self.moments as f64;
-        let spectrum = self
-            .transform
-            .forward(&to_complex(pattern), |kx, ky, value| {
-                let smear = to_f32(sinc(part * (x[kx] + y[ky])));
-                value * shift_x[kx] * shift_y[ky] * smear
-            });
+        let pattern = pattern.map(|&value| value.into());
+        let spectrum = self.transform.forward(&pattern, |kx, ky, value| {
+            let smear = to_f32(sinc(part * (x[kx] + y[ky])));
+            value * shift_x[kx] * shift_y[ky] * smear
+        });
         add(&mut self.sum, &spectrum);
     }
 
@@ -221,20 +213,30 @@ impl Smear {
     }
 }
 
+/// The frequency at `index` in a spectrum of `size` points, in periods per pattern.
+fn frequency(index: usize, size: usize) -> f64 {
+    let (index, size) = (to_signed(index), to_signed(size));
+    let is_negative = 2 * index > size;
+    (if is_negative { index - size } else { index }) as f64
+}
+
+/// exp(2πi turns)
+fn wave(turns: f64) -> Complex<f64> {
+    Complex::cis(TAU * (turns - turns.round()))
+}
+
 fn add<T: Copy + core::ops::AddAssign>(sum: &mut Grid<T>, values: &Grid<T>) {
     let pairs = sum.values_mut().iter_mut().zip(values.values());
     pairs.for_each(|(sum, value)| *sum += *value);
 }
 
 /// Refuses a drift with a component beyond ±`maximum`.
-fn check(drift: [f64; 2], maximum: f64, allowed: &'static str) -> Result<(), SpeckleError> {
-    match drift
-        .into_iter()
-        .find(|x| !(-maximum..=maximum).contains(x))
-    {
-        Some(bad) => Err(SpeckleError::refused("drift", bad, allowed)),
-        None => Ok(()),
+fn check_drift(drift: [f64; 2], maximum: f64, allowed: &'static str) -> Result<(), SpeckleError> {
+    for x in drift {
+        let holds = (-maximum..=maximum).contains(&x);
+        check::that(holds, "drift", x, "", allowed)?;
     }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 use tem00_numerics::{
     cast::to_f32,
-    fractions,
+    check, fractions,
     seed::{Purpose, derived},
 };
 
@@ -62,10 +62,8 @@ pub fn incoherent_fractions(
     polarisation: f64,
     weights: &[f64],
 ) -> Result<Vec<f64>, SpeckleError> {
-    if !(0.0..=1.0).contains(&polarisation) {
-        let allowed = "between 0 and 1";
-        return Err(SpeckleError::refused("polarisation", polarisation, allowed));
-    }
+    let holds = (0.0..=1.0).contains(&polarisation);
+    check::that(holds, "polarisation", polarisation, "", "between 0 and 1")?;
     check_count(patterns)?;
     let fractions = vec![(patterns as f64).recip(); patterns];
     let waves = [0.5 * (1.0 + polarisation), 0.5 * (1.0 - polarisation)];
@@ -86,11 +84,14 @@ fn split(whole: &[f64], weights: &[f64]) -> Result<Vec<f64>, SpeckleError> {
 }
 
 fn check_count(patterns: usize) -> Result<(), SpeckleError> {
-    if (1..=MAX_PATTERNS).contains(&patterns) {
-        return Ok(());
-    }
-    let allowed = "1 to 1024 in all";
-    Err(SpeckleError::refused("patterns", patterns as f64, allowed))
+    let holds = (1..=MAX_PATTERNS).contains(&patterns);
+    Ok(check::that(
+        holds,
+        "patterns",
+        patterns,
+        "",
+        "1 to 1024 in all",
+    )?)
 }
 
 impl PupilField {

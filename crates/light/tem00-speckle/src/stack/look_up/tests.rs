@@ -6,7 +6,11 @@ use tem00_numerics::{Grid, cast::to_f32};
 use tem00_testkit::assert_absolute;
 
 use super::*;
-use crate::{PupilField, SlicePath, pupil::lattice::unit_phasor};
+use crate::{
+    PupilField, SlicePath,
+    pupil::lattice::unit_phasor,
+    stack::tests::{circle, mean},
+};
 
 const PATHS: [SlicePath; 3] = [
     SlicePath::Still,
@@ -16,10 +20,6 @@ const PATHS: [SlicePath; 3] = [
         length: 3,
     },
 ];
-
-fn circle(half_period: usize) -> SlicePath {
-    SlicePath::Circle { half_period }
-}
 
 fn stack(field: &PupilField, path: SlicePath) -> SpeckleStack {
     SpeckleStack::generate(field, path).unwrap()
@@ -36,16 +36,6 @@ fn measured(size: [usize; 2], speckle_size: f64) -> PupilField {
         unit_phasor(word.rotate_left(13).wrapping_mul(0x9E37_79B1)) * envelope
     });
     PupilField::from_samples(samples, size, speckle_size).unwrap()
-}
-
-/// The mean over all cells, at one fraction of each.
-fn mean(stack: &SpeckleStack, [fx, fy]: [f64; 2], u: f64) -> f64 {
-    let [width, height] = stack.size().map(|side| u32::try_from(side).unwrap());
-    let cells = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-    let sum: f64 = cells
-        .map(|(x, y)| stack.intensity_at(f64::from(x) + fx, f64::from(y) + fy, u))
-        .sum();
-    sum / f64::from(width * height)
 }
 
 #[test]

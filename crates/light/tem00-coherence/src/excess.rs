@@ -6,10 +6,7 @@ use tem00_numerics::quadrature::integrate;
 
 use crate::kernel::LagKernel;
 
-mod reach;
 mod table;
-
-use reach::{STEEP, is_beyond};
 
 /// Contribution of a correlation length of heights to a mean of `exp(−x² (1 − ρ) + 2πi s·η)` over
 /// lags η, in speckles, with the phase x of the heights and the displacement s of the pupil in
@@ -56,6 +53,15 @@ impl HeightExcess {
         }
         by_lags(self.kernel, self.length, [phase, shift])
     }
+}
+
+/// Squared phases above which lags beyond the width of the excess no longer matter.
+const STEEP: f64 = 50.0;
+
+/// Returns whether the excess vanishes at a displacement: kernels have no frequency above 1 per
+/// speckle, and the excess hardly any above 1 per `width`.
+fn is_beyond(shift: f64, width: f64) -> bool {
+    TAU * (shift - 1.0) * width > 12.0
 }
 
 /// Returns the excess by an integral over lags.

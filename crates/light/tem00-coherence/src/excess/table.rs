@@ -4,7 +4,7 @@ use core::f64::consts::TAU;
 
 use tem00_numerics::quadrature::for_each_node;
 
-use super::reach::{STEEP, is_beyond};
+use super::{STEEP, is_beyond};
 use crate::{
     chebyshev::{Grid, SIDE, at_place, node},
     kernel::LagKernel,

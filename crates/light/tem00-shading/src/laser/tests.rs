@@ -215,13 +215,7 @@ fn a_laser_stands_where_its_trajectory_says() {
 
 #[test]
 fn points_together_are_lit_as_each_alone() {
-    let table = AngularProfile::from_pairs(&[(-0.2, 1.0), (0.0, 2.0), (0.4, 0.0)]).unwrap();
-    let lasers = [
-        elliptic_spot().0,
-        line(LineProfile::GaussianTan, FocusCurve::EqualDistance),
-        line(LineProfile::Tabulated(table), FocusCurve::EqualPlane),
-    ];
-    for laser in lasers {
+    for laser in lasers() {
         let description = laser.description();
         let (axis, across) = (description.look_at - description.position, DVec3::Y);
         let point = |index: u32| {

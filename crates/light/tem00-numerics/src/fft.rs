@@ -41,9 +41,8 @@ use blocks::{COLUMNS, PANEL, aligned, fill_columns, gather_rows, spread_columns,
 /// array of `W × H` there are `w` transforms of length H and `H` of length W, each made of short
 /// transforms no longer than the aperture needs. Any size works; products of small primes are fast,
 /// and powers of two are fastest. The array never exists as a whole: the memory is `8 w H` bytes
-/// and a few dozen lines for each thread, reused with [`forward_into`](Self::forward_into), plus
-/// the output. The aperture need not exist as a whole either: [`forward_from`](Self::forward_from)
-/// takes it piece by piece.
+/// and a few dozen lines for each thread, plus the output. The aperture need not exist as a whole
+/// either: [`forward_from`](Self::forward_from) takes it piece by piece, and reuses the memory.
 ///
 /// # Threads
 ///
@@ -77,7 +76,7 @@ pub struct Fft2 {
 /// Output rows finished together in the second pass, which reads this many consecutive cache lines.
 const ROWS: usize = 16;
 
-/// Working memory of a transform, kept between calls of [`Fft2::forward_into`].
+/// Working memory of a transform, kept between calls of [`Fft2::forward_from`].
 ///
 /// It fits any transform and grows to the size of the largest.
 #[derive(Clone, Debug, Default)]
@@ -160,24 +159,6 @@ impl Fft2 {
     where
         O: Clone + Default + Send,
     {
-        let mut output = Grid::filled(self.row.length(), self.column.length(), O::default());
-        self.forward_into(aperture, &mut output, &mut Fft2Scratch::default(), finish);
-        output
-    }
-
-    /// Transforms `aperture` like [`forward`](Self::forward), but into an existing array and with
-    /// existing working memory.
-    ///
-    /// # Panics
-    ///
-    /// Panics unless `aperture` has the planned size and `output` the size of the array.
-    pub fn forward_into<O: Send>(
-        &self,
-        aperture: &Grid<Complex<f32>>,
-        output: &mut Grid<O>,
-        scratch: &mut Fft2Scratch,
-        finish: impl Fn(usize, usize, Complex<f32>) -> O + Sync,
-    ) {
         assert!(
             aperture.width() == self.row.aperture() && aperture.height() == self.column.aperture(),
             "aperture and plan differ in size"
@@ -185,11 +166,13 @@ impl Fft2 {
         let copy = |columns: Range<usize>, y, values: &mut [_]| {
             values.copy_from_slice(&aperture.row(y)[columns]);
         };
-        self.forward_from(copy, output, scratch, finish);
+        let mut output = Grid::filled(self.row.length(), self.column.length(), O::default());
+        self.forward_from(copy, &mut output, &mut Fft2Scratch::default(), finish);
+        output
     }
 
-    /// Transforms like [`forward_into`](Self::forward_into) an aperture that is generated piece by
-    /// piece and never exists as a whole.
+    /// Transforms like [`forward`](Self::forward), but into an existing array and with existing
+    /// working memory, an aperture that is generated piece by piece and never exists as a whole.
     ///
     /// `fill(columns, y, values)` writes the values of these columns in row y. It covers each
     /// position of the aperture once, in any order and by any thread, in pieces of up to 64 values

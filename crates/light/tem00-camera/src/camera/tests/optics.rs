@@ -86,13 +86,18 @@ fn tilted_sensors_have_a_horizon() {
 
 #[test]
 fn the_axis_meets_the_principal_point() {
-    let camera = Camera::new(crooked()).unwrap();
-    let image = camera.project(crooked().look_at).unwrap();
-    let principal_point = DVec2::new(300.0, 260.0);
-    assert!(image.distance(principal_point) < 1e-9, "{image}");
-    let view = (crooked().look_at - crooked().position).normalize();
-    let direction = camera.ray(principal_point).direction;
-    assert!(direction.distance(view) < 1e-15, "{direction}");
+    let middle = DVec2::new(320.0, 240.0);
+    for (described, point) in [
+        (description(), middle),
+        (crooked(), DVec2::new(300.0, 260.0)),
+    ] {
+        let camera = Camera::new(described).unwrap();
+        let image = camera.project(described.look_at).unwrap();
+        assert!(image.distance(point) < 1e-9, "{image}");
+        let view = (described.look_at - described.position).normalize();
+        let direction = camera.ray(point).direction;
+        assert!(direction.distance(view) < 1e-15, "{direction}");
+    }
     let nowhere = Camera::new(CameraDescription {
         principal_point: Some(DVec2::new(f64::INFINITY, 0.0)),
         ..description()

@@ -152,6 +152,37 @@ pub fn minimise<S>(
         .and(Err(LeastSquaresError::NotConverged))
 }
 
+/// The deviation of a datum from a model with `N` parameters, in units of its own error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Residual<const N: usize> {
+    /// The deviation.
+    pub value: f64,
+    /// The derivatives of the deviation with respect to the parameters.
+    pub slopes: [f64; N],
+}
+
+/// Finds the parameters of least squares near `start`, given each of `count` residuals.
+///
+/// # Errors
+///
+/// Returns the errors of [`minimise`].
+pub fn minimise_residuals<const N: usize>(
+    start: [f64; N],
+    count: usize,
+    residual: impl Fn(&[f64; N], usize) -> Residual<N>,
+) -> Result<Minimum<[f64; N]>, LeastSquaresError> {
+    let stepped = |p: &[f64; N], step: &[f64]| core::array::from_fn(|i| p[i] + step[i]);
+    let equations = |p: &[f64; N]| {
+        let mut equations = NormalEquations::new(N);
+        for i in 0..count {
+            let Residual { value, slopes } = residual(p, i);
+            equations.add(value, &slopes);
+        }
+        Some(equations)
+    };
+    minimise(start, stepped, equations)
+}
+
 impl NormalEquations {
     /// Creates the equations of a number of parameters, without residuals.
     pub fn new(parameters: usize) -> Self {

@@ -38,7 +38,9 @@ pub use crop::Crop;
 pub use fft::{Fft2, Fft2Error, Fft2Scratch};
 pub use fractions::fractions;
 pub use grid::{Grid, GridError, wrap_coordinate};
-pub use least_squares::{LeastSquaresError, Minimum, NormalEquations, minimise};
+pub use least_squares::{
+    LeastSquaresError, Minimum, NormalEquations, Residual, minimise, minimise_residuals,
+};
 pub use lower_factor::lower_factor;
 pub use memory::{MemoryError, available_memory, check_memory};
 pub use normal::normal_quantile;

@@ -3,7 +3,6 @@
 mod caustic;
 mod error;
 mod knife_edge;
-mod least_squares;
 mod positions;
 #[cfg(test)]
 mod synthetic;

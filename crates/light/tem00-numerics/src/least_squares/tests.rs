@@ -1,28 +1,6 @@
 use tem00_testkit::assert_absolute;
 
-use super::{LeastSquaresError, Minimum, NormalEquations};
-
-struct Residual<const N: usize> {
-    value: f64,
-    slopes: [f64; N],
-}
-
-fn minimise<const N: usize>(
-    start: [f64; N],
-    count: usize,
-    residual: impl Fn(&[f64; N], usize) -> Residual<N>,
-) -> Result<Minimum<[f64; N]>, LeastSquaresError> {
-    let stepped = |p: &[f64; N], step: &[f64]| core::array::from_fn(|i| p[i] + step[i]);
-    let equations = |p: &[f64; N]| {
-        let mut equations = NormalEquations::new(N);
-        for i in 0..count {
-            let Residual { value, slopes } = residual(p, i);
-            equations.add(value, &slopes);
-        }
-        Some(equations)
-    };
-    super::minimise(start, stepped, equations)
-}
+use super::{LeastSquaresError, Residual, minimise_residuals};
 
 /// y = p₀ + p₁ x, fitted to (0, 1), (1, 2), (2, 4), (3, 4).
 fn line(p: &[f64; 2], i: usize) -> Residual<2> {
@@ -35,7 +13,7 @@ fn line(p: &[f64; 2], i: usize) -> Residual<2> {
 
 #[test]
 fn straight_line_has_its_textbook_solution() {
-    let minimum = minimise([100.0, -70.0], 4, line).unwrap();
+    let minimum = minimise_residuals([100.0, -70.0], 4, line).unwrap();
     // By hand: S_x = 6, S_xx = 14, S_y = 11, S_xy = 22, det = 4 · 14 − 6² = 20.
     let expected = [
         (14.0 * 11.0 - 6.0 * 22.0) / 20.0,
@@ -56,8 +34,8 @@ fn straight_line_has_its_textbook_solution() {
 
 #[test]
 fn units_of_parameters_and_residuals_do_not_matter() {
-    let plain = minimise([100.0, -70.0], 4, line).unwrap();
-    let scaled = minimise([100.0 * 1e9, -70.0 * 1e-9], 4, |p, i| {
+    let plain = minimise_residuals([100.0, -70.0], 4, line).unwrap();
+    let scaled = minimise_residuals([100.0 * 1e9, -70.0 * 1e-9], 4, |p, i| {
         let Residual { value, slopes } = line(&[p[0] * 1e-9, p[1] * 1e9], i);
         Residual {
             value: 1e5 * value,
@@ -73,7 +51,7 @@ fn units_of_parameters_and_residuals_do_not_matter() {
 #[test]
 fn curved_valley_is_followed_to_its_end() {
     // H. H. Rosenbrock's function, Computer Journal 3, 175, 1960.
-    let minimum = minimise([-1.2, 1.0], 2, |[x, y], i| match i {
+    let minimum = minimise_residuals([-1.2, 1.0], 2, |[x, y], i| match i {
         0 => Residual {
             value: 10.0 * (y - x * x),
             slopes: [-20.0 * x, 10.0],
@@ -92,7 +70,7 @@ fn curved_valley_is_followed_to_its_end() {
 #[test]
 fn steps_that_overshoot_are_taken_back() {
     // Newton's method for the root of the arc tangent diverges from starts beyond 1.39.
-    let minimum = minimise([20.0], 1, |&[x], _| Residual {
+    let minimum = minimise_residuals([20.0], 1, |&[x], _| Residual {
         value: x.atan(),
         slopes: [1.0 / (1.0 + x * x)],
     });
@@ -110,7 +88,10 @@ fn parameters_without_influence_are_reported() {
         value: line(&[p[0], 0.0], i).value,
         slopes: [-1.0, 0.0],
     };
-    let results = [minimise([0.0; 2], 4, same), minimise([0.0; 2], 4, blind)];
+    let results = [
+        minimise_residuals([0.0; 2], 4, same),
+        minimise_residuals([0.0; 2], 4, blind),
+    ];
     for result in results {
         assert!(
             matches!(result, Err(LeastSquaresError::Undetermined)),
@@ -121,7 +102,7 @@ fn parameters_without_influence_are_reported() {
 
 #[test]
 fn residuals_that_are_not_numbers_end_the_search() {
-    let result = minimise([0.0], 3, |_, _| Residual {
+    let result = minimise_residuals([0.0], 3, |_, _| Residual {
         value: f64::NAN,
         slopes: [1.0],
     });

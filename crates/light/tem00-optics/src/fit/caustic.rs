@@ -1,10 +1,9 @@
 use core::f64::consts::PI;
 
 use tem00_beam::{GaussianBeam, LocatedBeam, Refusal};
-use tem00_numerics::{Minimum, check};
+use tem00_numerics::{Minimum, Residual, check, minimise_residuals};
 
 use super::error::FitError;
-use super::least_squares::{Residual, minimise};
 use super::positions::{Axis, Estimate, check_count};
 
 /// Assumption about the errors of measured beam radii.
@@ -295,7 +294,7 @@ impl<'a> Caustic<'a> {
     }
 
     fn search(&self, start: [f64; PARAMETERS]) -> Result<Minimum<[f64; PARAMETERS]>, FitError> {
-        let minimum = minimise(start, self.radii.len(), |p, i| self.residual(p, i))?;
+        let minimum = minimise_residuals(start, self.radii.len(), |p, i| self.residual(p, i))?;
         if self.show(&minimum.state) {
             Ok(minimum)
         } else {
@@ -306,7 +305,7 @@ impl<'a> Caustic<'a> {
     /// Start of the search: the hyperbola as a polynomial, `w² = a + b z + c z²`, unless the
     /// polynomial has no waist.
     fn polynomial(&self) -> Option<[f64; PARAMETERS]> {
-        let minimum = minimise([0.0; 3], self.radii.len(), |p, i| {
+        let minimum = minimise_residuals([0.0; 3], self.radii.len(), |p, i| {
             let (x, square) = (self.axis.coordinates[i], self.radii[i].powi(2));
             let deviation = 2.0 * square * self.relative_deviation(i);
             let slopes = [1.0, x, x * x];

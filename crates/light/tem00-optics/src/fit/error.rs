@@ -1,6 +1,7 @@
 use core::{error, fmt};
 
 use tem00_beam::Refusal;
+use tem00_numerics::LeastSquaresError;
 
 /// Reasons for which measured data have no fit.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,5 +66,14 @@ impl error::Error for FitError {}
 impl From<Refusal> for FitError {
     fn from(error: Refusal) -> Self {
         Self::Argument(error)
+    }
+}
+
+impl From<LeastSquaresError> for FitError {
+    fn from(error: LeastSquaresError) -> Self {
+        match error {
+            LeastSquaresError::Undetermined => Self::Undetermined,
+            LeastSquaresError::NotConverged => Self::NotConverged,
+        }
     }
 }

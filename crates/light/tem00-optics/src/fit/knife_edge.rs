@@ -1,9 +1,8 @@
 use core::f64::consts::{FRAC_2_SQRT_PI, SQRT_2};
 
-use tem00_numerics::{Minimum, check};
+use tem00_numerics::{Minimum, Residual, check, minimise_residuals};
 
 use super::error::FitError;
-use super::least_squares::{Residual, minimise};
 use super::positions::{Axis, Estimate, check_count};
 
 /// A Gaussian beam fitted to the power that passes a knife edge moved across it.
@@ -77,7 +76,7 @@ impl KnifeEdgeFit {
         check_count(positions, powers, N + 1)?;
         let trace = Trace::new(positions, powers, N > BACKGROUND)?;
         let count = powers.len();
-        let minimum = minimise(trace.start::<N>(), count, |p, i| trace.residual(p, i))?;
+        let minimum = minimise_residuals(trace.start::<N>(), count, |p, i| trace.residual(p, i))?;
         let variance = minimum.sum_of_squares / (count - N) as f64;
         Self::from_minimum(&trace, &minimum, variance)
     }

@@ -7,6 +7,7 @@ use glam::DVec3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tem00_beam::{GaussianBeam, LocatedBeam};
+use tem00_numerics::quadrature::integrate;
 use tem00_testkit::assert_absolute;
 
 /// The modified divergence `θ′ = θ √(−½ ln l)`, which reaches down to the fraction `l` of the peak.
@@ -62,16 +63,6 @@ fn located(waist: f64) -> LocatedBeam {
     LocatedBeam::new(beam(), waist).unwrap()
 }
 
-/// ∫ f over [0, b] by the midpoint rule.
-fn integrate(f: impl Fn(f64) -> f64, b: f64) -> f64 {
-    const INTERVALS: u32 = 20_000;
-    let h = b / f64::from(INTERVALS);
-    (0..INTERVALS)
-        .map(|i| f((f64::from(i) + 0.5) * h))
-        .sum::<f64>()
-        * h
-}
-
 #[test]
 fn the_cone_loses_what_is_beyond_it() {
     let delta = beam().divergence();
@@ -80,11 +71,10 @@ fn the_cone_loses_what_is_beyond_it() {
         let profile = |s: f64| (-2.0 * (s / delta).powi(2)).exp();
         assert!((profile(edge) / l - 1.0).abs() < 1e-12, "l = {l}");
         let norm = 2.0 / (PI * delta * delta);
-        let inside = integrate(|s| norm * profile(s) * TAU * s, edge);
-        // Midpoint rule: (edge / 20000)² / 24 · f' at the ends, 1e−9.
+        let inside = integrate(|s| norm * profile(s) * TAU * s, [0.0, edge], 0.25 * edge);
         assert!((1.0 - inside - l).abs() < 1e-8, "l = {l}: {inside}");
         let norm = 2.0 * (2.0 / PI).sqrt() / delta;
-        let inside = integrate(|s| norm * profile(s), edge);
+        let inside = integrate(|s| norm * profile(s), [0.0, edge], 0.25 * edge);
         let lost = libm::erfc((-l.ln()).sqrt());
         assert_absolute(1.0 - inside, lost, 1e-8);
     }
@@ -162,7 +152,8 @@ fn the_printed_sampler_misses_light_unless_the_waist_is_on_the_aperture() {
         let hits = |r: f64| shared_area(disc, cone, r) / (PI * disc * disc);
         let expected = integrate(
             |r| TAU * r * hits(r) * beam().irradiance_per_watt(r, z - waist),
-            disc + cone,
+            [0.0, disc + cone],
+            0.01 * (disc + cone),
         );
         assert_absolute(found, expected, 3.9 * error);
         assert_absolute(1.0 - expected, lost, 0.01);

@@ -1,6 +1,7 @@
 use core::f64::consts::TAU;
 
 use proptest::prelude::*;
+use tem00_numerics::cast::to_c64;
 use tem00_testkit::assert_absolute;
 
 use super::*;
@@ -23,10 +24,6 @@ fn drawn(phase: f32) -> Pupil {
         Complex::from_polar(1.0 / (1.0 + 0.02 * place), phase * place)
     });
     Pupil::Sampled(Transmission::from_complex(grid).unwrap())
-}
-
-fn to_c64(z: Complex<f32>) -> Complex<f64> {
-    Complex::new(f64::from(z.re), f64::from(z.im))
 }
 
 /// U(r) by its definition, in `f64`, over a wide square of the lattice.

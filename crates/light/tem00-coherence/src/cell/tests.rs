@@ -5,6 +5,7 @@ use tem00_numerics::{disc_overlap, jinc, quadrature::integrate};
 use tem00_testkit::{assert_absolute, assert_relative};
 
 use super::*;
+use crate::law::tests::direction;
 
 fn geometry() -> CellGeometry {
     CellGeometry {
@@ -14,11 +15,6 @@ fn geometry() -> CellGeometry {
         sin_aperture: 0.025,
         wavelength: 450e-9,
     }
-}
-
-fn direction(degrees: f64) -> DVec3 {
-    let (sin, cos) = degrees.to_radians().sin_cos();
-    DVec3::new(sin, 0.0, cos)
 }
 
 #[test]

@@ -4,17 +4,11 @@ use tem00_testkit::assert_relative;
 use super::*;
 use crate::{
     CellGeometry, PeakShape, PolychromaticSpeckle, Relief, ResolutionCell, Rows, Spectrum,
-    law::tests::of,
+    law::tests::{direction, of},
 };
 
 const WAVELENGTH: f64 = 650e-9;
 const SIN_APERTURE: f64 = 0.02;
-
-/// A direction in the plane of incidence, by its angle to the normal in degrees.
-fn direction(degrees: f64) -> DVec3 {
-    let (sin, cos) = degrees.to_radians().sin_cos();
-    DVec3::new(sin, 0.0, cos)
-}
 
 fn cell(incidence: f64, observation: f64) -> ResolutionCell {
     ResolutionCell::new(CellGeometry {

@@ -7,6 +7,12 @@ use tem00_testkit::{assert_absolute, assert_relative};
 use super::*;
 use crate::{CellGeometry, DVec3, PeakShape, Relief};
 
+/// A direction in the plane of incidence, by its angle to the normal in degrees.
+pub(crate) fn direction(degrees: f64) -> DVec3 {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    DVec3::new(sin, 0.0, cos)
+}
+
 /// A camera of sin u = 0.025 and a source in one plane, by their angles in degrees.
 pub(crate) fn cell(
     wavelength: f64,
@@ -14,10 +20,6 @@ pub(crate) fn cell(
     observation: f64,
     rms_height: f64,
 ) -> ResolutionCell {
-    let direction = |degrees: f64| {
-        let (sin, cos) = degrees.to_radians().sin_cos();
-        DVec3::new(sin, 0.0, cos)
-    };
     let geometry = CellGeometry {
         to_source: direction(incidence),
         to_pupil: direction(observation),

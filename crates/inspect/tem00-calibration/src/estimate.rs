@@ -8,7 +8,7 @@ use crate::{
     Calibration, CalibrationCovariance, CalibrationQuality, CameraModel, Checkerboard, PARAMETERS,
     corners::find_corners,
     covariance::COUNT,
-    least_squares::{Residuals, Solution, minimise},
+    least_squares::{Solution, minimise},
     model::{Bundle, Pose, State},
     perturbation::INTRINSICS,
     plane_fit::{FittedPlane, correlation_factor, without_outliers},
@@ -245,7 +245,7 @@ fn points_of(camera: &Camera, state: &State, positions: &[Vec<DVec2>]) -> Option
 
 fn assemble(
     bundle: &Bundle<'_>,
-    solution: &Solution<State>,
+    solution: &Solution,
     lines: &Lines,
 ) -> Result<Calibration, TriangulationError> {
     let state = &solution.state;
@@ -286,7 +286,7 @@ fn to_board(pose: &Pose) -> Result<RigidMotion, TriangulationError> {
 /// propagated into the plane, and the covariance of the line.
 fn covariance(
     bundle: &Bundle<'_>,
-    solution: &Solution<State>,
+    solution: &Solution,
     lines: &Lines,
 ) -> Option<[[f64; PARAMETERS.len()]; PARAMETERS.len()]> {
     let increments = bundle.increments(&solution.state);

@@ -4,7 +4,6 @@ use tem00_camera::{Camera, CameraDescription, RadialDistortion};
 
 use crate::{
     CameraModel,
-    least_squares::Residuals,
     perturbation::{INTRINSICS, focal_length, tilt_of},
 };
 
@@ -91,12 +90,10 @@ impl Bundle<'_> {
     pub(super) fn camera(&self, state: &State) -> Option<Camera> {
         self.model.camera(&state.intrinsics, FOCUS)
     }
-}
 
-impl Residuals for Bundle<'_> {
-    type State = State;
-
-    fn stepped(&self, state: &State, step: &[f64]) -> State {
+    /// Returns the state changed by a step: a vector, while a state holds rotations, which are
+    /// none.
+    pub(super) fn stepped(&self, state: &State, step: &[f64]) -> State {
         let mut next = state.clone();
         for (&parameter, by) in self.free.iter().zip(step) {
             next.intrinsics[parameter] += by;
@@ -108,7 +105,8 @@ impl Residuals for Bundle<'_> {
         next
     }
 
-    fn residuals(&self, state: &State) -> Option<DVector<f64>> {
+    /// Returns the residuals of all corners, or `None` for a state that is not possible.
+    pub(super) fn residuals(&self, state: &State) -> Option<DVector<f64>> {
         let camera = self.camera(state)?;
         let mut residuals = Vec::with_capacity(2 * self.board.len() * self.images.len());
         for (image, pose) in self.images.iter().zip(&state.poses) {
@@ -120,7 +118,8 @@ impl Residuals for Bundle<'_> {
         Some(DVector::from_vec(residuals))
     }
 
-    fn increments(&self, state: &State) -> DVector<f64> {
+    /// Returns the steps by which derivatives are taken.
+    pub(super) fn increments(&self, state: &State) -> Vec<f64> {
         let image_distance = state.intrinsics[0];
         // The largest tangent in the image, at which distortion shows most.
         let reach = self.model.middle().length() * self.model.pixel_pitch / image_distance;
@@ -137,7 +136,6 @@ impl Residuals for Bundle<'_> {
             [1e-5, 1e-5, 1e-5, shift, shift, shift]
         };
         let camera = self.free.iter().map(increment);
-        let all = camera.chain(state.poses.iter().flat_map(of_pose));
-        DVector::from_vec(all.collect())
+        camera.chain(state.poses.iter().flat_map(of_pose)).collect()
     }
 }

@@ -207,6 +207,29 @@ fn errors_are_as_large_as_their_covariance_says() {
 }
 
 #[test]
+fn corners_that_are_given_twice_count_twice() {
+    let views = noisy(&views(&camera(0.0, RadialDistortion::default()), 3), 0.1, 1);
+    let model = model(false, 0);
+    let variance = |times: usize| {
+        let points = board().points().repeat(times);
+        let corners = views.iter().map(|view| view.corners.repeat(times));
+        let corners: Vec<_> = corners.collect();
+        let bundle = Bundle {
+            model: &model,
+            free: vec![0, 1, 2],
+            board: &points,
+            images: corners.iter().map(Vec::as_slice).collect(),
+        };
+        let solution = minimise(&bundle, best_pinhole(&bundle).unwrap());
+        solution.unwrap().covariance[(0, 0)]
+    };
+    // The sum of squares and the normal matrix are doubled; of 210 and 420 coordinates the camera
+    // and three poses take 21.
+    let expected = (420.0 - 21.0) / (210.0 - 21.0);
+    assert_relative(variance(1) / variance(2), expected, 1e-6);
+}
+
+#[test]
 fn lines_beyond_the_board_and_stray_points_do_not_count() {
     let truth = camera(0.0, RadialDistortion::default());
     let mut views = views(&truth, 6);

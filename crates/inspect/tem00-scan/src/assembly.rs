@@ -70,7 +70,9 @@ impl<'a> Scan<'a> {
             _ => {
                 let first = &frames[0];
                 let correlation = self.measurement.frame_correlation(first, averaging.frames);
-                let profile = averaged_profile(&frames, averaging, &correlation);
+                let profile = averaged_profile(&frames, averaging, |columns, later| {
+                    correlation.between(columns, later)
+                });
                 if !profile.is_empty() {
                     self.correlation.get_or_insert(correlation);
                 }

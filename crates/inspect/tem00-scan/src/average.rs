@@ -7,17 +7,44 @@ use crate::{
     settings::Averaging,
 };
 
-/// Correlation, by speckle, of the line's position in two columns of two frames.
-pub trait SpeckleCorrelation {
-    /// Returns the correlation of the positions in columns that lie `columns` apart, the second in
-    /// the frame `later` frames after the first.
-    fn between(&self, columns: i64, later: u32) -> f64;
-}
-
 /// Averages the profiles of consecutive frames, and neighbouring columns of them, into one.
 ///
 /// Each mean takes the valid points of its columns and frames, the brightest of several in a
-/// column, and carries the uncertainty of a mean of correlated numbers:
+/// column, as [`mean_point`] does.
+pub(crate) fn averaged_profile(
+    frames: &[MeasuredFrame],
+    averaging: Averaging,
+    correlation: impl Fn(i64, u32) -> f64,
+) -> Vec<MeasuredPoint> {
+    let block = |point: &MeasuredPoint| point.seen.column / averaging.columns;
+    let mut members: Vec<Member<'_>> = frames
+        .iter()
+        .flat_map(|frame| brightest_points(frame).map(|point| (frame.frame, point)))
+        .collect();
+    members.sort_by_key(|(frame, point)| (block(point), *frame, point.seen.column));
+    members
+        .chunk_by(|(_, a), (_, b)| block(a) == block(b))
+        .filter_map(|members| mean_point(members, &correlation))
+        .collect()
+}
+
+/// A point and the frame it was seen in.
+type Member<'a> = (u32, &'a MeasuredPoint);
+
+/// Returns the valid points of a frame, the brightest of several in a column.
+fn brightest_points(frame: &MeasuredFrame) -> impl Iterator<Item = &MeasuredPoint> {
+    let columns = frame.points.chunk_by(|a, b| a.seen.column == b.seen.column);
+    columns.filter_map(|points| {
+        let valid = points.iter().filter(|point| point.is_valid());
+        valid.max_by(|a, b| a.seen.reflectance.total_cmp(&b.seen.reflectance))
+    })
+}
+
+/// Returns the mean of points, each with the frame it was seen in, or `None` without any.
+///
+/// `correlation` gives the correlation, by speckle, of the line's position in columns that lie so
+/// many columns apart, the second in a frame so many frames after the first. The mean carries the
+/// uncertainty of a mean of correlated numbers:
 ///
 /// ```text
 /// speckle          Σ u_a u_b ρ_ab / n²      ρ the correlation of the speckle between columns and
@@ -31,46 +58,10 @@ pub trait SpeckleCorrelation {
 /// patterns. The uncertainty does not rely on this, since the motion would have to be known to a
 /// fraction of the line's width.
 ///
-/// With one frame and one column all points are returned as they are.
-pub fn averaged_profile(
-    frames: &[MeasuredFrame],
-    averaging: Averaging,
-    speckle: &impl SpeckleCorrelation,
-) -> Vec<MeasuredPoint> {
-    if let ([frame], 1) = (frames, averaging.columns) {
-        return frame.points.clone();
-    }
-    let block = |point: &MeasuredPoint| point.seen.column / averaging.columns;
-    let mut members: Vec<Member<'_>> = frames
-        .iter()
-        .flat_map(|frame| brightest_points(frame).map(|point| (frame.frame, point)))
-        .collect();
-    members.sort_by_key(|(frame, point)| (block(point), *frame, point.seen.column));
-    members
-        .chunk_by(|(_, a), (_, b)| block(a) == block(b))
-        .filter_map(|members| mean_point(members, speckle))
-        .collect()
-}
-
-/// A point and the frame it was seen in.
-type Member<'a> = (u32, &'a MeasuredPoint);
-
-/// Returns the valid points of a frame, the brightest of several in a column.
-pub fn brightest_points(frame: &MeasuredFrame) -> impl Iterator<Item = &MeasuredPoint> {
-    let columns = frame.points.chunk_by(|a, b| a.seen.column == b.seen.column);
-    columns.filter_map(|points| {
-        let valid = points.iter().filter(|point| point.is_valid());
-        valid.max_by(|a, b| a.seen.reflectance.total_cmp(&b.seen.reflectance))
-    })
-}
-
-/// Returns the mean of points, each with the frame it was seen in, or `None` without any.
-///
-/// It carries the uncertainty of a mean of correlated numbers, as [`averaged_profile`] says; its
-/// other values are means, too, or the values of the middle point.
+/// Its other values are means, too, or the values of the middle point.
 pub fn mean_point(
     members: &[(u32, &MeasuredPoint)],
-    speckle: &impl SpeckleCorrelation,
+    correlation: impl Fn(i64, u32) -> f64,
 ) -> Option<MeasuredPoint> {
     let (_, middle) = members.get(members.len() / 2)?;
     let count = members.len() as f64;
@@ -84,7 +75,7 @@ pub fn mean_point(
     seen.reflectance = points().map(|point| point.seen.reflectance).sum::<f64>() / count;
     seen.point.position = points().map(|p| p.seen.point.position).sum::<DVec3>() / count;
     mean.calibration = points().fold(DMat3::ZERO, |sum, p| sum + p.calibration) * count.recip();
-    mean.noise = mean_noise(members, speckle);
+    mean.noise = mean_noise(members, correlation);
     // An error that neighbours and frames share.
     mean.indirect = IndirectLight {
         fraction: points().map(|point| point.indirect.fraction).sum::<f64>() / count,
@@ -104,7 +95,7 @@ fn seen_per_pixel(point: &MeasuredPoint) -> DVec3 {
 }
 
 /// The noise of the mean of the positions of several points.
-fn mean_noise(members: &[Member<'_>], speckle: &impl SpeckleCorrelation) -> PositionNoise {
+fn mean_noise(members: &[Member<'_>], correlation: impl Fn(i64, u32) -> f64) -> PositionNoise {
     let squared_count = (members.len() as f64).powi(2);
     let mut sum = PositionNoise::default();
     for (_, point) in members {
@@ -122,7 +113,7 @@ fn mean_noise(members: &[Member<'_>], speckle: &impl SpeckleCorrelation) -> Posi
                 -columns
             };
             let later = frame_a.abs_diff(*frame_b);
-            let law = speckle.between(apart, later);
+            let law = correlation(apart, later);
             let rho = if later == 0 { law } else { law.max(0.0) };
             sum.speckle += rho * (one.speckle * other.speckle).sqrt();
             if columns == 0 {

@@ -1,5 +1,3 @@
-use crate::average::SpeckleCorrelation;
-
 /// The correlation of a line's position over columns, for each number of frames between.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameCorrelation {
@@ -29,7 +27,7 @@ impl FrameCorrelation {
     /// N_eff = N² / Σ max(0, ρ(|a − b|))
     /// ```
     ///
-    /// As in a [mean](crate::averaged_profile), no gain is counted from frames that err the
+    /// As in a [mean](crate::mean_point), no gain is counted from frames that err the
     /// opposite way.
     pub fn effective_frames(&self, frames: u32) -> f64 {
         let pairs = (1..frames).map(|later| {
@@ -39,10 +37,10 @@ impl FrameCorrelation {
         let sum = f64::from(frames) * self.between(0, 0) + pairs.sum::<f64>();
         f64::from(frames) * f64::from(frames) / sum.max(1.0)
     }
-}
 
-impl SpeckleCorrelation for FrameCorrelation {
-    fn between(&self, columns: i64, later: u32) -> f64 {
+    /// Returns the correlation of the positions in columns that lie `columns` apart, the second in
+    /// the frame `later` frames after the first.
+    pub fn between(&self, columns: i64, later: u32) -> f64 {
         let table = usize::try_from(later).ok().and_then(|n| self.tables.get(n));
         let Some(table) = table else { return 0.0 };
         let middle = i64::try_from(table.len() / 2).unwrap_or(i64::MAX);

@@ -41,7 +41,7 @@ mod tests;
 
 pub use self::{
     assembly::{Scan, ScannedPart},
-    average::{SpeckleCorrelation, averaged_profile, brightest_points, mean_point},
+    average::mean_point,
     boards::{BoardPlan, calibrate_scene},
     error::ScanError,
     exposure::{Exposure, WHITE_LIGHT_WAVELENGTH},

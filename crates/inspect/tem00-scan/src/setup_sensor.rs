@@ -17,9 +17,8 @@ use tem00_tracer::{Filter, Keyframe, RenderOptions, Scene, TracerError, Trajecto
 use tem00_triangulation::{LineImage, Setup};
 
 use crate::{
-    Averaging, Exposure, MeasuredFrame, Measurement, MeasurementScene, ScanError, ScanSettings,
-    average::{SpeckleCorrelation, averaged_profile, brightest_points},
-    setup_scene,
+    Averaging, Exposure, MeasuredFrame, MeasuredPoint, Measurement, MeasurementScene, ScanError,
+    ScanSettings, average::averaged_profile, setup_scene,
 };
 
 /// The depth of grooves, as a fraction of the height that moves the line by its own thickness.
@@ -226,18 +225,13 @@ impl<'a> SetupSensor<'a> {
     fn points(&self, frame: &MeasuredFrame) -> Vec<SurfacePoint> {
         let columns = self.setup.description().average.columns as usize;
         let averaging = Averaging { frames: 1, columns };
-        let averaged;
-        let points: Vec<_> = if columns == 1 {
-            brightest_points(frame).collect()
-        } else {
-            averaged = averaged_profile(core::slice::from_ref(frame), averaging, &Uncorrelated);
-            averaged.iter().collect()
-        };
-        let point = |measured: &&crate::MeasuredPoint| SurfacePoint {
+        // Positions do not depend on the correlation.
+        let points = averaged_profile(core::slice::from_ref(frame), averaging, |_, _| 0.0);
+        let point = |measured: MeasuredPoint| SurfacePoint {
             column: measured.seen.column / columns,
             position: measured.position,
         };
-        points.iter().map(point).collect()
+        points.into_iter().map(point).collect()
     }
 }
 
@@ -282,15 +276,6 @@ impl ProfileSensor for SetupSensor<'_> {
             }
         }
         Ok(profiles)
-    }
-}
-
-/// Speckle whose correlation is not used: positions do not depend on it.
-struct Uncorrelated;
-
-impl SpeckleCorrelation for Uncorrelated {
-    fn between(&self, columns: i64, later: u32) -> f64 {
-        f64::from(columns == 0 && later == 0)
     }
 }
 

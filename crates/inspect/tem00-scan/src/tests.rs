@@ -7,11 +7,7 @@ use tem00_testkit::{assert_absolute, assert_relative, refuses, rows};
 use tem00_tracer::{Environment, Light, RigidMotion, Rotation, Trajectory};
 use tem00_triangulation::{SensorDescription, Validity};
 
-use crate::{
-    average::{SpeckleCorrelation, mean_point},
-    testing::point,
-    *,
-};
+use crate::{testing::point, *};
 
 mod maps;
 mod scenes;
@@ -290,15 +286,6 @@ fn light_that_met_a_second_wall_moves_a_line_by_what_is_stated() {
     }
 }
 
-/// A correlation by the distance in columns and frames.
-struct Law(fn(i64, u32) -> f64);
-
-impl SpeckleCorrelation for Law {
-    fn between(&self, columns: i64, later: u32) -> f64 {
-        self.0(columns, later)
-    }
-}
-
 #[test]
 fn a_mean_is_as_uncertain_as_its_correlations_say() {
     let mut points = [point(0, DVec3::ZERO), point(1, 2e-3 * DVec3::Z)];
@@ -310,8 +297,8 @@ fn a_mean_is_as_uncertain_as_its_correlations_say() {
         .flat_map(|&f| points.iter().map(move |p| (f, p)))
         .collect();
     // It falls to a half from column to column, and to a quarter from frame to frame.
-    let halving = Law(|columns, later| 0.5_f64.powf(columns.abs() as f64 + 2.0 * f64::from(later)));
-    let mean = mean_point(&members, &halving).unwrap();
+    let halving = |columns: i64, later| 0.5_f64.powf(columns.abs() as f64 + 2.0 * f64::from(later));
+    let mean = mean_point(&members, halving).unwrap();
     assert!((mean.position - 1e-3 * DVec3::Z).length() < 1e-18);
     // Sum of ρ: (2 + 2 · 1/2) within a frame, twice, and the same times 1/4 between them, twice.
     assert_absolute(mean.noise.speckle, 0.04 * 7.5 / 16.0, 1e-15);
@@ -327,8 +314,8 @@ fn a_mean_is_as_uncertain_as_its_correlations_say() {
 fn a_mean_is_not_better_than_one_over_independent_frames() {
     let points = point(0, DVec3::ZERO);
     // Frames whose errors are opposite.
-    let opposite = Law(|_, later| if later == 0 { 1.0 } else { -0.9 });
-    let mean = mean_point(&[(0, &points), (1, &points)], &opposite).unwrap();
+    let opposite = |_, later| if later == 0 { 1.0 } else { -0.9 };
+    let mean = mean_point(&[(0, &points), (1, &points)], opposite).unwrap();
     assert_absolute(mean.noise.speckle, 0.04 / 2.0, 1e-15);
     let law = FrameCorrelation::new(vec![vec![1.0], vec![-0.9], vec![0.5]]);
     // Three frames, of which the first and the last are correlated: 9 / (3 + 2 · 1/2).

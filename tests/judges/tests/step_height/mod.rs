@@ -4,9 +4,7 @@
 mod step_artefact;
 
 use step_artefact::{PLATES, STEP, measure, measured_frame, prepare, scene, step};
-use tem00::scan::{
-    Averaging, MeasuredFrame, MeasuredPoint, MeasurementScene, Scan, SpeckleCorrelation,
-};
+use tem00::scan::{Averaging, MeasuredFrame, MeasuredPoint, MeasurementScene, Scan};
 use tem00::tracer::Trajectory;
 use tem00::triangulation::DVec3;
 use tem00_testkit::assert_absolute;

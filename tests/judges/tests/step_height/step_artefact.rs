@@ -57,7 +57,10 @@ fn plate(
         .filter(|point| point.is_valid() && columns.contains(&point.seen.column))
         .map(|point| (frame.frame, point))
         .collect();
-    mean_point(&points, &correlation).expect("the line crosses the plate")
+    let mean = mean_point(&points, |columns, later| {
+        correlation.between(columns, later)
+    });
+    mean.expect("the line crosses the plate")
 }
 
 /// The height of the step and its standard uncertainty, in metres.

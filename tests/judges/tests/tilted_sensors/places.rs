@@ -1,6 +1,6 @@
 //! The places of a line, from frame to frame.
 
-use tem00::scan::{Exposure, SpeckleCorrelation};
+use tem00::scan::Exposure;
 
 use super::setting::{Prepared, Ratio, SIZE, Setting};
 

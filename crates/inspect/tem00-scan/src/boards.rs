@@ -1,7 +1,5 @@
 mod render;
 
-pub use self::render::calibrate_scene;
-
 use std::sync::Arc;
 
 use glam::{DMat3, DVec2, DVec3};

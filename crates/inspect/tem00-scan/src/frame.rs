@@ -254,7 +254,7 @@ impl NoiseFreeFrame {
     fn of(context: &FrameContext<'_>, exposure: &Exposure) -> Self {
         let sensor = context.sensor.description();
         let dark = context.sensor.dark_electrons();
-        let largest = f64::from((1_u32 << sensor.bit_depth) - 1);
+        let largest = sensor.largest_value();
         let grey_value = |electrons: f32| {
             let charge = (f64::from(electrons) + dark).min(sensor.full_well);
             to_f32((sensor.black_level + sensor.gain * charge).min(largest))

@@ -4,8 +4,8 @@
 //!
 //! A [`MeasurementScene`] is read from a scene file with the sections `[sensor]`, `[detector]`,
 //! `[calibration]` and `[scan]`. A [`Measurement`] of it gives a [`MeasuredFrame`] per frame, a
-//! [`Scan`] puts them together, and a [`HeightMap`] lays them out. [`calibrate_scene`] renders and
-//! evaluates boards.
+//! [`Scan`] puts them together, and a [`HeightMap`] lays them out. A [`BoardPlan`] renders boards and
+//! calibrates with them.
 //!
 //! # Conventions
 //!
@@ -42,14 +42,13 @@ mod tests;
 pub use self::{
     assembly::{Scan, ScannedPart},
     average::mean_point,
-    boards::{BoardPlan, calibrate_scene},
+    boards::BoardPlan,
     error::ScanError,
     exposure::{Exposure, WHITE_LIGHT_WAVELENGTH},
     frame::{IndirectLight, MeasuredFrame, MeasuredPoint},
     frame_correlation::FrameCorrelation,
     height_map::{HeightMap, Raster},
     measurement::Measurement,
-    motion::ScanMotion,
     point_cloud::{write_pcd, write_ply},
     quantised::QuantisedGrid,
     scene::MeasurementScene,

@@ -118,11 +118,6 @@ impl Measurement {
         &self.calibration
     }
 
-    /// Returns the motion of the scan.
-    pub const fn motion(&self) -> &ScanMotion {
-        &self.motion
-    }
-
     /// Returns how the frames are put together.
     pub const fn settings(&self) -> &ScanSettings {
         &self.scan
@@ -338,7 +333,6 @@ fn variance(speckle: &SurfaceSpeckle) -> f64 {
 fn saturation(sensor: &SensorDescription) -> f64 {
     let noise = 4.0 * sensor.dark_noise.hypot(sensor.dsnu);
     let full = sensor.black_level + sensor.gain * (sensor.full_well - noise);
-    let largest = f64::from((1_u32 << sensor.bit_depth) - 1);
     // A well that holds no more than its noise cannot be told from a full one.
-    largest.min(full.max(1.0))
+    sensor.largest_value().min(full.max(1.0))
 }

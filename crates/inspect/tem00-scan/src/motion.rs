@@ -7,7 +7,7 @@ use crate::ScanError;
 /// The head is the camera with its laser. Points that it measures are moved to the place of the
 /// part in its description, so that the profiles of all frames fit together.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ScanMotion {
+pub(crate) struct ScanMotion {
     part: Trajectory,
     head: Trajectory,
     /// The surfaces that belong to the part.
@@ -21,7 +21,7 @@ impl ScanMotion {
     ///
     /// Returns an error if no surface has the name, if surfaces move differently and none is named,
     /// or if camera and laser do not move as one head.
-    pub fn of_scene(scene: &Scene, surface: Option<&str>) -> Result<Self, ScanError> {
+    pub(crate) fn of_scene(scene: &Scene, surface: Option<&str>) -> Result<Self, ScanError> {
         let surfaces = match surface {
             Some(name) => named(scene, name)?,
             None => moving(scene)?,
@@ -39,25 +39,20 @@ impl ScanMotion {
 
     /// Returns the indices of the surfaces that belong to the part; all surfaces of a scene where
     /// none moves.
-    pub fn surfaces(&self) -> &[usize] {
+    pub(crate) fn surfaces(&self) -> &[usize] {
         &self.surfaces
     }
 
     /// Returns the motion that takes points that the head sees in a frame, in the coordinates of
     /// the head as the scene describes it, to the part as the scene describes it.
-    pub fn to_part(&self, frame: u32) -> RigidMotion {
+    pub(crate) fn to_part(&self, frame: u32) -> RigidMotion {
         let world = self.head.pose_at(frame);
         world.then(&self.part.pose_at(frame).inverse())
     }
 
     /// Returns the motion of the head from where the scene describes it to a frame.
-    pub fn head_at(&self, frame: u32) -> RigidMotion {
+    pub(crate) fn head_at(&self, frame: u32) -> RigidMotion {
         self.head.pose_at(frame)
-    }
-
-    /// Returns whether part and head stay where they are.
-    pub fn is_still(&self) -> bool {
-        self.part.is_still() && self.head.is_still()
     }
 }
 

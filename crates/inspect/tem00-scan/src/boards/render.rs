@@ -1,6 +1,6 @@
 use std::sync::atomic::AtomicBool;
 
-use tem00_calibration::{BoardSettings, BoardView, Calibration, CameraModel, calibrate};
+use tem00_calibration::{BoardView, Calibration, CameraModel, calibrate};
 use tem00_engine::{SpeckleModel, SpecklePlan, render_frame};
 use tem00_numerics::{
     Grid,
@@ -123,22 +123,6 @@ impl BoardPlan {
     }
 }
 
-/// Estimates camera and laser plane of a scene from rendered images of boards, in the coordinates
-/// of the scene; see [`BoardPlan`].
-///
-/// # Errors
-///
-/// Returns the errors of [`BoardPlan::new`] and [`BoardPlan::calibrate`].
-pub fn calibrate_scene(
-    scene: &Scene,
-    (sensor, detector): (&Sensor, &LineDetector),
-    settings: &BoardSettings,
-    progress: &(dyn Fn(u64) + Sync),
-    cancel: &AtomicBool,
-) -> Result<Calibration, ScanError> {
-    BoardPlan::new(scene, settings)?.calibrate(sensor, detector, progress, cancel)
-}
-
 /// Renders a scene and returns the mean electrons of its pixels.
 fn electrons(
     scene: &Scene,
@@ -165,7 +149,7 @@ fn scaled(electrons: &Grid<f32>, sensor: &Sensor) -> Grid<f32> {
     let brighter = to_usize(BRIGHTER * values.len() as f64);
     let (_, bright, _) = values.select_nth_unstable_by(brighter, |a, b| b.total_cmp(a));
     let description = sensor.description();
-    let scale = f64::from(description.bit_depth).exp2() - 1.0 - description.black_level;
+    let scale = description.largest_value() - description.black_level;
     let full = description.full_well.min(scale / description.gain);
     let factor = to_f32(AIM * full / f64::from(bright.max(f32::MIN_POSITIVE)));
     electrons.map(|value| value * factor)

@@ -195,7 +195,8 @@ impl FrameContext<'_> {
         let light = column.light();
         let sensor = self.sensor.description();
         let still = speckle.column(pixel);
-        let variance = speckle_covariance(sensor, still.as_ref(), [&light, &light], [0.0; 2]);
+        let still = |apart| still.covariance(apart);
+        let variance = speckle_covariance(sensor, still, [&light, &light], [0.0; 2]);
         if variance <= 0.0 {
             return vec![1.0];
         }
@@ -210,7 +211,8 @@ impl FrameContext<'_> {
         };
         let covariance = |columns: f64| {
             let apart = [columns - moved.x, -moved.y];
-            let left = speckle_covariance(sensor, table.as_ref(), [&light, &light], apart);
+            let table = |apart| table.covariance(apart);
+            let left = speckle_covariance(sensor, table, [&light, &light], apart);
             change.correlation * left
         };
         let reach = table.columns() as f64 + moved.x.abs().ceil().min(FARTHEST);
@@ -314,7 +316,12 @@ impl NoiseFreeFrame {
         let sensor = context.sensor.description();
         let column = self.column(context, seen);
         let speckle = context.speckle.map(|speckle| speckle.column(seen.pixel));
-        PositionNoise::of_column(sensor, &speckle.as_deref(), &column.light())
+        let covariance = |apart| {
+            speckle
+                .as_ref()
+                .map_or(0.0, |speckle| speckle.covariance(apart))
+        };
+        PositionNoise::of_column(sensor, covariance, &column.light())
     }
 
     /// Returns the line that there would be without noise at the position of a point, if any.

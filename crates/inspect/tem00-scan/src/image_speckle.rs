@@ -134,7 +134,6 @@ fn speckles_per_pixel(camera: &Camera, pixel: DVec2, wavelength: f64) -> Option<
 mod tests {
     use glam::DVec3;
     use tem00_camera::{CameraDescription, RadialDistortion, SensorTilt};
-    use tem00_triangulation::PixelCovariance;
 
     use super::*;
 

@@ -3,7 +3,6 @@ use tem00_numerics::cast::to_usize;
 use tem00_numerics::parallel;
 
 use crate::sensor_speckle::SensorSpeckle;
-use tem00_triangulation::PixelCovariance;
 
 /// Covariance of the speckle in the pixels of a sensor, for displacements that are whole pixels
 /// apart from each other.
@@ -108,11 +107,10 @@ impl SpeckleTable {
             .contains(&steps)
             .then(|| to_usize(steps))
     }
-}
 
-impl PixelCovariance for SpeckleTable {
-    /// Returns the covariance; 0 beyond 12 speckle sizes.
-    fn covariance(&self, displacement: [f64; 2]) -> f64 {
+    /// Returns the covariance of the speckle factors of two pixels, a displacement in pixels apart;
+    /// 0 beyond 12 speckle sizes.
+    pub(super) fn covariance(&self, displacement: [f64; 2]) -> f64 {
         let [column, row] = [0, 1].map(|axis| self.index(axis, displacement[axis]));
         match (column, row) {
             (Some(column), Some(row)) => self.values[row * (2 * self.reach[0] + 1) + column],

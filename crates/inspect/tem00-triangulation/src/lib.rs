@@ -42,9 +42,7 @@ pub use file::{
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
 pub use line_image::{LineImage, LineImageData};
 pub use measurement::{Measurement, MeasurementInput, SetupUncertainty, VirtualExperiment};
-pub use position_noise::{
-    ColumnLight, ColumnSpeckle, PixelCovariance, PositionNoise, speckle_covariance,
-};
+pub use position_noise::{ColumnLight, PositionNoise, speckle_covariance};
 pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
 pub use setup::{
     Averages, BandwidthEffect, HeightRange, ImagedLine, LaserLineData, LightLevel, QuantityUnit,

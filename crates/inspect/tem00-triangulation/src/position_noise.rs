@@ -1,6 +1,3 @@
-use tem00_numerics::cast::to_usize;
-use tem00_statistics::laws::PixelAutocovariance;
-
 use crate::SensorDescription;
 
 /// Variances of the position of a line along a column, source by source, in square pixels.
@@ -54,61 +51,26 @@ pub struct ColumnLight<'a> {
     pub sensitivities: &'a [f64],
 }
 
-/// Covariance of the speckle in two pixels.
-pub trait PixelCovariance {
-    /// Returns the covariance of the speckle factors of two pixels, a displacement in pixels apart:
-    /// C² c, at no displacement the square of the contrast in a pixel.
-    fn covariance(&self, displacement: [f64; 2]) -> f64;
-}
-
-impl<C: PixelCovariance> PixelCovariance for &C {
-    fn covariance(&self, displacement: [f64; 2]) -> f64 {
-        (**self).covariance(displacement)
-    }
-}
-
-impl<C: PixelCovariance> PixelCovariance for Option<C> {
-    /// Returns 0 without speckle.
-    fn covariance(&self, displacement: [f64; 2]) -> f64 {
-        self.as_ref()
-            .map_or(0.0, |speckle| speckle.covariance(displacement))
-    }
-}
-
-/// The speckle in the pixels of one column.
-#[derive(Clone, Copy, Debug)]
-pub struct ColumnSpeckle<'a> {
-    /// Its covariance for one polarised pattern.
-    pub autocovariance: &'a PixelAutocovariance,
-    /// The variance of the speckle factor in a point: (1 + P²)/2 divided by the number of patterns,
-    /// for light of the degree of polarisation P.
-    pub variance: f64,
-}
-
-impl PixelCovariance for ColumnSpeckle<'_> {
-    /// Returns the covariance of two pixels of the column, a whole number of rows apart.
-    fn covariance(&self, [_, rows]: [f64; 2]) -> f64 {
-        let lag = to_usize(rows.abs().round());
-        self.variance * self.autocovariance.covariance(lag)
-    }
-}
-
 impl PositionNoise {
     /// Returns the variances of the position of a line in a column.
+    ///
+    /// `covariance` gives the covariance of the speckle factors of two pixels, a displacement in
+    /// pixels to the right and down apart: C² c, at no displacement the square of the contrast in a
+    /// pixel.
     ///
     /// # Panics
     ///
     /// Panics unless the three slices of `column` have one length.
     pub fn of_column(
         sensor: &SensorDescription,
-        speckle: &impl PixelCovariance,
+        covariance: impl Fn([f64; 2]) -> f64,
         column: &ColumnLight<'_>,
     ) -> Self {
         column.check();
         let dark =
             sensor.dark_noise * sensor.dark_noise + sensor.dark_current * sensor.exposure_time;
         let mut noise = Self {
-            speckle: speckle_covariance(sensor, speckle, [column, column], [0.0; 2]),
+            speckle: speckle_covariance(sensor, covariance, [column, column], [0.0; 2]),
             ..Self::default()
         };
         let gain_squared = sensor.gain * sensor.gain;
@@ -124,20 +86,10 @@ impl PositionNoise {
         noise
     }
 
-    /// Returns the variance that is new in every frame and every column: shot noise, dark noise and
-    /// quantisation.
-    pub const fn temporal(&self) -> f64 {
-        self.shot + self.dark + self.quantisation
-    }
-
-    /// Returns the variance that stays the same from frame to frame: PRNU and DSNU.
-    pub const fn fixed_pattern(&self) -> f64 {
-        self.prnu + self.dsnu
-    }
-
     /// Returns the variance of the position, all terms together.
     pub const fn total(&self) -> f64 {
-        self.speckle + self.temporal() + self.fixed_pattern()
+        let temporal = self.shot + self.dark + self.quantisation;
+        self.speckle + temporal + (self.prnu + self.dsnu)
     }
 
     /// Returns every term, multiplied by a factor.
@@ -164,14 +116,15 @@ impl PositionNoise {
 ///
 /// `displacement` leads from the pattern in the first column to that in the second, in pixels to
 /// the right and down: for two columns of one image, their distance; for two frames, the motion of
-/// the pattern in between.
+/// the pattern in between. `covariance` is the covariance of two pixels of the pattern, as for
+/// [`PositionNoise::of_column`].
 ///
 /// # Panics
 ///
 /// Panics unless the slices of each column have one length.
 pub fn speckle_covariance(
     sensor: &SensorDescription,
-    speckle: &impl PixelCovariance,
+    covariance: impl Fn([f64; 2]) -> f64,
     columns: [&ColumnLight<'_>; 2],
     displacement: [f64; 2],
 ) -> f64 {
@@ -181,7 +134,7 @@ pub fn speckle_covariance(
         .flat_map(|a| second.iter().map(move |b| (a, b)))
         .map(|(&(row_a, a), &(row_b, b))| {
             let [right, down] = displacement;
-            a * b * speckle.covariance([right, row_b - row_a + down])
+            a * b * covariance([right, row_b - row_a + down])
         })
         .sum();
     sensor.gain * sensor.gain * sum

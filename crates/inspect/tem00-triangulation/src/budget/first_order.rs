@@ -3,8 +3,8 @@ use tem00_statistics::laws::{PixelAutocovariance, PixelColumn};
 
 use super::{BudgetTerm, ErrorDistribution, Evaluation, UncertaintySource};
 use crate::{
-    ColumnLight, ColumnSpeckle, ImagedLine, LinePoint, PositionNoise, Setup, SetupDescription,
-    setup::LineProfile, speckle_covariance,
+    ColumnLight, ImagedLine, LinePoint, PositionNoise, Setup, SetupDescription, setup::LineProfile,
+    speckle_covariance,
 };
 
 /// The positions of the line within a pixel over which the noise is averaged.
@@ -154,10 +154,7 @@ fn position_noise(
 ) -> Option<PositionNoise> {
     let d = setup.description();
     let autocovariance = autocovariance(d, line)?;
-    let speckle = Some(ColumnSpeckle {
-        autocovariance: &autocovariance,
-        variance: 1.0,
-    });
+    let speckle = |[_, rows]: [f64; 2]| autocovariance.covariance(to_usize(rows.abs().round()));
     let mut sum = PositionNoise::default();
     let mut of_all_light = 0.0;
     for phase in 0..PHASES {
@@ -167,11 +164,11 @@ fn position_noise(
         let point = column.found(setup)?;
         let by_detector = setup.detector().sensitivities(&column.values, &point);
         let light = column.light(&by_detector);
-        let noise = PositionNoise::of_column(&d.sensor, &speckle, &light);
+        let noise = PositionNoise::of_column(&d.sensor, speckle, &light);
         sum = sum.with(noise, |sum, term| sum + term);
         let by_centroid = column.centroid_sensitivities(d.sensor.gain);
         let light = column.light(&by_centroid);
-        of_all_light += speckle_covariance(&d.sensor, &speckle, [&light; 2], [0.0; 2]);
+        of_all_light += speckle_covariance(&d.sensor, speckle, [&light; 2], [0.0; 2]);
     }
     let mean = sum.scaled(1.0 / f64::from(PHASES));
     // The law is that of a Gaussian line.

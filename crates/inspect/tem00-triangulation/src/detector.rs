@@ -97,13 +97,6 @@ impl LineDetector {
         self.find(&turned(image), Some(&turned(saturated)))
     }
 
-    /// Finds the lines of an image in which they run from top to bottom, as
-    /// [`detect`](Self::detect) does: for each *row* the points on them, from the left, with
-    /// positions along x.
-    pub fn detect_rows(&self, image: &Grid<f32>) -> Vec<Vec<LinePoint>> {
-        self.find(image, None)
-    }
-
     /// Finds the lines of an image in its rows, some of whose pixels may be marked as saturated.
     fn find(&self, image: &Grid<f32>, saturated: Option<&Grid<bool>>) -> Vec<Vec<LinePoint>> {
         let kernels = match self.settings.method {

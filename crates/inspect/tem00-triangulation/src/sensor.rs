@@ -5,8 +5,6 @@ mod response;
 #[cfg(test)]
 mod tests;
 
-use tem00_numerics::{Grid, cast::to_f32};
-
 use crate::TriangulationError;
 
 pub use description::SensorDescription;
@@ -84,13 +82,6 @@ impl Sensor {
     /// irradiance on the sensor in W/m² at a vacuum wavelength in metres: `μ_e = η μ_p`.
     pub fn electrons(&self, irradiance: f64, wavelength: f64) -> f64 {
         self.description.quantum_efficiency * self.photons(irradiance, wavelength)
-    }
-
-    /// Returns the mean numbers of electrons that light frees in all pixels, for their irradiance
-    /// in W/m² at a vacuum wavelength in metres.
-    pub fn electron_image(&self, irradiance: &Grid<f32>, wavelength: f64) -> Grid<f32> {
-        let per_irradiance = self.electrons(1.0, wavelength);
-        irradiance.map(|&e| to_f32(per_irradiance * f64::from(e)))
     }
 
     /// Returns the mean number of electrons of the dark current in a pixel during the exposure.

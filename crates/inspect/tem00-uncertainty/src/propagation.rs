@@ -167,12 +167,8 @@ impl Propagation {
 
     /// Returns the requested coverage interval.
     pub fn interval(&self) -> CoverageInterval {
-        self.interval_of(self.options.interval)
-    }
-
-    /// Returns a coverage interval of the requested probability.
-    pub fn interval_of(&self, kind: IntervalKind) -> CoverageInterval {
-        CoverageInterval::of_sorted(&self.values, self.options.probability, kind)
+        let (probability, kind) = (self.options.probability, self.options.interval);
+        CoverageInterval::of_sorted(&self.values, probability, kind)
     }
 
     /// Returns all values of the model, from the smallest to the largest.

@@ -23,16 +23,6 @@ impl RawFrame {
         self.saturated.values().iter().filter(|&&is| is).count()
     }
 
-    /// Returns the number of pixels whose grey value is 0: the black level is too low for their
-    /// noise.
-    pub fn pixels_at_zero(&self) -> usize {
-        self.values
-            .values()
-            .iter()
-            .filter(|&&value| value == 0)
-            .count()
-    }
-
     /// Returns the largest grey value that the bits allow, in DN.
     pub fn largest_value(&self) -> u16 {
         let unused = 16_u32.saturating_sub(self.bit_depth);

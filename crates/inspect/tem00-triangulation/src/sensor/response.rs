@@ -1,4 +1,4 @@
-use super::{PLANCK_TIMES_LIGHT, Sensor};
+use super::Sensor;
 
 /// The variance of the error of rounding to whole grey values, in DN².
 const QUANTISATION: f64 = 1.0 / 12.0;
@@ -67,16 +67,6 @@ impl Sensor {
     /// Returns the dynamic range: saturation over the absolute sensitivity threshold.
     pub fn dynamic_range(&self) -> f64 {
         self.saturation_electrons() / self.threshold_electrons()
-    }
-
-    /// Returns the energy of the photons of one electron, in joules, at a vacuum wavelength in
-    /// metres.
-    ///
-    /// ```text
-    /// h c / (λ η)
-    /// ```
-    pub fn energy_per_electron(&self, wavelength: f64) -> f64 {
-        PLANCK_TIMES_LIGHT / (wavelength * self.description().quantum_efficiency)
     }
 
     /// Returns the grey value from which on a pixel may be saturated, in DN: the grey value of a

@@ -23,7 +23,7 @@ pub use camera_model::CameraModel;
 pub use corners::find_corners;
 pub use covariance::{CalibrationCovariance, PARAMETERS, Parameter};
 pub use estimate::{BoardView, calibrate};
-pub use settings::{BoardSettings, CalibrationMethod, CalibrationSettings, read_calibration};
+pub use settings::{BoardSettings, CalibrationSettings, read_calibration};
 
 /// The positions and directions of this crate.
 pub use glam::{DMat3, DVec2, DVec3};

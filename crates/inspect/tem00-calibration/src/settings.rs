@@ -1,34 +1,17 @@
-use std::path::PathBuf;
-
 use tem00_config::{Document, LENGTH, Problem, Section};
 
 /// The keys of the section `[calibration]`.
-const KEYS: &[&str] = &[
-    "method",
-    "uncertainty",
-    "corners",
-    "square_size",
-    "boards",
-    "folder",
-];
+const KEYS: &[&str] = &["method", "uncertainty", "corners", "square_size", "boards"];
 
 /// Calibration of camera and laser plane, as a file gives it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct CalibrationSettings {
-    /// The origin of the calibration.
-    pub method: CalibrationMethod,
+    /// The boards from whose images the calibration is estimated; `None` for camera and laser plane
+    /// as in the file, without error.
+    pub boards: Option<BoardSettings>,
     /// The standard uncertainty of a height, in metres, that the calibration has from other
     /// sources.
     pub uncertainty: f64,
-}
-
-/// Origin of the calibration of camera and laser plane.
-#[derive(Clone, Debug, PartialEq)]
-pub enum CalibrationMethod {
-    /// Camera and laser plane as in the file, without error.
-    Exact,
-    /// From images of a checkerboard and of the line on it.
-    Estimated(BoardSettings),
 }
 
 /// The images of a checkerboard from which a calibration is estimated.
@@ -40,17 +23,6 @@ pub struct BoardSettings {
     pub square: Option<f64>,
     /// The number of boards that are rendered.
     pub boards: usize,
-    /// The folder with the images of real boards; `None` to render them.
-    pub folder: Option<PathBuf>,
-}
-
-impl Default for CalibrationSettings {
-    fn default() -> Self {
-        Self {
-            method: CalibrationMethod::Exact,
-            uncertainty: 0.0,
-        }
-    }
 }
 
 impl Default for BoardSettings {
@@ -59,7 +31,6 @@ impl Default for BoardSettings {
             corners: [9, 6],
             square: None,
             boards: 12,
-            folder: None,
         }
     }
 }
@@ -79,14 +50,14 @@ pub fn read_calibration(document: &Document<'_>) -> Result<CalibrationSettings, 
     let uncertainty = section.or("uncertainty", 0.0, |value| {
         value.within(&LENGTH, 0.0.., "a standard uncertainty of 0 or more")
     })?;
-    let method = if estimated {
-        CalibrationMethod::Estimated(boards(&section)?)
+    let boards = if estimated {
+        Some(boards(&section)?)
     } else {
         refuse_boards(&section)?;
-        CalibrationMethod::Exact
+        None
     };
     Ok(CalibrationSettings {
-        method,
+        boards,
         uncertainty,
     })
 }
@@ -106,15 +77,10 @@ fn boards(section: &Section<'_>) -> Result<BoardSettings, Problem> {
     let square = section
         .optional("square_size")
         .map(|value| value.positive(&LENGTH));
-    let folder = section
-        .optional("folder")
-        .map(|value| value.string())
-        .transpose()?;
     Ok(BoardSettings {
         corners,
         square: square.transpose()?,
         boards: number(section.or("boards", 12, |value| value.integer(3..=1000))?),
-        folder: folder.map(|name| section.beside(name)),
     })
 }
 
@@ -153,7 +119,7 @@ mod tests {
     };
 
     fn read(text: &str) -> Result<CalibrationSettings, String> {
-        parse_document(text, Path::new("folder"), FORMAT, read_calibration)
+        parse_document(text, Path::new("."), FORMAT, read_calibration)
             .map_err(|error| format!("{:?} {error}", error.line_column()))
     }
 
@@ -161,22 +127,20 @@ mod tests {
     fn without_a_section_the_calibration_is_exact() {
         assert_eq!(read("").unwrap(), CalibrationSettings::default());
         let known = read("[calibration]\nuncertainty = \"2 um\"").unwrap();
-        assert_eq!(known.method, CalibrationMethod::Exact);
+        assert_eq!(known.boards, None);
         assert!((known.uncertainty - 2e-6).abs() < 1e-20, "{known:?}");
     }
 
     #[test]
     fn boards_are_described_by_their_corners() {
         let text = "[calibration]\nmethod = \"estimated\"\ncorners = [7, 5]\n\
-                    square_size = \"3 mm\"\nboards = 20\nfolder = \"photos\"";
+                    square_size = \"3 mm\"\nboards = 20";
         let expected = BoardSettings {
             corners: [7, 5],
             square: Some(3e-3),
             boards: 20,
-            folder: Some(Path::new("folder").join("photos")),
         };
-        let method = read(text).unwrap().method;
-        assert_eq!(method, CalibrationMethod::Estimated(expected));
+        assert_eq!(read(text).unwrap().boards, Some(expected));
     }
 
     #[test]

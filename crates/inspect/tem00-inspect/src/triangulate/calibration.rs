@@ -5,7 +5,7 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
-use tem00_calibration::{CalibrationMethod, CalibrationSettings};
+use tem00_calibration::CalibrationSettings;
 use tem00_report::{failure::Failure, interrupt, progress::Progress};
 use tem00_scan::{BoardPlan, Measurement, ScanError};
 
@@ -24,20 +24,9 @@ pub(super) fn calibrated(
     settings: &CalibrationSettings,
     (scene, files): (&Path, &Files),
 ) -> Result<Measurement, Failure> {
-    let CalibrationMethod::Estimated(boards) = &settings.method else {
+    let Some(boards) = &settings.boards else {
         return Ok(measurement);
     };
-    if boards.folder.is_some() {
-        return Err(Failure::input(
-            format!(
-                "{}: images of real boards do not determine the position of the scene: leave out \
-                 `folder` in [calibration]",
-                scene.display()
-            ),
-            "`tem00-inspect calibrate` estimates a calibration from a folder, and `tem00-inspect \
-             lines --calibration` uses it",
-        ));
-    }
     let refused = |error: ScanError| measurement_failure(scene, &error);
     let plan = BoardPlan::new(measurement.scene(), boards).map_err(refused)?;
     let bar = Progress::of(plan.samples(), "samples");

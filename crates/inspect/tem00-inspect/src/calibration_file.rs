@@ -162,13 +162,7 @@ mod tests {
     fn calibration() -> Calibration {
         let camera = Camera::new(CameraDescription {
             position: DVec3::new(0.0, -0.1, 0.3),
-            look_at: DVec3::ZERO,
             up: DVec3::Z,
-            focal_length: 25e-3,
-            f_number: 8.0,
-            focus_distance: 0.3,
-            pixel_pitch: 3.45e-6,
-            resolution: [640, 480],
             principal_point: Some(DVec2::new(321.5, 238.1)),
             tilt: SensorTilt {
                 angle: 0.02,
@@ -179,7 +173,7 @@ mod tests {
                 k2: 0.1,
                 k3: 0.0,
             },
-            depth_of_field: true,
+            ..CameraDescription::default()
         })
         .expect("the camera is possible");
         let plane = LaserPlane::new(DVec3::ZERO, DVec3::new(0.01, 1.0, 0.02));

@@ -133,7 +133,7 @@ fn speckles_per_pixel(camera: &Camera, pixel: DVec2, wavelength: f64) -> Option<
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
-    use tem00_camera::{CameraDescription, RadialDistortion, SensorTilt};
+    use tem00_camera::{CameraDescription, SensorTilt};
 
     use super::*;
 
@@ -141,20 +141,17 @@ mod tests {
     fn columns_between_corners_have_the_covariances_of_their_place() {
         let camera = Camera::new(CameraDescription {
             position: DVec3::new(0.0, -0.125, 0.2165),
-            look_at: DVec3::ZERO,
             up: DVec3::Z,
             focal_length: 0.016,
             f_number: 11.0,
             focus_distance: 0.25,
             pixel_pitch: 6.9e-6,
             resolution: [1040, 400],
-            principal_point: None,
             tilt: SensorTilt {
                 angle: -0.118,
                 azimuth: 0.0,
             },
-            distortion: RadialDistortion::default(),
-            depth_of_field: false,
+            ..CameraDescription::default()
         });
         let speckle = ImageSpeckle::new(camera.expect("a camera"), 660e-9, (0.9, 1.0));
         let speckle = speckle.expect("speckle");

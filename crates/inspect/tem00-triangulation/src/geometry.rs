@@ -28,22 +28,17 @@ pub use self::{plane::LaserPlane, profile::ProfilePoint};
 /// millimetre of height, times the magnification:
 ///
 /// ```
-/// use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
+/// use tem00_camera::{Camera, CameraDescription};
 /// use tem00_triangulation::{DVec2, DVec3, LaserPlane, Triangulator};
 ///
 /// let camera = Camera::new(CameraDescription {
 ///     position: 0.3 * DVec3::new(0.0, -0.5, 0.75_f64.sqrt()),
-///     look_at: DVec3::ZERO,
 ///     up: DVec3::Z,
 ///     focal_length: 25e-3,
-///     f_number: 8.0,
 ///     focus_distance: 0.3,
 ///     pixel_pitch: 3.45e-6,
 ///     resolution: [640, 480],
-///     principal_point: None,
-///     tilt: SensorTilt::default(),
-///     distortion: RadialDistortion::default(),
-///     depth_of_field: true,
+///     ..CameraDescription::default()
 /// })?;
 /// let plane = LaserPlane::new(DVec3::ZERO, DVec3::Y)?;
 ///

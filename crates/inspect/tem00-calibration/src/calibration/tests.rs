@@ -1,23 +1,15 @@
-use tem00_camera::{CameraDescription, RadialDistortion, SensorTilt};
+use tem00_camera::CameraDescription;
 use tem00_testkit::assert_absolute;
 
 use super::*;
 use crate::PARAMETERS;
 
+/// A lens of 25 mm at 30° from the laser plane, at a distance of 0.3 m, with pixels of 3.45 µm.
 fn camera() -> Camera {
     Camera::new(CameraDescription {
         position: 0.3 * DVec3::new(0.0, -0.5, 0.75_f64.sqrt()),
-        look_at: DVec3::ZERO,
         up: DVec3::Z,
-        focal_length: 25e-3,
-        f_number: 8.0,
-        focus_distance: 0.3,
-        pixel_pitch: 3.45e-6,
-        resolution: [640, 480],
-        principal_point: None,
-        tilt: SensorTilt::default(),
-        distortion: RadialDistortion::default(),
-        depth_of_field: true,
+        ..CameraDescription::default()
     })
     .unwrap()
 }

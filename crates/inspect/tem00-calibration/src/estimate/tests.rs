@@ -13,20 +13,17 @@ const PITCH: f64 = 8e-6;
 fn camera(tilt: f64, distortion: RadialDistortion) -> Camera {
     Camera::new(CameraDescription {
         position: 0.25 * DVec3::new(0.0, -0.5, 0.75_f64.sqrt()),
-        look_at: DVec3::ZERO,
         up: DVec3::Z,
         focal_length: 12e-3,
-        f_number: 8.0,
         focus_distance: 0.25,
         pixel_pitch: PITCH,
-        resolution: [640, 480],
         principal_point: (tilt == 0.0).then_some(DVec2::new(331.0, 226.0)),
         tilt: SensorTilt {
             angle: tilt,
             azimuth: 0.1,
         },
         distortion,
-        depth_of_field: true,
+        ..CameraDescription::default()
     })
     .unwrap()
 }

@@ -100,7 +100,7 @@ fn write_point(out: &mut impl Write, index: usize, point: &LinePoint) -> io::Res
 
 #[cfg(test)]
 mod tests {
-    use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
+    use tem00_camera::{Camera, CameraDescription};
     use tem00_triangulation::LaserPlane;
 
     use super::*;
@@ -114,17 +114,12 @@ mod tests {
     fn calibration() -> Calibration {
         let camera = Camera::new(CameraDescription {
             position: DISTANCE * DVec3::new(0.0, -ANGLE.sin(), ANGLE.cos()),
-            look_at: DVec3::ZERO,
             up: DVec3::Z,
             focal_length: DISTANCE / 12.0,
-            f_number: 8.0,
             focus_distance: DISTANCE,
             pixel_pitch: PITCH,
             resolution: [40, 30],
-            principal_point: None,
-            tilt: SensorTilt::default(),
-            distortion: RadialDistortion::default(),
-            depth_of_field: false,
+            ..CameraDescription::default()
         });
         let plane = LaserPlane::new(DVec3::ZERO, DVec3::Y);
         Calibration::exact(camera.expect("a camera"), plane.expect("a plane"))

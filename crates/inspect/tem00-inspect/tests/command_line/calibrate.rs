@@ -4,7 +4,7 @@ use std::fs;
 
 use glam::DVec2;
 use png::BitDepth;
-use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
+use tem00_camera::{Camera, CameraDescription};
 use tem00_tracer::RigidMotion;
 use tem00_triangulation::{DVec3, LaserPlane};
 
@@ -19,17 +19,12 @@ const OPTIONS: &str = "--corners 6x4 --square 12mm --pixel-pitch 16um --radial 0
 fn camera() -> Camera {
     Camera::new(CameraDescription {
         position: 0.25 * DVec3::new(0.0, -0.5, 0.75_f64.sqrt()),
-        look_at: DVec3::ZERO,
         up: DVec3::Z,
         focal_length: 12e-3,
-        f_number: 8.0,
         focus_distance: 0.25,
         pixel_pitch: 16e-6,
         resolution: [320, 240],
-        principal_point: None,
-        tilt: SensorTilt::default(),
-        distortion: RadialDistortion::default(),
-        depth_of_field: true,
+        ..CameraDescription::default()
     })
     .expect("the camera is possible")
 }

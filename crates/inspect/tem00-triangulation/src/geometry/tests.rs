@@ -17,20 +17,16 @@ fn description(angle: f64, scheimpflug: bool) -> CameraDescription {
     let tilt = if scheimpflug { tilt } else { 0.0 };
     CameraDescription {
         position: DISTANCE * DVec3::new(0.0, -angle.sin(), angle.cos()),
-        look_at: DVec3::ZERO,
         up: DVec3::Z,
         focal_length: FOCAL_LENGTH,
-        f_number: 8.0,
         focus_distance: DISTANCE,
         pixel_pitch: PITCH,
         resolution: [640, 480],
-        principal_point: None,
         tilt: SensorTilt {
             angle: tilt,
             azimuth: 0.0,
         },
-        distortion: RadialDistortion::default(),
-        depth_of_field: true,
+        ..CameraDescription::default()
     }
 }
 

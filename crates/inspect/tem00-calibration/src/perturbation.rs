@@ -104,11 +104,7 @@ pub(super) fn tilt_of(vector: DVec2) -> SensorTilt {
 /// Returns the camera with one of its parameters changed.
 fn changed(camera: &Camera, parameter: usize, by: f64) -> CameraDescription {
     let mut description = *camera.description();
-    let middle = DVec2::new(
-        description.resolution[0] as f64,
-        description.resolution[1] as f64,
-    ) / 2.0;
-    let principal = description.principal_point.unwrap_or(middle);
+    let principal = description.axis_point();
     let tilt = tilt_vector(description.tilt);
     match parameter {
         0 => {

@@ -168,7 +168,7 @@ struct Stage {
 impl Stage {
     fn new(camera: &Camera, laser: &Laser) -> Result<Self, ScanError> {
         let plane = plane_of(laser)?;
-        let pixel = DVec2::new(camera.width() as f64, camera.height() as f64) / 2.0;
+        let pixel = camera.description().size() / 2.0;
         let unseen = TriangulationError::NotDetermined {
             what: "the laser plane",
             advice: "the middle of the image must see it",
@@ -233,7 +233,7 @@ impl Stage {
     fn sees(&self, board: &Checkerboard, pose: &RigidMotion) -> bool {
         let [right, up] = board.corners().map(|corners| corners as f64);
         let outline = [(-1.0, -1.0), (right, -1.0), (-1.0, up), (right, up)];
-        let size = DVec2::new(self.camera.width() as f64, self.camera.height() as f64);
+        let size = self.camera.description().size();
         outline.into_iter().all(|(right, up)| {
             let image = self.camera.project(pose.point(board.corner_at(right, up)));
             image.is_some_and(|image| {

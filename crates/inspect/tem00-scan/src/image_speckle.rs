@@ -36,7 +36,7 @@ impl ImageSpeckle {
         (sensitive_side, variance): (f64, f64),
     ) -> Result<Self, ScanError> {
         camera.imaging_geometry(wavelength)?;
-        let middle = 0.5 * DVec2::new(camera.width() as f64, camera.height() as f64);
+        let middle = 0.5 * camera.description().size();
         let speckles_per_pixel =
             speckles_per_pixel(&camera, middle, wavelength).ok_or_else(|| {
                 ScanError::Scene("the camera must see something in the middle".to_owned())
@@ -114,7 +114,7 @@ impl ImageSpeckle {
 
     /// The size of a cell, in pixels.
     fn cell(&self) -> DVec2 {
-        DVec2::new(self.camera.width() as f64, self.camera.height() as f64) / CELLS as f64
+        self.camera.description().size() / CELLS as f64
     }
 }
 

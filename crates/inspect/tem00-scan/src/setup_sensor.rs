@@ -173,11 +173,9 @@ impl<'a> SetupSensor<'a> {
         let left = beside.saturating_sub(whole(0.5 * artefact.size[0] / column + BESIDE));
         let [first, last] = self.rows(artefact, places);
         let description = whole_image.description();
-        let middle = 0.5 * DVec2::from(description.resolution.map(|pixels| pixels as f64));
-        let principal_point = description.principal_point.unwrap_or(middle);
         Ok(Camera::new(CameraDescription {
             resolution: [whole_image.width() - 2 * left, last - first],
-            principal_point: Some(principal_point - DVec2::new(left as f64, first as f64)),
+            principal_point: Some(description.axis_point() - DVec2::new(left as f64, first as f64)),
             ..*description
         })?)
     }

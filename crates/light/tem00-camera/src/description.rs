@@ -159,12 +159,12 @@ impl CameraDescription {
     }
 
     /// Returns the image point on the axis of the lens, in pixels.
-    pub(crate) fn axis_point(&self) -> DVec2 {
+    pub fn axis_point(&self) -> DVec2 {
         self.principal_point.unwrap_or(self.size() / 2.0)
     }
 
     /// Returns the width and the height of the image, in pixels.
-    pub(crate) fn size(&self) -> DVec2 {
+    pub fn size(&self) -> DVec2 {
         DVec2::new(self.resolution[0] as f64, self.resolution[1] as f64)
     }
 }

@@ -115,10 +115,7 @@ fn exact_corners_give_the_camera_back() {
         let distance = calibration.camera().image_distance();
         assert_relative(distance, truth.image_distance(), 1e-6);
         assert_relative(found.focus_distance, expected.focus_distance, 1e-4);
-        let middle = DVec2::new(320.0, 240.0);
-        let principal =
-            |description: &CameraDescription| description.principal_point.unwrap_or(middle);
-        let difference = principal(found).distance(principal(expected));
+        let difference = found.axis_point().distance(expected.axis_point());
         assert!(difference < 1e-3, "{tilt}: {difference} pixel");
         let vector = |tilt: SensorTilt| tilt.angle * DVec2::from_angle(tilt.azimuth);
         let difference = vector(found.tilt).distance(vector(expected.tilt));

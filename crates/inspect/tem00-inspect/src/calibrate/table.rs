@@ -35,9 +35,7 @@ pub(super) fn parameters(calibration: &Calibration) -> Table {
 fn values(calibration: &Calibration) -> [f64; 8] {
     let camera = calibration.camera();
     let description = camera.description();
-    let principal = description
-        .principal_point
-        .unwrap_or_else(|| middle(calibration));
+    let principal = description.axis_point();
     let tilt = description.tilt.angle * DVec2::from_angle(description.tilt.azimuth);
     let RadialDistortion { k1, k2, k3 } = description.distortion;
     let distance = camera.image_distance();
@@ -84,7 +82,7 @@ pub(super) fn sentences(calibration: &Calibration, found: &FoundPoints) -> Vec<S
 
 /// Returns how well heights are known in the middle of the image.
 fn height(calibration: &Calibration) -> Option<String> {
-    let middle = middle(calibration);
+    let middle = calibration.camera().description().size() / 2.0;
     let point = calibration.triangulator().point(middle)?;
     let [_, down] = calibration.triangulator().derivatives(middle)?;
     let uncertainty = calibration.height_uncertainty(point, DVec3::Z)?;
@@ -94,9 +92,4 @@ fn height(calibration: &Calibration) -> Option<String> {
         number(1e6 * down.z.abs()),
         number(1e6 * uncertainty)
     ))
-}
-
-fn middle(calibration: &Calibration) -> DVec2 {
-    let camera = calibration.camera();
-    DVec2::new(camera.width() as f64, camera.height() as f64) / 2.0
 }

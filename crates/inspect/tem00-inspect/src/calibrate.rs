@@ -19,7 +19,7 @@ use tem00_report::{
     progress::Progress,
     report::Report,
 };
-use tem00_triangulation::{LineDetector, TriangulationError};
+use tem00_triangulation::TriangulationError;
 
 use self::left_out::FoundPoints;
 use crate::{args::CalibrateArgs, calibration_file::write_calibration};
@@ -139,8 +139,7 @@ fn views(
     board: &Checkerboard,
     args: &CalibrateArgs,
 ) -> Result<(Vec<BoardView>, FoundPoints, [usize; 2]), Failure> {
-    let settings = args.detector.settings().map_err(of_detector)?;
-    let detector = LineDetector::new(settings).map_err(|error| of_detector(error.to_string()))?;
+    let detector = args.detector.detector("calibrate")?;
     let progress = Progress::of(pairs.len() as u64, "boards");
     let (mut views, mut found) = (Vec::new(), FoundPoints::default());
     let mut size = None;
@@ -168,13 +167,6 @@ fn no_board(path: &Path, error: &TriangulationError) -> Failure {
         format!("{}: {error}", path.display()),
         "--corners counts the inner corners, one less than squares per side; the whole board must \
          be sharp and in the image, or leave this image out",
-    )
-}
-
-fn of_detector(message: String) -> Failure {
-    Failure::input(
-        message,
-        "`tem00-inspect calibrate --help` lists what is allowed",
     )
 }
 

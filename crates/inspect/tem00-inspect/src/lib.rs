@@ -54,8 +54,11 @@ fn execute(cli: &Cli, out: &mut impl Write) -> Result<(), Failure> {
     }
 }
 
-/// Returns the failure that a set-up does not measure.
+/// Returns the failure that a set-up does not measure, or that the user interrupted it.
 fn measuring(path: &Path, error: &TriangulationError, help: &str) -> Failure {
+    if *error == TriangulationError::Cancelled {
+        return Failure::Interrupted;
+    }
     let no_memory = matches!(
         error,
         TriangulationError::Speckle(SpeckleError::Memory { .. })

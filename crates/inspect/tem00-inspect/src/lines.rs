@@ -38,7 +38,7 @@ use self::{
 /// Returns a failure if the input is not valid, a file cannot be written, the user interrupts it,
 /// or, with all files written, if no image has a valid point.
 pub(crate) fn run(args: &LinesArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let detector = detector(args)?;
+    let detector = args.detector.detector("lines")?;
     let calibration = args
         .calibration
         .as_deref()
@@ -85,17 +85,6 @@ pub(crate) fn run(args: &LinesArgs, out: &mut impl Write) -> Result<(), Failure>
         },
         "warnings and notes say why; the pictures show what was found",
     ))
-}
-
-fn detector(args: &LinesArgs) -> Result<LineDetector, Failure> {
-    let refused = |message: String| {
-        Failure::input(
-            message,
-            "`tem00-inspect lines --help` lists what is allowed",
-        )
-    };
-    let settings = args.detector.settings().map_err(refused)?;
-    LineDetector::new(settings).map_err(|error| refused(error.to_string()))
 }
 
 /// Finds the lines of one image and writes its files, whose names begin with `target`; returns the

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Args, builder::PossibleValuesParser, builder::TypedValueParser};
-use tem00_triangulation::{DetectorSettings, LineMethod};
+use tem00_report::failure::Failure;
+use tem00_triangulation::{DetectorSettings, LineDetector, LineMethod};
 
 /// Find laser lines in images, to a fraction of a pixel.
 ///
@@ -92,13 +93,21 @@ pub(crate) struct DetectorArgs {
 }
 
 impl DetectorArgs {
-    /// Returns the settings of the detector; the saturation is for the image to say.
+    /// Returns the detector of a command; the saturation is for the image to say.
     ///
     /// # Errors
     ///
-    /// Returns the sentence that names an option which does not belong to the method or has no such
+    /// Returns a failure that names an option which does not belong to the method or has no such
     /// value.
-    pub(crate) fn settings(&self) -> Result<DetectorSettings, String> {
+    pub(crate) fn detector(&self, command: &str) -> Result<LineDetector, Failure> {
+        let settings = self.settings();
+        let detector = settings
+            .and_then(|settings| LineDetector::new(settings).map_err(|error| error.to_string()));
+        let help = format!("`tem00-inspect {command} --help` lists what is allowed");
+        detector.map_err(|message| Failure::input(message, help))
+    }
+
+    fn settings(&self) -> Result<DetectorSettings, String> {
         let method = self.method()?;
         let usual = DetectorSettings::default();
         Ok(DetectorSettings {

@@ -1,14 +1,14 @@
 //! The drawings of a budget.
 
-use tem00_report::plot::{
-    Bars, Chart, Colour, Drawing,
-    colours::{FORMULAS, TRIALS},
+use tem00_report::{
+    plot::{
+        Bars, Chart, Colour, Drawing,
+        colours::{FORMULAS, TRIALS},
+    },
+    report::units::{MICROMETRES, MILLIMETRES},
 };
 
 use super::findings::Answer;
-
-const METRES_TO_MICROMETRES: f64 = 1e6;
-const METRES_TO_MILLIMETRES: f64 = 1e3;
 
 /// The contribution of each source, by formulas and, unless they were left out, by trials.
 pub(super) fn contributions(answer: &Answer) -> Drawing {
@@ -20,19 +20,16 @@ pub(super) fn contributions(answer: &Answer) -> Drawing {
     let mut bars = Bars::new("Sources of height uncertainty", label, series);
     let trials = answer.trials.as_ref();
     for term in answer.budget.terms() {
-        let mut values = vec![term.contribution() * METRES_TO_MICROMETRES];
+        let mut values = vec![MICROMETRES.of(term.contribution())];
         if let Some(trials) = trials {
             let found = trials.term(term.source);
-            values.push(found.map_or(f64::NAN, |found| found.uncertainty * METRES_TO_MICROMETRES));
+            values.push(found.map_or(f64::NAN, |found| MICROMETRES.of(found.uncertainty)));
         }
         bars = bars.group(term.source.name(), &values);
     }
-    let mut combined = vec![answer.budget.combined() * METRES_TO_MICROMETRES];
-    combined.extend(
-        answer
-            .combined_by_trials()
-            .map(|found| found * METRES_TO_MICROMETRES),
-    );
+    let mut combined = vec![answer.budget.combined()];
+    combined.extend(answer.combined_by_trials());
+    let combined: Vec<f64> = combined.into_iter().map(|u| MICROMETRES.of(u)).collect();
     bars.group("combined", &combined).draw()
 }
 
@@ -41,8 +38,8 @@ pub(super) fn over_range(answer: &Answer) -> Drawing {
     let heights = answer.over_range.iter();
     let points = heights.map(|&(height, uncertainty)| {
         (
-            height * METRES_TO_MILLIMETRES,
-            uncertainty.map_or(f64::NAN, |found| found * METRES_TO_MICROMETRES),
+            MILLIMETRES.of(height),
+            uncertainty.map_or(f64::NAN, |found| MICROMETRES.of(found)),
         )
     });
     Chart::new(

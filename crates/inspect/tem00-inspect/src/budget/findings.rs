@@ -173,12 +173,9 @@ pub(super) fn tried(args: &BudgetArgs, setup: &Setup) -> Result<Simulation, Fail
         trials: args.trials,
         seed: args.seed,
     };
-    simulate(setup, options, &|_| bar.advance(1), interrupt::flag()).map_err(|error| match error {
-        TriangulationError::Cancelled => Failure::Interrupted,
-        error => {
-            let help = "smaller averages, or --trials 0";
-            crate::measuring(&args.common.setup, &error, help)
-        }
+    simulate(setup, options, &|_| bar.advance(1), interrupt::flag()).map_err(|error| {
+        let help = "smaller averages, or --trials 0";
+        crate::measuring(&args.common.setup, &error, help)
     })
 }
 

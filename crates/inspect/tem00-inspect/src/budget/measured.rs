@@ -87,13 +87,10 @@ impl ThreeMethods {
             return Ok(None);
         }
         let measured = Measurement::new(setup, uncertainty).and_then(|found| Self::of(args, found));
-        measured.map(Some).map_err(|error| match error {
-            TriangulationError::Cancelled => Failure::Interrupted,
-            error => {
-                let help = "smaller uncertainties, or limits by another `distribution`; --trials 0 \
-                            leaves the virtual experiment out";
-                crate::measuring(&args.common.setup, &error, help)
-            }
+        measured.map(Some).map_err(|error| {
+            let help = "smaller uncertainties, or limits by another `distribution`; --trials 0 \
+                        leaves the virtual experiment out";
+            crate::measuring(&args.common.setup, &error, help)
         })
     }
 

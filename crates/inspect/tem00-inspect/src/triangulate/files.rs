@@ -6,7 +6,6 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use tem00_numerics::Grid;
 use tem00_report::npy::write_real_npy;
 use tem00_report::{
     atomic::write_atomically,
@@ -140,8 +139,10 @@ impl Files {
             let archive = x3p(&map.heights, Lattice { origin, pitch });
             self.write("height.x3p", |file| file.write_all(&archive?))?;
         }
-        self.write_array("height.npy", &map.heights)?;
-        self.write_array("height_uncertainty.npy", &map.uncertainties)
+        self.write("height.npy", |file| write_real_npy(&map.heights, file))?;
+        self.write("height_uncertainty.npy", |file| {
+            write_real_npy(&map.uncertainties, file)
+        })
     }
 
     fn write_image(&self, image: &MapImage) -> Result<(), Failure> {
@@ -176,10 +177,6 @@ impl Files {
             RawFormat::Png => "png",
             RawFormat::Tiff => "tiff",
         }
-    }
-
-    fn write_array(&self, name: &str, values: &Grid<f32>) -> Result<(), Failure> {
-        self.write(name, |file| write_real_npy(values, file))
     }
 
     fn write(

@@ -2,7 +2,8 @@
 
 use tem00_triangulation::Validity;
 
-use super::frame::FrameRecord;
+use super::frame::{FrameRecord, point_counts};
+use crate::saturated_points::PointCounts;
 
 /// The reason why nothing was measured, and the remedy.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,7 +15,7 @@ pub(super) struct Refusal {
 impl Refusal {
     /// Returns why no point of the frames is valid, or too few to measure with.
     pub(super) fn of(frames: &[FrameRecord]) -> Self {
-        let points: usize = frames.iter().map(|frame| frame.counts.points).sum();
+        let PointCounts { points, valid, .. } = point_counts(frames);
         let count = |reason: &Reason| -> usize {
             let counts = frames
                 .iter()
@@ -26,7 +27,6 @@ impl Refusal {
             .map(|reason| (count(reason), reason))
             .max_by_key(|(count, _)| *count)
             .filter(|(count, _)| *count > 0);
-        let valid: usize = frames.iter().map(|frame| frame.counts.valid).sum();
         match max {
             Some((count, (_, what, advice))) => Self {
                 why: if valid == 0 {
@@ -94,7 +94,6 @@ const REASONS: [Reason; 6] = [
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::saturated_points::PointCounts;
 
     fn frame(points: usize, not_valid: &[(&'static str, usize)]) -> FrameRecord {
         FrameRecord {

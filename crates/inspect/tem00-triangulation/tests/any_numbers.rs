@@ -90,7 +90,7 @@ fn exercise(setup: &Setup, what: &str) {
         seed: 1,
     };
     if let Ok(simulation) = simulate(setup, options, &|_| (), &AtomicBool::new(false))
-        && let Some(total) = simulation.total()
+        && let Some(total) = simulation.total
     {
         let found = [total.uncertainty, total.standard_error];
         assert!(found.iter().all(|u| u.is_finite()), "{what}: {total:?}");

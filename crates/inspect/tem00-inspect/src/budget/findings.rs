@@ -79,11 +79,11 @@ impl Answer {
     ) -> Result<Result<Self, Refusal>, Failure> {
         let is_tried = args.trials > 0;
         let trials = is_tried.then(|| tried(args, setup)).transpose()?;
-        if let Some(found) = trials.as_ref().filter(|found| found.total().is_none()) {
+        if let Some(found) = trials.as_ref().filter(|found| found.total.is_none()) {
             return Ok(Err(Refusal {
                 why: format!(
                     "{} of the columns have no line that can be trusted",
-                    PERCENT.with_digits(2).text(found.invalid())
+                    PERCENT.with_digits(2).text(found.invalid)
                 ),
                 advice: match setup.light_level() {
                     LightLevel::Good => "try another method or `window` in [detector]",
@@ -103,7 +103,7 @@ impl Answer {
     /// Returns the combined standard uncertainty that trials found, with the calibration, in
     /// metres.
     pub(super) fn combined_by_trials(&self) -> Option<f64> {
-        let total = self.trials.as_ref()?.total()?.uncertainty;
+        let total = self.trials.as_ref()?.total?.uncertainty;
         let calibration = self.budget.contribution(UncertaintySource::Calibration);
         Some(total.hypot(calibration))
     }
@@ -111,7 +111,7 @@ impl Answer {
     /// Returns the ratio of the combined standard uncertainties by trials and by formulas, and its
     /// standard error.
     pub(super) fn ratio(&self) -> Option<[f64; 2]> {
-        let error = self.trials.as_ref()?.total()?.standard_error;
+        let error = self.trials.as_ref()?.total?.standard_error;
         let by_trials = self.combined_by_trials()?;
         Some([by_trials, error].map(|found| found / self.budget.combined()))
     }
@@ -129,12 +129,7 @@ impl Answer {
 
     /// Returns the combined and the expanded uncertainty to quote, in metres.
     pub(super) fn quoted(&self) -> [f64; 2] {
-        let by_trials = || {
-            Some([
-                self.combined_by_trials()?,
-                self.quoted_trials()?.expanded()?,
-            ])
-        };
+        let by_trials = || Some([self.combined_by_trials()?, self.quoted_trials()?.expanded?]);
         by_trials().unwrap_or_else(|| [self.budget.combined(), self.budget.expanded()])
     }
 

@@ -154,13 +154,13 @@ impl ThreeMethods {
             },
             Quoted::Propagation => self.answer_by_distributions(),
             Quoted::VirtualExperiment => {
-                let found = self.experiment.as_ref()?;
-                let error = found.error()?;
+                let found = self.experiment?;
+                let error = found.error?;
                 MethodAnswer {
-                    estimate: found.mean(),
+                    estimate: found.mean,
                     uncertainty: error.uncertainty,
                     standard_error: Some(error.standard_error),
-                    interval: found.interval()?,
+                    interval: found.interval?,
                 }
             }
         })
@@ -213,7 +213,7 @@ impl ThreeMethods {
     /// Returns the ratio of the uncertainty in the virtual experiment to the uncertainty by
     /// distributions, and its standard error.
     pub(super) fn ratio(&self) -> Option<[f64; 2]> {
-        let error = self.experiment.as_ref()?.error()?;
+        let error = self.experiment?.error?;
         let by_distributions = self.propagation.uncertainty();
         Some([error.uncertainty, error.standard_error].map(|found| found / by_distributions))
     }

@@ -143,15 +143,15 @@ fn trials(findings: &Findings<'_>) -> serde_json::Value {
     let Some(trials) = trials else {
         return serde_json::Value::Null;
     };
-    let total = trials.total();
+    let total = trials.total;
     json!({
-        "trials": trials.options().trials,
-        "seed": trials.options().seed,
+        "trials": trials.options.trials,
+        "seed": trials.options.seed,
         "uncertainty": total.map(|total| total.uncertainty),
         "standard_error": total.map(|total| total.standard_error),
         "combined": combined,
-        "expanded": trials.expanded(),
-        "invalid": trials.invalid(),
+        "expanded": trials.expanded,
+        "invalid": trials.invalid,
     })
 }
 
@@ -233,7 +233,7 @@ fn combined(answer: &Answer) -> Vec<Cell> {
     cells.push(NUMBER.with_digits(3).cell(budget.degrees_of_freedom()));
     cells.push(MICROMETRES.cell(budget.combined()));
     cells.push(PERCENT.cell(1.0));
-    let total = answer.trials.as_ref().and_then(|trials| trials.total());
+    let total = answer.trials.as_ref().and_then(|trials| trials.total);
     if let (Some(total), Some(combined)) = (total, answer.combined_by_trials()) {
         cells.push(MICROMETRES.cell(combined));
         cells.push(MICROMETRES.cell(total.standard_error));

@@ -1,7 +1,7 @@
 //! A budget in sentences.
 
 use tem00_report::report::units::{MICROMETRES, MILLIMETRES, NUMBER, PERCENT};
-use tem00_triangulation::{LightLevel, LineMethod, MeasurementInput, Setup, Simulation};
+use tem00_triangulation::{LightLevel, LineMethod, MeasurementInput, Setup};
 
 use super::{
     answers,
@@ -96,7 +96,7 @@ fn result(answer: &Answer) -> String {
         None => "",
     };
     let [_, expanded] = answer.quoted();
-    let by_trials = answer.trials.as_ref().and_then(Simulation::expanded);
+    let by_trials = answer.trials.as_ref().and_then(|trials| trials.expanded);
     let (how, other) = match answer.quoted_trials() {
         Some(_) => (
             "by trials".to_owned(),
@@ -156,7 +156,7 @@ fn of_trials(answer: &Answer, setup: &Setup) -> Vec<String> {
         ));
     }
     if let Some(invalid) = trials
-        .map(Simulation::invalid)
+        .map(|trials| trials.invalid)
         .filter(|invalid| *invalid > 0.01)
     {
         lines.push(format!(

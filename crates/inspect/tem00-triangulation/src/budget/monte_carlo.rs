@@ -53,11 +53,21 @@ pub struct MonteCarloEstimate {
 /// Uncertainty of a height from simulated trials.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulation {
-    options: SimulationOptions,
+    /// The options of the simulation.
+    pub options: SimulationOptions,
+    /// The standard uncertainty by all sources at once except the calibration; `None` where fewer
+    /// than half of the columns have a line that can be trusted.
+    pub total: Option<MonteCarloEstimate>,
+    /// The expanded uncertainty of the height for a coverage of 95 %, in metres, by all sources at
+    /// once with a normal calibration: 95 % of the errors are no larger. `None` as for the total.
+    ///
+    /// Errors of lines of few speckles are not normal: 1.96 standard uncertainties hold 94 to 97 %
+    /// of them.
+    pub expanded: Option<f64>,
+    /// The fraction of the columns of all frames in which the detector found no line that can be
+    /// trusted, from 0 to 1.
+    pub invalid: f64,
     terms: Vec<(UncertaintySource, Option<MonteCarloEstimate>)>,
-    total: Option<MonteCarloEstimate>,
-    expanded: Option<f64>,
-    invalid: f64,
 }
 
 impl Simulation {
@@ -65,38 +75,11 @@ impl Simulation {
     /// is still estimated: those that are left are the dark half of the speckle.
     pub const MAX_INVALID: f64 = 0.5;
 
-    /// Returns the options of the simulation.
-    pub const fn options(&self) -> SimulationOptions {
-        self.options
-    }
-
     /// Returns the standard uncertainty by one source alone, or `None` for the calibration, which
     /// is not simulated, and where fewer than half of the columns have a line that can be trusted.
     pub fn term(&self, source: UncertaintySource) -> Option<MonteCarloEstimate> {
         let found = self.terms.iter().find(|(of, _)| *of == source);
         found.and_then(|(_, estimate)| *estimate)
-    }
-
-    /// Returns the standard uncertainty by all sources at once except the calibration, or `None`
-    /// where fewer than half of the columns have a line that can be trusted.
-    pub const fn total(&self) -> Option<MonteCarloEstimate> {
-        self.total
-    }
-
-    /// Returns the expanded uncertainty of the height for a coverage of 95 %, in metres, by all
-    /// sources at once with a normal calibration: 95 % of the errors are no larger. `None` as for
-    /// the total.
-    ///
-    /// Errors of lines of few speckles are not normal: 1.96 standard uncertainties hold 94 to 97 %
-    /// of them.
-    pub const fn expanded(&self) -> Option<f64> {
-        self.expanded
-    }
-
-    /// Returns the fraction of the columns of all frames in which the detector found no line that
-    /// can be trusted, from 0 to 1.
-    pub const fn invalid(&self) -> f64 {
-        self.invalid
     }
 }
 

@@ -150,7 +150,7 @@ fn a_virtual_experiment_agrees_with_the_propagation_of_distributions() {
         on_threads(threads, run).unwrap()
     };
     let found = run(2);
-    let error = found.error().unwrap();
+    let error = found.error.unwrap();
     let expected = measurement
         .propagation(PropagationOptions::default())
         .unwrap();
@@ -163,9 +163,9 @@ fn a_virtual_experiment_agrees_with_the_propagation_of_distributions() {
     );
     assert!(error.standard_error < 0.06 * error.uncertainty, "{error:?}");
     // The mean of 300 scatters by u/√300.
-    let mean = (found.mean() - HEIGHT).abs();
+    let mean = (found.mean - HEIGHT).abs();
     assert!(mean < 3.3 * error.uncertainty / 300.0_f64.sqrt(), "{mean}");
-    let interval = found.interval().unwrap();
+    let interval = found.interval.unwrap();
     let ratio = interval.length() / expected.interval().length();
     // An end of 300 values scatters by 0.15 u: both by 6 % of the length.
     assert!((ratio - 1.0).abs() < 0.2, "{ratio}");

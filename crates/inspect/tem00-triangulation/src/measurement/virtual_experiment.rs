@@ -11,43 +11,18 @@ use crate::{
 };
 
 /// Heights that a set-up measures in a virtual experiment.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VirtualExperiment {
-    options: SimulationOptions,
-    mean: f64,
-    error: Option<MonteCarloEstimate>,
-    interval: Option<CoverageInterval>,
-    invalid: f64,
-}
-
-impl VirtualExperiment {
-    /// Returns the options.
-    pub const fn options(&self) -> SimulationOptions {
-        self.options
-    }
-
-    /// Returns the mean of the measured heights, in metres.
-    pub const fn mean(&self) -> f64 {
-        self.mean
-    }
-
-    /// Returns the root mean square error of a height, or `None` where fewer than half of the
-    /// columns have a line that can be trusted.
-    pub const fn error(&self) -> Option<MonteCarloEstimate> {
-        self.error
-    }
-
-    /// Returns the symmetric interval of 95 % of all measured heights, in metres; `None` as for the
-    /// error.
-    pub const fn interval(&self) -> Option<CoverageInterval> {
-        self.interval
-    }
-
-    /// Returns the fraction of the columns in which the detector found no line that can be trusted,
-    /// from 0 to 1.
-    pub const fn invalid(&self) -> f64 {
-        self.invalid
-    }
+    /// The mean of the measured heights, in metres.
+    pub mean: f64,
+    /// The root mean square error of a height; `None` where fewer than half of the columns have a
+    /// line that can be trusted.
+    pub error: Option<MonteCarloEstimate>,
+    /// The symmetric interval of 95 % of all measured heights, in metres; `None` as for the error.
+    pub interval: Option<CoverageInterval>,
+    /// The fraction of the columns in which the detector found no line that can be trusted, from 0
+    /// to 1.
+    pub invalid: f64,
 }
 
 /// The heights of one trial.
@@ -85,7 +60,6 @@ impl Measurement {
             CoverageInterval::of_sorted(&heights, CoverageProbability::P95, IntervalKind::Symmetric)
         };
         Ok(VirtualExperiment {
-            options,
             mean: heights.iter().sum::<f64>() / heights.len() as f64,
             error,
             interval: error.map(|_| interval()),

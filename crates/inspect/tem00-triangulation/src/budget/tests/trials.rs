@@ -52,11 +52,11 @@ fn there_is_no_uncertainty_by_trials_below_half_of_the_columns() {
         // half.
         let chance = 4.0 * 0.5 / 213.0_f64.sqrt() * 2.0_f64.sqrt();
         assert!(
-            (trials.invalid() - clipped).abs() < chance,
+            (trials.invalid - clipped).abs() < chance,
             "{factor}: {clipped}"
         );
-        let is_none = trials.total().is_none();
-        assert_eq!(is_none, trials.invalid() > 0.5, "{factor}: {trials:?}");
+        let is_none = trials.total.is_none();
+        assert_eq!(is_none, trials.invalid > 0.5, "{factor}: {trials:?}");
         none[usize::from(is_none)] += 1;
         // A single source alone saturates nothing.
         assert!(trials.term(Source::ShotNoise).is_some(), "{trials:?}");
@@ -77,10 +77,7 @@ fn an_expanded_uncertainty_by_trials_holds_as_much_as_it_says() {
             d.calibration_uncertainty = calibration;
         });
         let found = simulated(&setup, 100);
-        let (expanded, rms) = (
-            found.expanded().unwrap(),
-            found.total().unwrap().uncertainty,
-        );
+        let (expanded, rms) = (found.expanded.unwrap(), found.total.unwrap().uncertainty);
         let case = format!("{thickness:e}, {calibration:e}");
         // Other frames; how much of the normal error of the calibration is small enough, is a
         // closed form.

@@ -1,5 +1,5 @@
 use crate::{
-    CoverageProbability, Input, Inputs, UncertaintyError, coverage_factor,
+    CoverageInterval, CoverageProbability, Input, Inputs, UncertaintyError, coverage_factor,
     derivative::{Derivative, derivative},
     effective_degrees_of_freedom,
     trials::value,
@@ -125,6 +125,15 @@ impl FirstOrder {
     /// Returns the expanded uncertainty `U = k u_c`.
     pub fn expanded(&self, probability: CoverageProbability) -> f64 {
         coverage_factor(self.degrees_of_freedom, probability) * self.combined
+    }
+
+    /// Returns the interval of the result ± its expanded uncertainty.
+    pub fn interval(&self, probability: CoverageProbability) -> CoverageInterval {
+        let half = self.expanded(probability);
+        CoverageInterval {
+            low: self.estimate - half,
+            high: self.estimate + half,
+        }
     }
 }
 

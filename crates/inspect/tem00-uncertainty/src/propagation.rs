@@ -197,11 +197,11 @@ impl Propagation {
     /// The trials should be stable with a
     /// [`tolerance_divisor`](PropagationOptions::tolerance_divisor) of 5.
     pub fn validate(&self, first_order: &FirstOrder) -> Validation {
-        let half = first_order.expanded(self.options.probability);
         let interval = self.interval();
+        let of_first_order = first_order.interval(self.options.probability);
         Validation {
-            low: (first_order.estimate() - half - interval.low).abs(),
-            high: (first_order.estimate() + half - interval.high).abs(),
+            low: (of_first_order.low - interval.low).abs(),
+            high: (of_first_order.high - interval.high).abs(),
             tolerance: numerical_tolerance(self.uncertainty(), self.options.digits),
         }
     }

@@ -11,6 +11,8 @@ use tem00_uncertainty::{
     IntervalKind, Propagation, PropagationOptions,
 };
 
+const P95: CoverageProbability = CoverageProbability::P95;
+
 fn input(estimate: f64, uncertainty: f64, distribution: Distribution) -> Input {
     Input::new(estimate, uncertainty, distribution).unwrap()
 }
@@ -59,15 +61,6 @@ fn assert_length(found: CoverageInterval, stated: [f64; 2], unit: f64, u: f64) {
     let length = stated[1] - stated[0];
     let scatter = 3.0 * 0.0044 * u;
     assert_stated("length", found.length(), length, 2.0 * unit, scatter);
-}
-
-/// The interval of 95 % by first order.
-fn interval(first_order: &FirstOrder) -> CoverageInterval {
-    let half = first_order.expanded(CoverageProbability::P95);
-    CoverageInterval {
-        low: first_order.estimate() - half,
-        high: first_order.estimate() + half,
-    }
 }
 
 /// Returns the p quantile of the sum of rectangular quantities around 0, whose density is a
@@ -126,7 +119,7 @@ fn the_additive_model_has_the_stated_intervals() {
         let first_order = FirstOrder::new(&inputs, sum).unwrap();
         assert_stated("u(y)", first_order.combined(), u, digit, 0.0);
         let ends = [-by_first_order, by_first_order];
-        assert_interval(interval(&first_order), ends, digit, 0.0);
+        assert_interval(first_order.interval(P95), ends, digit, 0.0);
         let options = PropagationOptions {
             tolerance_divisor: 5.0,
             ..PropagationOptions::default()
@@ -164,7 +157,7 @@ fn the_calibration_of_a_mass_has_the_stated_results() {
     let first_order = FirstOrder::new(&inputs, model).unwrap();
     assert_stated("y", first_order.estimate(), 1.2340, 1e-4, 0.0);
     assert_stated("u(y)", first_order.combined(), 0.0539, 1e-4, 0.0);
-    assert_interval(interval(&first_order), [1.1285, 1.3395], 1e-4, 0.0);
+    assert_interval(first_order.interval(P95), [1.1285, 1.3395], 1e-4, 0.0);
     // By trials whose tolerance is that of one digit, divided by 10.
     let options = PropagationOptions {
         digits: 1,
@@ -221,7 +214,7 @@ fn the_comparison_loss_has_the_stated_results() {
         let inputs = Inputs::correlated(all, &[correlation]).unwrap();
         let model = |x: &[f64]| (x[0] * x[0] + x[1] * x[1]) / UNIT;
         let first_order = FirstOrder::new(&inputs, model).unwrap();
-        assert_interval(interval(&first_order), by_first_order, 1.0, 0.0);
+        assert_interval(first_order.interval(P95), by_first_order, 1.0, 0.0);
         let options = PropagationOptions {
             interval: IntervalKind::Shortest,
             max_trials: 2_000_000,

@@ -150,7 +150,7 @@ impl ThreeMethods {
                 estimate: self.first_order.estimate(),
                 uncertainty: self.first_order.combined(),
                 standard_error: None,
-                interval: self.interval(),
+                interval: self.first_order.interval(CoverageProbability::P95),
             },
             Quoted::Propagation => self.answer_by_distributions(),
             Quoted::VirtualExperiment => {
@@ -194,15 +194,6 @@ impl ThreeMethods {
                 )
             })
             .filter(|(_, coefficient)| *coefficient != 0.0)
-    }
-
-    /// Returns the interval of 95 % by the law of propagation.
-    fn interval(&self) -> CoverageInterval {
-        let half = self.first_order.expanded(CoverageProbability::P95);
-        CoverageInterval {
-            low: self.first_order.estimate() - half,
-            high: self.first_order.estimate() + half,
-        }
     }
 
     /// Compares the law of propagation with the propagation of distributions.

@@ -40,7 +40,7 @@ struct PlaneRecord {
 struct CovarianceRecord {
     origin: [f64; 3],
     parameters: Vec<String>,
-    rows: Vec<Vec<f64>>,
+    rows: Rows,
 }
 
 /// Writes a calibration as JSON, completely or not at all.
@@ -111,17 +111,11 @@ impl CalibrationRecord {
 
 impl CovarianceRecord {
     fn of(covariance: &CalibrationCovariance) -> Self {
-        let parameters = 0..PARAMETERS.len();
-        let row = |i| {
-            parameters
-                .clone()
-                .map(|j| covariance.between(i, j))
-                .collect()
-        };
+        let row = |i| core::array::from_fn(|j| covariance.between(i, j));
         Self {
             origin: covariance.origin().to_array(),
             parameters: names(),
-            rows: parameters.clone().map(row).collect(),
+            rows: core::array::from_fn(row),
         }
     }
 
@@ -129,19 +123,8 @@ impl CovarianceRecord {
         if self.parameters != names() {
             return Err(format!("its parameters must be {}", names().join(", ")));
         }
-        let mut rows: Rows = [[0.0; PARAMETERS.len()]; PARAMETERS.len()];
-        let square = self.rows.len() == rows.len()
-            && self.rows.iter().all(|row| row.len() == PARAMETERS.len());
-        if !square {
-            let size = PARAMETERS.len();
-            return Err(format!(
-                "its covariance must have {size} rows of {size} numbers"
-            ));
-        }
-        for (row, given) in rows.iter_mut().zip(&self.rows) {
-            row.copy_from_slice(given);
-        }
-        CalibrationCovariance::new(self.origin.into(), &rows).map_err(|error| error.to_string())
+        CalibrationCovariance::new(self.origin.into(), &self.rows)
+            .map_err(|error| error.to_string())
     }
 }
 

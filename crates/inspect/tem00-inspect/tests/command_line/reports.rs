@@ -170,16 +170,13 @@ fn a_budget_is_reported_with_its_result_first() {
 }
 
 #[test]
-fn a_search_is_reported_in_the_same_bytes_and_colours() {
+fn a_search_is_reported_with_its_result_first() {
     let folder = written(DESIGN);
-    let [one, two] = ["one", "two"].map(|out| {
-        let line = format!("design a.toml -o {out} --set design.require.saturation=0.9");
-        said(folder.path(), &line, 0);
-        read(&folder.path().join(out).join("design.html"))
-    });
-    check(&one);
-    assert!(one == two, "no time of day, no elapsed time");
-    assert_eq!(headings(&one)[0], "The best set-ups");
+    let line = "design a.toml --set design.require.saturation=0.9";
+    said(folder.path(), line, 0);
+    let html = read(&folder.path().join("out/a/design.html"));
+    check(&html);
+    assert_eq!(headings(&html)[0], "The best set-ups");
     // Speckle is in both diagrams over a parameter.
-    assert!(one.matches(">speckle</text>").count() >= 2);
+    assert!(html.matches(">speckle</text>").count() >= 2);
 }

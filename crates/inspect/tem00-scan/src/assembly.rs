@@ -13,9 +13,15 @@ use crate::{
 /// Combines measured frames into profiles, and profiles into the map of a part.
 #[derive(Clone, Debug)]
 pub struct Scan<'a> {
-    measurement: &'a Measurement,
+    part: ScannedPart<'a>,
     /// The frames of the profile that is not complete.
     pending: Vec<MeasuredFrame>,
+}
+
+/// The profiles of a part.
+#[derive(Clone, Debug)]
+pub struct ScannedPart<'a> {
+    measurement: &'a Measurement,
     profiles: Vec<Vec<MeasuredPoint>>,
     /// Correlation of the frames of the first profile with valid points.
     correlation: Option<FrameCorrelation>,
@@ -27,23 +33,25 @@ impl<'a> Scan<'a> {
     /// Starts a scan without frames.
     pub const fn new(measurement: &'a Measurement) -> Self {
         Self {
-            measurement,
+            part: ScannedPart {
+                measurement,
+                profiles: Vec::new(),
+                correlation: None,
+                speckle_change: None,
+            },
             pending: Vec::new(),
-            profiles: Vec::new(),
-            correlation: None,
-            speckle_change: None,
         }
     }
 
     /// Adds the next frame; frames come in their order.
     pub fn add(&mut self, frame: MeasuredFrame) {
-        let frames = self.measurement.settings().average.frames;
-        let is_followed = frame.frame + 1 < self.measurement.scene().frames;
-        if self.speckle_change.is_none() && is_followed {
-            self.speckle_change = self.measurement.speckle_change(&frame, 1);
+        let measurement = self.part.measurement;
+        let is_followed = frame.frame + 1 < measurement.scene().frames;
+        if self.part.speckle_change.is_none() && is_followed {
+            self.part.speckle_change = measurement.speckle_change(&frame, 1);
         }
         self.pending.push(frame);
-        if self.pending.len() >= frames as usize {
+        if self.pending.len() >= measurement.settings().average.frames as usize {
             self.complete();
         }
     }
@@ -53,43 +61,29 @@ impl<'a> Scan<'a> {
         if !self.pending.is_empty() {
             self.complete();
         }
-        ScannedPart {
-            measurement: self.measurement,
-            profiles: self.profiles,
-            correlation: self.correlation,
-            speckle_change: self.speckle_change,
-        }
+        self.part
     }
 
     /// Averages the frames that are pending.
     fn complete(&mut self) {
-        let averaging = self.measurement.settings().average;
+        let measurement = self.part.measurement;
+        let averaging = measurement.settings().average;
         let frames = core::mem::take(&mut self.pending);
         let profile = match &frames[..] {
             [frame] if averaging.columns == 1 => frame.points.clone(),
             _ => {
-                let first = &frames[0];
-                let correlation = self.measurement.frame_correlation(first, averaging.frames);
+                let correlation = measurement.frame_correlation(&frames[0], averaging.frames);
                 let profile = averaged_profile(&frames, averaging, |columns, later| {
                     correlation.between(columns, later)
                 });
                 if !profile.is_empty() {
-                    self.correlation.get_or_insert(correlation);
+                    self.part.correlation.get_or_insert(correlation);
                 }
                 profile
             }
         };
-        self.profiles.push(profile);
+        self.part.profiles.push(profile);
     }
-}
-
-/// The profiles of a part.
-#[derive(Clone, Debug)]
-pub struct ScannedPart<'a> {
-    measurement: &'a Measurement,
-    profiles: Vec<Vec<MeasuredPoint>>,
-    correlation: Option<FrameCorrelation>,
-    speckle_change: Option<SpeckleChange>,
 }
 
 impl ScannedPart<'_> {

@@ -1,7 +1,7 @@
 use std::path::Path;
 
 use tem00_calibration::{CalibrationSettings, read_calibration};
-use tem00_config::{ConfigError, Document, Problem, Reading};
+use tem00_config::{ConfigError, Reading};
 use tem00_scene::SceneFile;
 use tem00_tracer::Scene;
 use tem00_triangulation::{DetectorSettings, SensorDescription, read_detector, read_sensor};
@@ -35,8 +35,16 @@ impl MeasurementScene {
         path: &Path,
         reading: impl Into<Reading<'a>>,
     ) -> Result<(Self, Vec<String>), ConfigError> {
-        let (file, further) = SceneFile::read_with(path, reading, further)?;
-        let (sensor, detector, calibration, scan) = further;
+        let (file, sections) = SceneFile::read_with(path, reading, |document, scene| {
+            let pitch = scene.camera.description().pixel_pitch;
+            Ok((
+                read_sensor(document, pitch)?,
+                read_detector(document)?,
+                read_calibration(document)?,
+                read_scan(document, scene)?,
+            ))
+        })?;
+        let (sensor, detector, calibration, scan) = sections;
         let measurement = Self {
             scene: file.scene,
             sensor,
@@ -46,21 +54,4 @@ impl MeasurementScene {
         };
         Ok((measurement, file.notes))
     }
-}
-
-type Further = (
-    SensorDescription,
-    DetectorSettings,
-    CalibrationSettings,
-    ScanSettings,
-);
-
-fn further(document: &Document<'_>, scene: &Scene) -> Result<Further, Problem> {
-    let pitch = scene.camera.description().pixel_pitch;
-    Ok((
-        read_sensor(document, pitch)?,
-        read_detector(document)?,
-        read_calibration(document)?,
-        read_scan(document, scene)?,
-    ))
 }

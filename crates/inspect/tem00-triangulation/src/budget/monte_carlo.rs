@@ -212,7 +212,7 @@ impl<'a> Simulator<'a> {
         let phase = phase(&mut random);
         let position = self.noise_free_position(phase)?;
         let frames = self.frames(phase, random.next_u64());
-        let centre = frames.centre() + self.shift;
+        let centre = frames.column.centre + self.shift;
         let bias = Outcome {
             square: Some((position - centre).powi(2)),
             invalid: 0.0,
@@ -250,13 +250,17 @@ impl<'a> Simulator<'a> {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let frames = self.frames(phase(&mut random), random.next_u64());
         let found = positions(self.setup.detector(), &frames.exposed()?);
-        let reference = Positions::uniform(frames.centre());
+        let reference = Positions::uniform(frames.column.centre);
         Ok((self.group_deviations(&found, &reference), found.invalid()))
     }
 
     fn frames(&self, phase: f64, seed: u64) -> Frames<'_> {
-        let column = NoiseFreeColumn::new(self.setup, &self.line, phase);
-        Frames::new(self.setup, &self.image, column, seed)
+        Frames {
+            setup: self.setup,
+            image: &self.image,
+            column: NoiseFreeColumn::new(self.setup, &self.line, phase),
+            seed,
+        }
     }
 
     /// Returns the deviations of groups of columns over all frames; groups without a line are left

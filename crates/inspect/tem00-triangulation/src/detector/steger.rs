@@ -15,7 +15,7 @@ pub(super) struct Kernels {
 }
 
 /// The ridge along the columns and the derivatives across, about one pixel.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Derivatives {
     x: f64,
     y: f64,
@@ -102,13 +102,7 @@ pub(super) fn in_image(
 fn ridge(profile: &Profile<'_>, pixels: &[[f64; 3]], kernels: &Kernels) -> Option<f64> {
     let rows = (0_isize..).take(pixels.len());
     let derivatives = |row: isize| {
-        let mut sum = Derivatives {
-            x: 0.0,
-            y: 0.0,
-            xx: 0.0,
-            xy: 0.0,
-            yy: 0.0,
-        };
+        let mut sum = Derivatives::default();
         for (i, &[value, along, twice_along]) in (0_isize..).zip(pixels) {
             let [smooth, first, second] = kernels.at(row - i);
             sum.x += smooth * along;

@@ -3,6 +3,7 @@ use std::collections::VecDeque;
 use super::LinePoint;
 
 /// The points of a line so far.
+#[derive(Default)]
 struct Track {
     /// The last column with a point.
     last: usize,
@@ -31,7 +32,7 @@ pub(super) fn number(columns: &mut [Vec<LinePoint>], window: usize) {
         for (i, (point, owner)) in points.iter_mut().zip(owners).enumerate() {
             let track = owner.unwrap_or(tracks.len());
             if owner.is_none() {
-                tracks.push(Track::new());
+                tracks.push(Track::default());
                 active.push(track);
             }
             tracks[track].add(x, point.position, is_clear(&near, i));
@@ -178,16 +179,6 @@ impl Track {
     const RECENT: usize = 16;
     /// The minimum number of points that determine a slope.
     const FEWEST: usize = 4;
-
-    const fn new() -> Self {
-        Self {
-            last: 0,
-            followed_to: 0,
-            recent: VecDeque::new(),
-            points: 0,
-            sum: 0.0,
-        }
-    }
 
     fn add(&mut self, x: usize, position: f64, is_clear: bool) {
         self.last = x;

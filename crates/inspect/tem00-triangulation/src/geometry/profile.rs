@@ -36,7 +36,7 @@ impl Triangulator {
         uncertainty: impl Fn(usize, &LinePoint) -> f64,
     ) -> Vec<ProfilePoint> {
         let point = &|column: usize, found: &LinePoint| {
-            let pixel = DVec2::new(middle_of(column), found.position);
+            let pixel = DVec2::new(column as f64 + 0.5, found.position);
             let point = self.point_with_uncertainty(pixel, uncertainty(column, found))?;
             Some(ProfilePoint {
                 column,
@@ -54,9 +54,4 @@ impl Triangulator {
             .flat_map(|(column, found)| found.iter().filter_map(move |found| point(column, found)))
             .collect()
     }
-}
-
-/// Returns the position of the middle of a column, in pixels.
-fn middle_of(column: usize) -> f64 {
-    column as f64 + 0.5
 }

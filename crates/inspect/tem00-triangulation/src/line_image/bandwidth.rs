@@ -90,9 +90,7 @@ impl PolychromaticLight {
             bandwidth: is_broad.then(|| Bandwidth::new(&from_point, &heights)),
         })
     }
-}
 
-impl PolychromaticLight {
     /// Returns independent patterns that have the line noise of a set-up together, for paths below
     /// the surface, which are longer by far than those within a resolution cell.
     fn of_contrast(setup: &Setup) -> Self {

@@ -13,10 +13,10 @@ use crate::{
 /// Noise of a single source is drawn here, apart from [`Sensor::expose`](crate::Sensor::expose), in
 /// grey values that are not rounded.
 pub(super) struct Frames<'a> {
-    setup: &'a Setup,
-    image: &'a LineImage,
-    column: NoiseFreeColumn,
-    seed: u64,
+    pub(super) setup: &'a Setup,
+    pub(super) image: &'a LineImage,
+    pub(super) column: NoiseFreeColumn,
+    pub(super) seed: u64,
 }
 
 /// Purpose of random numbers of a trial: no two purposes share a stream.
@@ -29,26 +29,7 @@ enum Purpose {
     Rounded,
 }
 
-impl<'a> Frames<'a> {
-    pub(super) const fn new(
-        setup: &'a Setup,
-        image: &'a LineImage,
-        column: NoiseFreeColumn,
-        seed: u64,
-    ) -> Self {
-        Self {
-            setup,
-            image,
-            column,
-            seed,
-        }
-    }
-
-    /// Returns the true position of the line, in pixels.
-    pub(super) const fn centre(&self) -> f64 {
-        self.column.centre
-    }
-
+impl Frames<'_> {
     /// Returns the frames that are averaged, with the noise of one source: a single frame where all
     /// would be equal.
     pub(super) fn of(

@@ -44,9 +44,8 @@ impl FlatResult {
     ) -> Result<Option<Self>, S::Error> {
         let field = sensor.field();
         let level = level_flat(&field, PART * field.width, repetitions);
-        let twice: Vec<DVec3> = aside(&field, repetitions)
-            .flat_map(|place| [place, place])
-            .collect();
+        let places = aside(&field, repetitions, 0.0).into_iter();
+        let twice: Vec<DVec3> = places.flat_map(|place| [place, place]).collect();
         let pairs = sensor.measure(&level, &twice)?;
         let first: Vec<Vec<SurfacePoint>> = pairs.iter().step_by(2).cloned().collect();
         let slopes = slopes(&field, &level);
@@ -58,9 +57,7 @@ impl FlatResult {
                 ..level.clone()
             };
             let middle = 0.5 * (field.heights[0] + field.heights[1]);
-            let places: Vec<DVec3> = aside(&field, repetitions)
-                .map(|place| place.with_z(middle))
-                .collect();
+            let places = aside(&field, repetitions, middle);
             form.push(self::form(&sensor.measure(&tilted, &places)?));
         }
         let of = || {

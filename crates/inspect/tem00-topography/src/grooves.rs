@@ -84,8 +84,7 @@ impl GrooveResult {
         };
         let length = 8.0 * (repetitions as f64 + 2.0) * field.thickness;
         let artefact = comb.artefact(&field, [field.width, length]);
-        let places: Vec<DVec3> = aside(&field, repetitions).collect();
-        let profiles = sensor.measure(&artefact, &places)?;
+        let profiles = sensor.measure(&artefact, &aside(&field, repetitions, 0.0))?;
         let depths = |width: usize, kept: &[usize]| {
             let profile = mean_profile(&profiles, kept);
             let land = comb.land(&profile)?;

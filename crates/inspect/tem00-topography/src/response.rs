@@ -39,16 +39,9 @@ impl Response {
         let heights = heights(&field);
         let mut deviations = Vec::new();
         for height in &heights {
-            let places: Vec<DVec3> = aside(&field, repetitions)
-                .map(|place| place.with_z(*height))
-                .collect();
-            let profiles = sensor.measure(&flat, &places)?;
-            deviations.push(
-                profiles
-                    .iter()
-                    .map(|points| mean_height(points))
-                    .collect::<Vec<_>>(),
-            );
+            let profiles = sensor.measure(&flat, &aside(&field, repetitions, *height))?;
+            let means = profiles.iter().map(|points| mean_height(points));
+            deviations.push(means.collect::<Vec<_>>());
         }
         Ok(Self::of(heights, &deviations))
     }
@@ -125,11 +118,12 @@ pub(crate) fn level_flat(field: &Field, width: f64, repetitions: usize) -> Artef
     }
 }
 
-/// The places of repetitions, each of which the line finds with new speckle.
-pub(crate) fn aside(field: &Field, repetitions: usize) -> impl Iterator<Item = DVec3> {
+/// The places of repetitions at a height, each of which the line finds with new speckle.
+pub(crate) fn aside(field: &Field, repetitions: usize, height: f64) -> Vec<DVec3> {
     let step = step_aside(field);
     let middle = 0.5 * (repetitions as f64 - 1.0);
-    (0..repetitions).map(move |index| DVec3::new(0.0, (index as f64 - middle) * step, 0.0))
+    let place = |index| DVec3::new(0.0, (index as f64 - middle) * step, height);
+    (0..repetitions).map(place).collect()
 }
 
 /// Returns the step beyond which none of the light falls on the area that was lit before.

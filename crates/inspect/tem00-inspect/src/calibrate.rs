@@ -14,7 +14,7 @@ use tem00_calibration::{BoardView, Calibration, CameraModel, Checkerboard, calib
 use tem00_report::{
     atomic::probe_writable,
     failure::Failure,
-    image::{ImageError, RawFormat, RawImage, read_raw},
+    image::{RawFormat, RawImage, read_raw},
     interrupt,
     progress::Progress,
     report::Report,
@@ -22,7 +22,7 @@ use tem00_report::{
 use tem00_triangulation::TriangulationError;
 
 use self::left_out::FoundPoints;
-use crate::{args::CalibrateArgs, calibration_file::write_calibration};
+use crate::{args::CalibrateArgs, calibration_file::write_calibration, lines::unreadable};
 
 /// The photographs of a board.
 #[derive(Clone, Debug, PartialEq)]
@@ -176,13 +176,8 @@ fn read(
     args: &CalibrateArgs,
     size: &mut Option<[usize; 2]>,
 ) -> Result<RawImage, Failure> {
-    let unreadable = |error: ImageError| {
-        Failure::input(
-            format!("cannot read {}: {error}", path.display()),
-            "images are PNG, TIFF, JPEG, BMP, PGM or PPM files, grey or in colours",
-        )
-    };
-    let image = read_raw(path, args.channel.as_deref(), None).map_err(unreadable)?;
+    let image =
+        read_raw(path, args.channel.as_deref(), None).map_err(|error| unreadable(path, &error))?;
     let [width, height] = [image.values.width(), image.values.height()];
     let [first_width, first_height] = *size.get_or_insert([width, height]);
     if [width, height] == [first_width, first_height] {

@@ -136,15 +136,16 @@ fn read(path: &Path, args: &LinesArgs) -> Result<RawImage, Failure> {
             format!("name its images, as in {}", path.join("*.png").display()),
         ));
     }
-    let unreadable = |error: ImageError| {
-        wrong_or(path, Kind::Image, || {
-            Failure::input(
-                format!("cannot read {}: {error}", path.display()),
-                "images are PNG, TIFF, JPEG, BMP, PGM or PPM files, grey or in colours",
-            )
-        })
-    };
-    read_raw(path, args.channel.as_deref(), args.bits).map_err(unreadable)
+    read_raw(path, args.channel.as_deref(), args.bits)
+        .map_err(|error| wrong_or(path, Kind::Image, || unreadable(path, &error)))
+}
+
+/// Returns the failure that a file is no image.
+pub(crate) fn unreadable(path: &Path, error: &ImageError) -> Failure {
+    Failure::input(
+        format!("cannot read {}: {error}", path.display()),
+        "images are PNG, TIFF, JPEG, BMP, PGM or PPM files, grey or in colours",
+    )
 }
 
 fn check_size(path: &Path, image: &RawImage, calibration: &Calibration) -> Result<(), Failure> {

@@ -1,6 +1,6 @@
 //! `tem00-inspect list`: the names that set-ups can use.
 
-use std::io::Write;
+use std::{io::Write, iter};
 
 use tem00_report::{
     digits::rounded,
@@ -80,22 +80,13 @@ fn sensors() -> Table {
         ("gain (DN/electron)", |sensor| sensor.gain),
     ];
     let sensors = [8, 10, 12, 14, 16].map(SensorDescription::typical);
-    let bits = sensors
-        .each_ref()
-        .map(|sensor| sensor.bit_depth.to_string());
-    let [a, b, c, d, e] = bits.each_ref().map(String::as_str);
-    let headings = ["bit_depth", a, b, c, d, e];
-    let mut table = Table::new("", headings.map(Column::shown));
+    let bits = sensors.iter().map(|sensor| sensor.bit_depth.to_string());
+    let headings = iter::once("bit_depth".to_owned()).chain(bits);
+    let mut table = Table::new("", headings.map(Column::shown).collect::<Vec<_>>());
     for (name, value) in rows {
-        let values = sensors
-            .iter()
-            .map(|sensor| rounded(value(sensor), 4).into());
-        table.row(
-            [name.into()]
-                .into_iter()
-                .chain(values)
-                .collect::<Vec<Cell>>(),
-        );
+        let values = sensors.iter().map(|sensor| rounded(value(sensor), 4));
+        let cells = iter::once(name.to_owned()).chain(values).map(Cell::from);
+        table.row(cells.collect::<Vec<_>>());
     }
     table
 }

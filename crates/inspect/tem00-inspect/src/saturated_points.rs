@@ -1,6 +1,19 @@
 //! Points of lines on saturated pixels: the judgement that all commands share.
 
+use std::collections::BTreeMap;
+
 use tem00_triangulation::Validity;
+
+/// Returns the numbers of points that are not valid, by reason.
+pub(crate) fn not_valid(
+    validities: impl Iterator<Item = Validity>,
+) -> BTreeMap<&'static str, usize> {
+    let mut counts = BTreeMap::new();
+    for validity in validities.filter(|validity| *validity != Validity::Valid) {
+        *counts.entry(validity.name()).or_default() += 1;
+    }
+    counts
+}
 
 /// The fraction of points on saturated pixels above which a warning is given.
 const TOLD: f64 = 0.05;

@@ -1,6 +1,6 @@
 //! Parts of line photographs that a calibration cannot use.
 
-use std::{collections::BTreeMap, path::Path};
+use std::path::Path;
 
 use tem00_calibration::CalibrationQuality;
 use tem00_report::output::name;
@@ -8,7 +8,7 @@ use tem00_triangulation::{LinePoint, Validity};
 
 use crate::{
     lines::notes::{SATURATED, reason},
-    saturated_points::PointCounts,
+    saturated_points::{PointCounts, not_valid},
 };
 
 /// The points of the line that were found in photographs: one in each column.
@@ -56,16 +56,8 @@ impl FoundPoints {
         if beyond > 0 {
             reasons.push(format!("{beyond} beyond the boards"));
         }
-        let mut by_name = BTreeMap::new();
-        let not_valid = self.validities.iter().filter(|v| **v != Validity::Valid);
-        for validity in not_valid {
-            *by_name.entry(validity.name()).or_insert(0) += 1;
-        }
-        reasons.extend(
-            by_name
-                .iter()
-                .map(|(name, count)| format!("{count} {name}")),
-        );
+        let not_valid = not_valid(self.validities.iter().copied()).into_iter();
+        reasons.extend(not_valid.map(|(name, count)| format!("{count} {name}")));
         format!(
             "{used} of {} points of the line, in {} of {} pictures, are used; left out: {}.",
             counts.points,

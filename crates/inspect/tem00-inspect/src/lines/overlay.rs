@@ -1,6 +1,6 @@
 //! The picture of an image with its lines.
 
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, cast::to_usize};
 use tem00_triangulation::{LinePoint, Validity};
 
 /// The colours of the lines, in linear sRGB; further lines begin again with the first.
@@ -23,8 +23,9 @@ pub(crate) fn picture(
     let white = if brightest > 0.0 { brightest } else { 1.0 };
     let mut picture = image.map(|&value| [value / white; 3]);
     for (index, points) in found.iter().enumerate() {
-        for point in points {
-            let place = whole(point.position);
+        // Positions before the image have no pixel.
+        for point in points.iter().filter(|point| point.position >= 0.0) {
+            let place = to_usize(point.position);
             let (x, y) = if rows { (place, index) } else { (index, place) };
             if x < picture.width() && y < picture.height() {
                 picture[(x, y)] = colour(point);
@@ -38,20 +39,6 @@ fn colour(point: &LinePoint) -> [f32; 3] {
     match point.validity {
         Validity::Valid => COLOURS[point.line % COLOURS.len()],
         _ => DOUBTFUL,
-    }
-}
-
-/// The pixel that contains a position; a position before the image counts as beyond it.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "negative places are none, and places of an image are below 2²⁸"
-)]
-fn whole(place: f64) -> usize {
-    if place >= 0.0 {
-        place as usize
-    } else {
-        usize::MAX
     }
 }
 

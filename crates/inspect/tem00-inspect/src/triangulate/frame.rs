@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use tem00_report::report::{Cell, Column, Table, units::NUMBER};
 use tem00_scan::MeasuredFrame;
 
-use crate::saturated_points::PointCounts;
+use crate::saturated_points::{PointCounts, not_valid};
 
 /// The summary of a frame.
 #[derive(Clone, Debug)]
@@ -23,11 +23,8 @@ pub(super) struct FrameRecord {
 
 impl FrameRecord {
     pub(super) fn of(frame: &MeasuredFrame, file: String) -> Self {
-        let counts = PointCounts::of(frame.points.iter().map(|point| point.seen.validity));
-        let mut not_valid = BTreeMap::new();
-        for point in frame.points.iter().filter(|point| !point.is_valid()) {
-            *not_valid.entry(point.seen.validity.name()).or_default() += 1;
-        }
+        let validities = frame.points.iter().map(|point| point.seen.validity);
+        let counts = PointCounts::of(validities.clone());
         let widths = frame.points.iter().filter(|point| point.is_valid());
         let width: f64 = widths.map(|point| point.seen.width).sum();
         let mean_width = (counts.valid > 0).then(|| width / counts.valid as f64);
@@ -35,7 +32,7 @@ impl FrameRecord {
             number: frame.frame,
             file,
             counts,
-            not_valid,
+            not_valid: not_valid(validities),
             saturated_pixels: frame.raw.saturated_pixels(),
             peak: frame.raw.values.values().iter().copied().max().unwrap_or(0),
             mean_width,

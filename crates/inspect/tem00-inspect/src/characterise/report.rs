@@ -4,7 +4,7 @@ use tem00_report::report::{
     Cell, Column, Report, Section, Table,
     units::{DEGREES, MICROMETRES, MILLIMETRES},
 };
-use tem00_topography::Characteristics;
+use tem00_topography::{Characteristics, Estimate};
 use tem00_triangulation::Setup;
 
 use super::rows::{CharacteristicRow, rows};
@@ -67,8 +67,8 @@ pub(super) fn report(
 fn verdict(rows: &[CharacteristicRow]) -> String {
     let said = |key: &str| {
         let row = rows.iter().find(|row| row.key == key)?;
-        let found = row.found.as_ref().ok()?;
-        Some(row.unit.with_digits(2).text(found.value))
+        let found = row.found.estimate.as_ref().ok()?;
+        Some(row.found.unit.with_digits(2).text(found.value))
     };
     let noise = said("measurement_noise").zip(said("instrument_noise"));
     let noise = noise.map_or_else(
@@ -115,12 +115,13 @@ fn table(rows: &[CharacteristicRow]) -> Table {
     )
     .under("characteristics");
     for row in rows {
-        let [value, uncertainty] = match &row.found {
-            Ok(found) => [
-                row.unit
-                    .with_digits_known(found.value, found.uncertainty)
-                    .quantity(found.value),
-                row.unit.with_digits(2).quantity(found.uncertainty),
+        let unit = row.found.unit;
+        let in_two_digits = |value| unit.with_digits(2).quantity(value);
+        let [value, uncertainty] = match &row.found.estimate {
+            Ok(Estimate { value, uncertainty }) => [
+                unit.with_digits_known(*value, *uncertainty)
+                    .quantity(*value),
+                in_two_digits(*uncertainty),
             ],
             Err(reason) => [Cell::missing(reason.clone()), Cell::missing("-")],
         };
@@ -129,10 +130,7 @@ fn table(rows: &[CharacteristicRow]) -> Table {
             row.symbol.into(),
             value,
             uncertainty,
-            Cell::or_dash(
-                row.by_chance
-                    .map(|chance| row.unit.with_digits(2).quantity(chance)),
-            ),
+            Cell::or_dash(row.found.by_chance.map(in_two_digits)),
             row.definition.into(),
         ]);
     }
@@ -197,10 +195,7 @@ fn artefacts(
         .fact(
             "averaged_columns",
             "columns averaged",
-            Cell::new(
-                setup.description().average.columns,
-                setup.description().average.columns.to_string(),
-            ),
+            setup.description().average.columns,
         )
         .data("repetitions", args.repetitions)
         .data("samples_per_pixel", args.spp)

@@ -12,9 +12,14 @@ pub(super) struct CharacteristicRow {
     pub(super) name: &'static str,
     pub(super) symbol: &'static str,
     pub(super) definition: &'static str,
+    pub(super) found: CharacteristicValue,
+}
+
+/// Value of a characteristic.
+pub(super) struct CharacteristicValue {
     pub(super) unit: Unit,
     /// Value and standard uncertainty, or the reason why there are none.
-    pub(super) found: Result<Estimate, String>,
+    pub(super) estimate: Result<Estimate, String>,
     /// The value that noise alone would give.
     pub(super) by_chance: Option<f64>,
 }
@@ -23,13 +28,6 @@ pub(super) struct CharacteristicRow {
 const NAMES: &str = include_str!("characteristics.txt");
 
 const NOT_SEEN: &str = "not measured: too little of the artefact was seen";
-
-/// Value of a characteristic.
-struct CharacteristicValue {
-    unit: Unit,
-    estimate: Result<Estimate, String>,
-    by_chance: Option<f64>,
-}
 
 /// Returns all characteristics, in the order of a report.
 pub(super) fn rows(characteristics: &Characteristics) -> Vec<CharacteristicRow> {
@@ -45,9 +43,7 @@ pub(super) fn rows(characteristics: &Characteristics) -> Vec<CharacteristicRow> 
             name: text(),
             symbol: text(),
             definition: text(),
-            unit: found.unit,
-            found: found.estimate,
-            by_chance: found.by_chance,
+            found,
         }
     });
     rows.collect()
@@ -55,11 +51,10 @@ pub(super) fn rows(characteristics: &Characteristics) -> Vec<CharacteristicRow> 
 
 fn heights(found: &Characteristics) -> Vec<CharacteristicValue> {
     let (response, flat) = (found.response.as_ref(), found.flat.as_ref());
-    let amplification = seen(response.map(|found| found.amplification));
     vec![
         CharacteristicValue {
             unit: NUMBER,
-            ..amplification
+            ..seen(response.map(|found| found.amplification))
         },
         extreme(seen_at_all(response.map(|found| found.linearity))),
         extreme(seen_at_all(flat.map(|found| found.flatness))),

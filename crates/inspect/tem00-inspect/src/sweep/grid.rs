@@ -28,11 +28,7 @@ pub(super) enum Swept {
 }
 
 impl Swept {
-    const ALL: [(&'static str, Self); 3] = [
-        ("budget", Self::Budget),
-        ("render", Self::Render),
-        ("triangulate", Self::Triangulate),
-    ];
+    const ALL: [Self; 3] = [Self::Budget, Self::Render, Self::Triangulate];
 
     pub(super) const fn name(self) -> &'static str {
         match self {
@@ -91,7 +87,7 @@ impl Grid {
             .table("sweep", KEYS)?
             .ok_or_else(|| Problem::new("the grid needs a section [sweep]").with_help(HELP))?;
         let command = section.required("command", "\"budget\"")?;
-        let command = command.one_of(&Swept::ALL)?;
+        let command = command.one_of(&Swept::ALL.map(|command| (command.name(), command)))?;
         let file = section.required("file", "\"data_sheet.toml\"")?.string()?;
         let axes = section.tables("vary", VARY)?;
         check_keys(&axes)?;

@@ -59,27 +59,6 @@ impl BoardPlan {
         2 * self.poses.len() as u64 * pixels * u64::from(self.scene.render.samples_per_pixel)
     }
 
-    /// Renders all boards and calibrates with their images; see [`frames`](Self::frames) and
-    /// [`calibration`](Self::calibration).
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if an image cannot be rendered, does not show its board, or leaves the
-    /// calibration open, or if `cancel` was set.
-    pub fn calibrate(
-        &self,
-        sensor: &Sensor,
-        detector: &LineDetector,
-        progress: &(dyn Fn(u64) + Sync),
-        cancel: &AtomicBool,
-    ) -> Result<Calibration, ScanError> {
-        let frames = |pose: usize| self.frames(pose, sensor, progress, cancel);
-        let frames: Vec<_> = (0..self.poses.len())
-            .map(frames)
-            .collect::<Result<_, _>>()?;
-        self.calibration(&frames, detector)
-    }
-
     /// Calibrates with the images of all boards, in the order of the poses, as with photographs:
     /// corners and lines are found in the raw frames. Camera and laser plane are those of the
     /// scene, within the errors of the calibration.

@@ -100,8 +100,12 @@ fn rendered_boards_give_the_scene_back() {
     })
     .unwrap();
     let cancel = AtomicBool::new(false);
+    let frames = (0..plan.poses().len()).map(|pose| {
+        let frames = plan.frames(pose, &sensor(), &|_| (), &cancel);
+        frames.unwrap()
+    });
     let calibration = plan
-        .calibrate(&sensor(), &detector, &|_| (), &cancel)
+        .calibration(&frames.collect::<Vec<_>>(), &detector)
         .unwrap();
     let exact = Triangulator::new(scene.camera, plane_of(&scene.lasers[0]).unwrap());
     for pixel in [[120.0, 90.0], [60.0, 60.0], [180.0, 120.0]].map(DVec2::from) {

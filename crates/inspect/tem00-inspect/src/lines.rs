@@ -22,7 +22,7 @@ use tem00_report::{
     output,
     progress::Progress,
 };
-use tem00_triangulation::{LineDetector, LinePoint};
+use tem00_triangulation::LineDetector;
 
 use crate::{args::LinesArgs, calibration_file::read_calibration, saturated_points::PointCounts};
 
@@ -113,11 +113,10 @@ fn image(
     let table = with_ending(target, ".csv");
     write_atomically(&table, |writer| places.write(writer))
         .map_err(|error: std::io::Error| Failure::writing(&table, error))?;
-    draw(
-        &with_ending(target, "_lines.png"),
-        &image.values,
-        (&found, args.rows),
-    )?;
+    let drawing = with_ending(target, "_lines.png");
+    let picture = overlay::picture(&image.values, (&found, args.rows));
+    write_atomically(&drawing, |writer| write_rgb_png(writer, &picture, &[]))
+        .map_err(|error: ImageError| Failure::writing(&drawing, error))?;
     let notes = notes::of(path, &image, (&found, args));
     let validities = found.iter().flatten().map(|point| point.validity);
     let counts = PointCounts::of(validities);
@@ -163,12 +162,6 @@ fn check_size(path: &Path, image: &RawImage, calibration: &Calibration) -> Resul
         ),
         "a calibration belongs to whole images of the camera it was made with",
     ))
-}
-
-fn draw(path: &Path, image: &Grid<f32>, found: (&[Vec<LinePoint>], bool)) -> Result<(), Failure> {
-    let picture = overlay::picture(image, found);
-    write_atomically(path, |writer| write_rgb_png(writer, &picture, &[]))
-        .map_err(|error: ImageError| Failure::writing(path, error))
 }
 
 fn with_ending(target: &Path, ending: &str) -> PathBuf {

@@ -39,17 +39,14 @@ pub(crate) fn run(args: &TriangulateArgs, out: &mut impl Write) -> Result<(), Fa
                 Failure::file(&args.common.scene, &error, HELP)
             })
         })?;
-    let settings = scene.calibration.clone();
+    let boards = scene.calibration.boards.clone();
     let mut job = Job::new(args, scene, notes)?;
     job.warn_of_darkness()?;
     let pool = output::thread_pool(args.common.threads)?;
-    job.measurement = pool.install(|| {
-        calibration::calibrated(
-            job.measurement.clone(),
-            &settings,
-            (&args.common.scene, &job.files),
-        )
-    })?;
+    if let Some(boards) = boards {
+        let calibration = pool.install(|| calibration::estimated(&job, &boards))?;
+        job.measurement = job.measurement.with_calibration(calibration);
+    }
     let measured = pool.install(|| job.measure())?;
     let report = write(&job, &measured)?;
     report.print(false, &[job.files.path("report.html")], out)?;

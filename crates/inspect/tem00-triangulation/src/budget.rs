@@ -161,8 +161,11 @@ impl Budget {
 
     /// Returns the standard uncertainty by one source alone, in metres.
     pub fn contribution(&self, source: UncertaintySource) -> f64 {
-        let term = self.terms.iter().find(|term| term.source == source);
-        term.map_or(0.0, BudgetTerm::contribution)
+        self.term(source).map_or(0.0, BudgetTerm::contribution)
+    }
+
+    pub(crate) fn term(&self, source: UncertaintySource) -> Option<&BudgetTerm> {
+        self.terms.iter().find(|term| term.source == source)
     }
 
     /// Returns the combined standard uncertainty of the height, in metres.
@@ -200,16 +203,11 @@ impl Budget {
 
     /// Returns the term that contributes most.
     pub fn dominant(&self) -> &BudgetTerm {
-        let larger = |best: usize, next: usize| {
-            let contribution = |index: usize| self.terms[index].contribution();
-            if contribution(next) > contribution(best) {
-                next
-            } else {
-                best
-            }
-        };
-        let index = (1..self.terms.len()).fold(0, larger);
-        &self.terms[index]
+        let by_contribution =
+            |a: &&BudgetTerm, b: &&BudgetTerm| a.contribution().total_cmp(&b.contribution());
+        // Of equal ones the first.
+        let largest = self.terms.iter().rev().max_by(by_contribution);
+        largest.unwrap_or(&self.terms[0])
     }
 
     /// Returns the standard uncertainty by speckle after the closed form for a line that a lens

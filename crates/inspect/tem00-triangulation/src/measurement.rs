@@ -361,7 +361,11 @@ fn slopes(
         let (below, above) = (budget(-1.0)?, budget(1.0)?);
         shifts.push((shift(&above) - shift(&below)) / (2.0 * input.uncertainty()));
         for (slopes, term) in slopes.iter_mut().zip(terms) {
-            let [below, above] = [&below, &above].map(|budget| uncertainty(budget, term.source));
+            let uncertainty = |budget: &Budget| {
+                let term = budget.term(term.source);
+                term.map_or(0.0, |term| term.uncertainty)
+            };
+            let [below, above] = [&below, &above].map(uncertainty);
             slopes.push((above - below) / (2.0 * input.uncertainty() * term.uncertainty));
         }
     }
@@ -371,12 +375,6 @@ fn slopes(
 /// Returns the shift of a line by light from below the surface, in pixels.
 fn shift(budget: &Budget) -> f64 {
     budget.subsurface().map_or(0.0, |shift| shift.position)
-}
-
-/// Returns the standard uncertainty of a term, in its own unit.
-fn uncertainty(budget: &Budget, source: UncertaintySource) -> f64 {
-    let term = budget.terms().iter().find(|term| term.source == source);
-    term.map_or(0.0, |term| term.uncertainty)
 }
 
 #[cfg(test)]

@@ -102,6 +102,18 @@ pub(crate) struct Outcome {
     pub(crate) invalid: f64,
 }
 
+impl Outcome {
+    /// Returns the mean square of deviations, each averaged over a group of columns and all frames;
+    /// without any there is no line that can be trusted.
+    pub(crate) fn of(deviations: &[f64], invalid: f64) -> Self {
+        let sum: f64 = deviations.iter().map(|deviation| deviation.powi(2)).sum();
+        Self {
+            square: (!deviations.is_empty()).then(|| sum / deviations.len() as f64),
+            invalid,
+        }
+    }
+}
+
 /// The number of the sources that are simulated: all but the last, the calibration.
 const SIMULATED: usize = UncertaintySource::ALL.len() - 1;
 
@@ -213,10 +225,7 @@ impl<'a> Simulator<'a> {
         let position = self.noise_free_position(phase)?;
         let frames = self.frames(phase, random.next_u64());
         let centre = frames.column.centre + self.shift;
-        let bias = Outcome {
-            square: Some((position - centre).powi(2)),
-            invalid: 0.0,
-        };
+        let bias = Outcome::of(&[position - centre], 0.0);
         let mut outcomes = [bias; SIMULATED + 1];
         let simulated = UncertaintySource::ALL.into_iter().take(SIMULATED);
         for (outcome, source) in outcomes.iter_mut().zip(simulated) {
@@ -226,11 +235,11 @@ impl<'a> Simulator<'a> {
                 _ => Positions::uniform(position),
             };
             let found = positions(&self.unlimited, &frames.of(source)?);
-            *outcome = outcome_of(&self.group_deviations(&found, &reference), found.invalid());
+            *outcome = Outcome::of(&self.group_deviations(&found, &reference), found.invalid());
         }
         let found = positions(self.setup.detector(), &frames.exposed()?);
         let deviations = self.group_deviations(&found, &Positions::uniform(centre));
-        outcomes[SIMULATED] = outcome_of(&deviations, found.invalid());
+        outcomes[SIMULATED] = Outcome::of(&deviations, found.invalid());
         let per_pixel = self.setup.line().height_per_pixel;
         let calibration = self.setup.description().calibration_uncertainty;
         let error = |deviation: f64| {
@@ -344,16 +353,6 @@ fn positions(detector: &LineDetector, frames: &[Grid<f32>]) -> Positions {
     };
     let of_frame = |frame| detector.detect(frame).into_iter().map(position).collect();
     Positions(frames.iter().map(of_frame).collect())
-}
-
-/// Returns the mean square of deviations, each averaged over a group of columns and all frames;
-/// without any there is no line that can be trusted.
-fn outcome_of(deviations: &[f64], invalid: f64) -> Outcome {
-    let sum: f64 = deviations.iter().map(|deviation| deviation.powi(2)).sum();
-    Outcome {
-        square: (!deviations.is_empty()).then(|| sum / deviations.len() as f64),
-        invalid,
-    }
 }
 
 /// Returns the mean fraction of columns without a line that can be trusted.

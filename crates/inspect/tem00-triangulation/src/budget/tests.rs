@@ -19,8 +19,7 @@ fn budget_of(change: impl Fn(&mut SetupDescription)) -> Budget {
 
 /// The contribution of one source to the position of the line, in pixels.
 fn position(budget: &Budget, source: Source) -> f64 {
-    let found = budget.terms().iter().find(|term| term.source == source);
-    found.unwrap().uncertainty
+    budget.term(source).unwrap().uncertainty
 }
 
 /// The mean over the position of the line in a pixel of Σ (yᵢ − ŷ)² over a window of 2 n + 1 pixels

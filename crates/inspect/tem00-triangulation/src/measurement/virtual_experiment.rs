@@ -99,13 +99,9 @@ impl Measurement {
             .filter_map(height)
             .map(|height| height + calibration)
             .collect();
-        let squares = heights.iter().map(|height| (height - self.height).powi(2));
-        let mean = squares.sum::<f64>() / heights.len() as f64;
+        let errors: Vec<f64> = heights.iter().map(|height| height - self.height).collect();
         Ok(Heights {
-            outcome: Outcome {
-                square: (!heights.is_empty()).then_some(mean),
-                invalid,
-            },
+            outcome: Outcome::of(&errors, invalid),
             heights,
         })
     }

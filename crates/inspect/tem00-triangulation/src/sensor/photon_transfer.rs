@@ -68,15 +68,11 @@ impl PhotonTransferPoint {
             difference += apart;
             squares += apart.unsigned_abs() * apart.unsigned_abs();
         }
-        Ok(Self::of_sums(of(a), sum, difference, squares))
-    }
-
-    fn of_sums(pixels: usize, sum: u64, difference: i64, squares: u64) -> Self {
-        let n = pixels as f64;
+        let n = of(a) as f64;
         let apart = difference as f64 / n;
-        Self {
+        Ok(Self {
             mean: 0.5 * sum as f64 / n,
             variance: 0.5 * (squares as f64 / n - apart * apart),
-        }
+        })
     }
 }

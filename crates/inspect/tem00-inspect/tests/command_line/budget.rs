@@ -52,7 +52,11 @@ fn a_budget_is_a_table_and_five_files() {
     );
     assert_eq!(record["dominant"], "speckle");
     let page = read(&out.join("budget.html"));
+    reports::check(&page);
+    let headings = ["The budget", "The set-up", "The inputs", "Files"];
+    assert_eq!(reports::headings(&page), headings);
     assert_has(&page, &["<svg", "line_thickness = &quot;0.2 mm&quot;"]);
+    assert!(!page.contains("<script"), "there is nothing to turn");
 }
 
 #[test]

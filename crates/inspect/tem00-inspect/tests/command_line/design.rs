@@ -67,6 +67,12 @@ fn a_search_writes_its_files_and_a_winner_that_reads_back() {
     }
     assert_eq!(files(&out), expected);
 
+    let page = read(&out.join("design.html"));
+    reports::check(&page);
+    assert_eq!(reports::headings(&page)[0], "The best set-ups");
+    // Speckle is in both diagrams over a parameter.
+    assert!(page.matches(">speckle</text>").count() >= 2);
+
     let written = read(&out.join("best.toml"));
     assert_has(
         &written,

@@ -57,7 +57,7 @@ fn legend(svg: &str, meanings: &mut BTreeMap<String, BTreeSet<String>>) {
 }
 
 /// Checks what holds of every report.
-fn check(html: &str) {
+pub(super) fn check(html: &str) {
     let mut meanings = BTreeMap::new();
     for svg in elements(html, "svg") {
         let view_box = attribute(svg, "viewBox").expect("a drawing has a viewBox");
@@ -99,7 +99,7 @@ fn check(html: &str) {
 }
 
 /// Returns the headings in their order.
-fn headings(html: &str) -> Vec<&str> {
+pub(super) fn headings(html: &str) -> Vec<&str> {
     let headings = html.split("<h2>").skip(1);
     headings
         .filter_map(|rest| Some(rest.split_once("</h2>")?.0))
@@ -154,29 +154,4 @@ fn a_measurement_is_reported_with_its_result_first() {
     assert_eq!(cloud.matches("h0").count(), valid);
     assert_has(&html, &[&format!("The {valid} valid points")]);
     assert_eq!(html.matches("<script>").count(), 1, "what turns them");
-}
-
-#[test]
-fn a_budget_is_reported_with_its_result_first() {
-    let folder = written(SETUP);
-    said(folder.path(), "budget a.toml --trials 10", 0);
-    let html = read(&folder.path().join("out/a/budget.html"));
-    check(&html);
-    assert_eq!(
-        headings(&html),
-        ["The budget", "The set-up", "The inputs", "Files"]
-    );
-    assert!(!html.contains("<script"), "there is nothing to turn");
-}
-
-#[test]
-fn a_search_is_reported_with_its_result_first() {
-    let folder = written(DESIGN);
-    let line = "design a.toml --set design.require.saturation=0.9";
-    said(folder.path(), line, 0);
-    let html = read(&folder.path().join("out/a/design.html"));
-    check(&html);
-    assert_eq!(headings(&html)[0], "The best set-ups");
-    // Speckle is in both diagrams over a parameter.
-    assert!(html.matches(">speckle</text>").count() >= 2);
 }

@@ -9,11 +9,11 @@ mod report;
 mod words;
 
 use std::{
-    io::{self, Write},
+    io::Write,
     path::{Path, PathBuf},
 };
 
-use tem00_report::{atomic::write_atomically, failure::Failure, output};
+use tem00_report::{failure::Failure, output};
 use tem00_triangulation::read_uncertainty;
 
 use self::{
@@ -95,10 +95,8 @@ fn certify(
         return Ok(None);
     };
     let path = folder.join(CERTIFICATE).with_extension("xml");
-    write_atomically(&path, |file| {
-        file.write_all(certificate(data, measured, &findings.setup).as_bytes())
-    })
-    .map_err(|error: io::Error| Failure::writing(&path, error))?;
+    let certificate = certificate(data, measured, &findings.setup);
+    output::save(&path, |file| file.write_all(certificate.as_bytes()))?;
     Ok(Some(path))
 }
 

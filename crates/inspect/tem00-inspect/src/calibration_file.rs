@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use tem00_calibration::{Calibration, CalibrationCovariance, CalibrationQuality, PARAMETERS};
 use tem00_camera::{Camera, CameraDescription};
 use tem00_config::{MAX_TEXT_BYTES, read_input, without_byte_order_mark};
-use tem00_report::{atomic::write_atomically, failure::Failure};
+use tem00_report::{failure::Failure, output};
 use tem00_triangulation::{LaserPlane, TriangulationError};
 
 /// The format of the file, with its version.
@@ -46,10 +46,9 @@ struct CovarianceRecord {
 /// Writes a calibration as JSON, completely or not at all.
 pub(crate) fn write_calibration(path: &Path, calibration: &Calibration) -> Result<(), Failure> {
     let record = CalibrationRecord::of(calibration);
-    write_atomically(path, |writer| {
+    output::save(path, |writer| {
         serde_json::to_writer_pretty(writer, &record).map_err(std::io::Error::other)
     })
-    .map_err(|error| Failure::writing(path, error))
 }
 
 /// Reads a calibration that `tem00-inspect calibrate` wrote.

@@ -14,7 +14,6 @@ use std::{
 use tem00_calibration::Calibration;
 use tem00_numerics::Grid;
 use tem00_report::{
-    atomic::write_atomically,
     failure::Failure,
     image::{ImageError, RawImage, read_raw, write_rgb_png},
     interrupt,
@@ -110,13 +109,11 @@ fn image(
         lines: &lines,
         calibration,
     };
-    let table = with_ending(target, ".csv");
-    write_atomically(&table, |writer| places.write(writer))
-        .map_err(|error: std::io::Error| Failure::writing(&table, error))?;
-    let drawing = with_ending(target, "_lines.png");
+    output::save(&with_ending(target, ".csv"), |writer| places.write(writer))?;
     let picture = overlay::picture(&image.values, (&found, args.rows));
-    write_atomically(&drawing, |writer| write_rgb_png(writer, &picture, &[]))
-        .map_err(|error: ImageError| Failure::writing(&drawing, error))?;
+    output::save(&with_ending(target, "_lines.png"), |writer| {
+        write_rgb_png(writer, &picture, &[])
+    })?;
     let notes = notes::of(path, &image, (&found, args));
     let validities = found.iter().flatten().map(|point| point.validity);
     let counts = PointCounts::of(validities);

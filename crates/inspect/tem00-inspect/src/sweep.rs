@@ -8,7 +8,6 @@ mod task;
 use std::{io::Write, ops::RangeInclusive, thread::sleep, time::Duration};
 
 use tem00_report::{
-    atomic::write_atomically,
     failure::Failure,
     interrupt,
     kind::{Kind, wrong_or},
@@ -141,8 +140,7 @@ fn gather(sweep: &Sweep<'_>, out: &mut impl Write) -> Result<(), Failure> {
     }
     let rows: Vec<TaskRow> = rows.into_iter().flatten().collect();
     let path = sweep.folder.join("sweep.csv");
-    write_atomically(&path, |file| write_table(grid, &rows, file))
-        .map_err(|error| Failure::writing(&path, error))?;
+    output::save(&path, |file| write_table(grid, &rows, file))?;
     let count = |outcome| rows.iter().filter(|row| row.outcome == outcome).count();
     let (done, refused) = (count(Outcome::Done), count(Outcome::Refused));
     writeln!(

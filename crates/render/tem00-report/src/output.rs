@@ -1,9 +1,9 @@
 //! Output folders, notes and threads, which the commands share.
 
 use std::{
-    fmt::Arguments,
-    fs,
-    io::{self, Write},
+    fmt::{Arguments, Display},
+    fs::{self, File},
+    io::{self, BufWriter, Write},
     num::NonZero,
     path::{Path, PathBuf},
     sync::atomic::{AtomicBool, Ordering},
@@ -15,7 +15,7 @@ use tem00_config::{is_standard_input, printable};
 use tem00_numerics::check_memory;
 
 use crate::{
-    atomic::{create_writable_folder, remove_abandoned},
+    atomic::{create_writable_folder, remove_abandoned, write_atomically},
     failure::Failure,
     folder_lock::{FolderLock, Refused},
 };
@@ -139,6 +139,18 @@ impl<W: Write> Write for Printable<W> {
     fn flush(&mut self) -> io::Result<()> {
         self.0.flush()
     }
+}
+
+/// Writes a file completely or not at all, as [`write_atomically`] does.
+///
+/// # Errors
+///
+/// Returns a failure that names the file if it cannot be written.
+pub fn save<E: From<io::Error> + Display>(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> Result<(), E>,
+) -> Result<(), Failure> {
+    write_atomically(path, write).map_err(|error| Failure::writing(path, error))
 }
 
 /// Removes files of an earlier run that this one does not write: each of the names with each

@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use tem00_report::{atomic::write_atomically, failure::Failure, report::Report};
+use tem00_report::{failure::Failure, output, report::Report};
 use tem00_triangulation::{Candidate, DesignFigure, Neighbours};
 
 use super::{plots, report, search::Design};
@@ -22,10 +22,10 @@ pub(super) fn write(
     let best = best(design)?;
     let mut names = vec!["design.csv", "design.json", "design.html"];
     if let Some(best) = &best {
-        save(&path("best.toml"), |file| file.write_all(best.as_bytes()))?;
+        output::save(&path("best.toml"), |file| file.write_all(best.as_bytes()))?;
         names.insert(0, "best.toml");
     }
-    save(&path("design.csv"), |file| write_csv(design, file))?;
+    output::save(&path("design.csv"), |file| write_csv(design, file))?;
     let drawings = plots::all(design, near).into_iter();
     let drawings =
         drawings.map(|named| Ok((named.drawing.save(folder, &named.name)?, named.caption)));
@@ -34,13 +34,6 @@ pub(super) fn write(
     report.save_json(&path("design.json"))?;
     report.save_page(&path("design.html"))?;
     Ok((report, names.into_iter().map(path).collect()))
-}
-
-fn save(
-    path: &Path,
-    write: impl FnOnce(&mut io::BufWriter<std::fs::File>) -> io::Result<()>,
-) -> Result<(), Failure> {
-    write_atomically(path, write).map_err(|error| Failure::writing(path, error))
 }
 
 /// Returns the best set-up as the text of a set-up file, if there is one.

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use tem00_config::{MAX_TEXT_BYTES, printable, read_input};
-use tem00_report::{atomic::write_atomically, failure::Failure};
+use tem00_report::{failure::Failure, output};
 
 /// The outcome of a task.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
@@ -52,10 +52,9 @@ impl TaskRow {
 
     /// Writes the row, completely or not at all.
     pub(super) fn write(&self, path: &Path) -> Result<(), Failure> {
-        write_atomically(path, |file| {
+        output::save(path, |file| {
             serde_json::to_writer(file, self).map_err(std::io::Error::from)
         })
-        .map_err(|error| Failure::writing(path, error))
     }
 }
 

@@ -3,12 +3,11 @@
 use std::{
     fs,
     io::{self, Write},
-    path::{Path, PathBuf},
+    path::PathBuf,
 };
 
 use tem00_report::npy::write_real_npy;
 use tem00_report::{
-    atomic::write_atomically,
     failure::Failure,
     folder_lock::FolderLock,
     image::{GreyFrame, write_raw},
@@ -184,8 +183,7 @@ impl Files {
         name: &str,
         write: impl FnOnce(&mut io::BufWriter<fs::File>) -> io::Result<()>,
     ) -> Result<(), Failure> {
-        let path: &Path = &self.path(name);
-        write_atomically(path, write).map_err(|error| Failure::writing(path, error))
+        output::save(&self.path(name), write)
     }
 }
 

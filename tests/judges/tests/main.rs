@@ -10,7 +10,6 @@ mod budget_trials;
 mod characteristics;
 mod coherence;
 mod edges_and_colour;
-mod extended_source;
 mod interval_coverage;
 #[path = "../../../examples/line_image/mod.rs"]
 mod line_image;

@@ -11,7 +11,7 @@ use tem00::{
 use super::heights::{Heights, Random};
 
 /// Distance from the plate to the pupil, in metres.
-const DISTANCE: f64 = 0.5;
+pub(crate) const DISTANCE: f64 = 0.5;
 
 /// A plate and its camera.
 ///
@@ -25,7 +25,7 @@ pub(crate) struct Bench {
     /// Speckles after which the patch repeats, along the gradient of the paths and across it.
     size: [usize; 2],
     heights: Heights,
-    axes: [DVec3; 2],
+    pub(crate) axes: [DVec3; 2],
     /// Difference of neighbouring wave numbers, in rad/m.
     pub(crate) step: f64,
 }
@@ -36,6 +36,13 @@ pub(crate) struct Bench {
 pub(crate) struct View {
     pub(crate) pupil: [f64; 2],
     pub(crate) defocus: f64,
+}
+
+/// A plane wave.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Light {
+    pub(crate) to_source: DVec3,
+    pub(crate) wave_number: f64,
 }
 
 impl Bench {
@@ -82,7 +89,7 @@ impl Bench {
     }
 
     /// The point of the plate that is seen at an offset across the line of sight.
-    fn on_plate(&self, across: DVec3) -> DVec3 {
+    pub(crate) fn on_plate(&self, across: DVec3) -> DVec3 {
         let (normal, sight) = (self.view.normal, self.view.to_pupil.normalize());
         across - sight * (normal.dot(across) / normal.dot(sight))
     }
@@ -95,7 +102,7 @@ impl Bench {
         0.5 * self.view.wavelength / self.view.sin_aperture
     }
 
-    fn period(&self, axis: usize) -> f64 {
+    pub(crate) fn period(&self, axis: usize) -> f64 {
         self.size[axis] as f64 * self.speckle_size()
     }
 
@@ -142,17 +149,37 @@ impl Bench {
         views: &[View],
         random: &mut Random,
     ) -> Vec<Vec<Vec<f64>>> {
+        let light = |step| Light {
+            to_source: self.view.to_source,
+            wave_number: self.wave_number(f64::from(step)),
+        };
+        let lights: Vec<_> = (-steps..=steps).map(light).collect();
+        self.images_in(surface, &lights, views, random)
+    }
+
+    /// The wave number so many steps off.
+    pub(crate) fn wave_number(&self, steps: f64) -> f64 {
+        TAU / self.view.wavelength + steps * self.step
+    }
+
+    /// The intensities of a surface in views of it, for any lights: `[view][light][pixel]`.
+    pub(crate) fn images_in(
+        &self,
+        surface: &RoughSurface,
+        lights: &[Light],
+        views: &[View],
+        random: &mut Random,
+    ) -> Vec<Vec<Vec<f64>>> {
         let offset = [random.uniform() - 0.5, random.uniform() - 0.5];
         let mut images = vec![Vec::new(); views.len()];
         let [columns, rows] = self.pixels();
         let transform = Fft2::new(columns, rows)
             .expect("a transform")
             .on_one_thread();
-        for step in -steps..=steps {
-            let wave_number = TAU / self.view.wavelength + f64::from(step) * self.step;
-            let field = self.field(surface, wave_number, views, offset);
+        for light in lights {
+            let field = self.field(surface, light, views, offset);
             for (image, view) in images.iter_mut().zip(views) {
-                image.push(self.image(&field, wave_number, view, &transform));
+                image.push(self.image(&field, light.wave_number, view, &transform));
             }
         }
         images
@@ -162,12 +189,12 @@ impl Bench {
     fn field(
         &self,
         surface: &RoughSurface,
-        wave_number: f64,
+        light: &Light,
         views: &[View],
         offset: [f64; 2],
     ) -> Vec<Sample> {
-        let wavelength = TAU / wave_number;
-        let light = Illumination::plane(wavelength, -self.view.to_source).expect("a plane wave");
+        let wavelength = TAU / light.wave_number;
+        let light = Illumination::plane(wavelength, -light.to_source).expect("a plane wave");
         let lit = surface.lit_by(&light);
         let diameter = 2.0 * DISTANCE * self.view.sin_aperture;
         let spacing = [0, 1].map(|axis| wavelength * DISTANCE / self.period(axis) / diameter);

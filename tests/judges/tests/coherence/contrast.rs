@@ -79,18 +79,7 @@ pub(crate) fn spectra(wavelength: f64, step: f64) -> Vec<BenchSpectrum> {
 /// some nanometres.
 fn random_view(random: &mut Random) -> CellGeometry {
     loop {
-        let mut direction = |degrees: f64| {
-            let (angle, turn) = (
-                (degrees * random.uniform()).to_radians(),
-                TAU * random.uniform(),
-            );
-            DVec3::new(
-                angle.sin() * turn.cos(),
-                angle.sin() * turn.sin(),
-                angle.cos(),
-            )
-        };
-        let (to_source, to_pupil) = (direction(60.0), direction(45.0));
+        let [to_source, to_pupil] = [60.0, 45.0].map(|degrees| random.direction(degrees, DVec3::Z));
         let view = CellGeometry {
             to_source,
             to_pupil,

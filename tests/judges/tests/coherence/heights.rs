@@ -3,25 +3,30 @@
 use core::f64::consts::{SQRT_2, TAU};
 use std::sync::OnceLock;
 
-use tem00::wave::Complex;
+use tem00::wave::{Complex, DVec3};
+use tem00_testkit::Numbers;
 
-/// Random numbers by `SplitMix64` (Steele, Lea, Flood 2014).
+/// Random numbers of a surface.
 #[derive(Clone)]
-pub(crate) struct Random(u64);
+pub(crate) struct Random(Numbers);
 
 impl Random {
     pub(crate) const fn new(seed: u64) -> Self {
-        Self(seed)
+        Self(Numbers::new(seed))
     }
 
     /// Uniform in (0, 1).
-    pub(crate) fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^= z >> 31;
-        ((z >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+    pub(crate) const fn uniform(&mut self) -> f64 {
+        // Numbers are multiples of ε/2, of which 0 has no logarithm.
+        self.0.unit() + 0.25 * f64::EPSILON
+    }
+
+    /// A direction at most so many degrees from an axis.
+    pub(crate) fn direction(&mut self, degrees: f64, axis: DVec3) -> DVec3 {
+        let (first, second) = axis.any_orthonormal_pair();
+        let (sin, cos) = (degrees * self.uniform()).to_radians().sin_cos();
+        let (turn_sin, turn_cos) = (TAU * self.uniform()).sin_cos();
+        axis * cos + (first * turn_cos + second * turn_sin) * sin
     }
 
     pub(crate) fn complex_gaussian(&mut self) -> Complex<f64> {

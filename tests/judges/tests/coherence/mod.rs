@@ -1,13 +1,15 @@
-//! Speckle of light of finite bandwidth, judged by wave optics from first principles.
+//! Speckle of light of finite bandwidth and of several directions, judged by wave optics from first
+//! principles.
 //!
-//! The judge sums the waves of thousands of scatterers with exact distances, one wavelength after
-//! the other, and adds the intensities of the images. It knows nothing of tilts, overlaps of pupils
+//! The judge sums the waves of thousands of scatterers with exact distances, one wavelength and one
+//! direction after the other, and adds the intensities of the images. It knows nothing of tilts, overlaps of pupils
 //! or path spreads.
 
 mod bench;
 mod comparison;
 mod contrast;
 mod corner;
+mod extended_source;
 mod grains;
 mod heights;
 mod line_noise;

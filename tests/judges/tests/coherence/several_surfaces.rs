@@ -242,19 +242,11 @@ fn intensities_of_a_corner_are_sums_of_two_patterns_that_interfere_in_parts() {
     }
 }
 
-/// A direction at most so many degrees from an axis.
-fn within(degrees: f64, axis: DVec3, random: &mut Random) -> DVec3 {
-    let (first, second) = axis.any_orthonormal_pair();
-    let (sin, cos) = (degrees * random.uniform()).to_radians().sin_cos();
-    let (turn_sin, turn_cos) = (TAU * random.uniform()).sin_cos();
-    axis * cos + (first * turn_cos + second * turn_sin) * sin
-}
-
 /// A source and a camera anywhere above a plate, and a wall anywhere beside it.
 fn random_corner(random: &mut Random) -> Corner {
     let view = CellGeometry {
-        to_source: within(60.0, DVec3::Z, random),
-        to_pupil: within(45.0, DVec3::Z, random),
+        to_source: random.direction(60.0, DVec3::Z),
+        to_pupil: random.direction(45.0, DVec3::Z),
         normal: DVec3::Z,
         sin_aperture: 0.01 + 0.02 * random.uniform(),
         wavelength: 405e-9 + 255e-9 * random.uniform(),
@@ -265,7 +257,7 @@ fn random_corner(random: &mut Random) -> Corner {
     let (sin, cos) = (20.0 + 40.0 * random.uniform()).to_radians().sin_cos();
     let to_wall = sideways * cos + DVec3::Z * sin;
     let distance = (60.0 + 90.0 * random.uniform()) * speckle;
-    let (first, second) = within(50.0, to_wall, random).any_orthonormal_pair();
+    let (first, second) = random.direction(50.0, to_wall).any_orthonormal_pair();
     let sides = [first, second].map(|side| side * (0.3 + 0.7 * random.uniform()) * distance);
     Corner {
         view,

@@ -64,12 +64,16 @@ pub(crate) struct Waves {
     multiple: Vec<Vec<Complex<f64>>>,
 }
 
+/// Independent complex Gaussian amplitudes of the scatterers of a wall and of some plates before it.
+pub(crate) struct Amplitudes {
+    wall: Vec<Complex<f64>>,
+    plates: Vec<Vec<Complex<f64>>>,
+}
+
 /// Fields at the place seen, `[plate][wave number]`, each of the mean square 1.
 pub(crate) struct Fields {
     pub(crate) single: Vec<Vec<Complex<f64>>>,
     pub(crate) multiple: Vec<Vec<Complex<f64>>>,
-    /// The multiple light that is polarised across the single light.
-    pub(crate) crossed: Vec<Vec<Complex<f64>>>,
 }
 
 impl Corner {
@@ -178,13 +182,21 @@ impl Corner {
         waves
     }
 
-    /// Sums, in any unit, the waves of the wall on the plate and those of the plate in the pupil,
-    /// for the random numbers with which [`Waves::fields`] makes its first plate.
-    pub(crate) fn multiple_field(&self, wave_number: f64, random: &mut Random) -> Complex<f64> {
+    pub(crate) fn amplitudes(&self, plates: usize, random: &mut Random) -> Amplitudes {
+        let mut gaussian = |count| (0..count).map(|_| random.complex_gaussian()).collect();
+        Amplitudes {
+            wall: gaussian(self.sites[1]),
+            plates: (0..plates).map(|_| gaussian(self.sites[0])).collect(),
+        }
+    }
+
+    /// Sums, in any unit, the waves of the wall on the first plate and those of the plate in the
+    /// pupil.
+    pub(crate) fn multiple_field(&self, wave_number: f64, of: &Amplitudes) -> Complex<f64> {
         let light = self.light(wave_number);
-        let surface = |places: Vec<DVec3>, amplitudes: Vec<Complex<f64>>| {
+        let surface = |places: Vec<DVec3>, amplitudes: &[Complex<f64>]| {
             let scatterers = places.into_iter().zip(amplitudes);
-            let scatterers = scatterers.map(|(position, amplitude)| Scatterer {
+            let scatterers = scatterers.map(|(position, &amplitude)| Scatterer {
                 position,
                 amplitude,
             });
@@ -192,14 +204,14 @@ impl Corner {
             surface.expect("a surface").lit_by(&light)
         };
         let (plate, pupil) = (self.plate(), self.pupil());
-        let wall = surface(self.lit_part(), gaussian(self.sites[1], random));
+        let wall = surface(self.lit_part(), &of.wall);
         // The plate is lit by the wall alone.
-        let scattered = plate.iter().zip(gaussian(self.sites[0], random));
+        let scattered = plate.iter().zip(&of.plates[0]);
         let scattered = scattered.map(|(&(place, root_of_area), amplitude)| {
             1e-6 * amplitude * root_of_area * wall.field_at(place) / light.amplitude_at(place)
         });
-        let scattered = scattered.collect();
-        let plate = surface(plate.into_iter().map(|site| site.0).collect(), scattered);
+        let scattered: Vec<_> = scattered.collect();
+        let plate = surface(plate.iter().map(|site| site.0).collect(), &scattered);
         let in_focus =
             |point: &DVec3| turned(-wave_number * point.length()) * plate.field_at(*point);
         pupil.iter().map(in_focus).sum()
@@ -219,37 +231,20 @@ impl Corner {
 }
 
 impl Waves {
-    /// Returns the fields of a wall of independent complex Gaussian amplitudes and of some such
-    /// plates before it.
-    pub(crate) fn fields(&self, plates: usize, random: &mut Random) -> Fields {
-        let sites = [
-            self.single[0].len(),
-            self.multiple[0].len() / self.single[0].len(),
-        ];
-        let wall = gaussian(sites[1], random);
-        let from_wall: Vec<Vec<Complex<f64>>> = self
-            .multiple
-            .iter()
-            .map(|all| {
-                all.chunks_exact(sites[1])
-                    .map(|row| dot(row, &wall))
-                    .collect()
-            })
-            .collect();
-        let [mut single, mut multiple, mut crossed] = [const { Vec::new() }; 3];
-        let sums = |waves: &[Vec<Complex<f64>>], plate: &[Complex<f64>]| {
-            waves.iter().map(|waves| dot(waves, plate)).collect()
+    /// Returns the fields of a wall and of the plates before it.
+    pub(crate) fn fields(&self, Amplitudes { wall, plates }: &Amplitudes) -> Fields {
+        let from_wall = |all: &Vec<Complex<f64>>| {
+            let rows = all.chunks_exact(wall.len());
+            rows.map(|row| dot(row, wall)).collect::<Vec<_>>()
         };
-        for _ in 0..plates {
-            let plate = gaussian(sites[0], random);
-            single.push(sums(&self.single, &plate));
-            multiple.push(sums(&from_wall, &plate));
-            crossed.push(sums(&from_wall, &gaussian(sites[0], random)));
-        }
+        let from_wall: Vec<_> = self.multiple.iter().map(from_wall).collect();
+        let of_plates = |waves: &[Vec<Complex<f64>>]| {
+            let of_plate = |plate: &Vec<_>| waves.iter().map(|waves| dot(waves, plate)).collect();
+            plates.iter().map(of_plate).collect()
+        };
         Fields {
-            single,
-            multiple,
-            crossed,
+            single: of_plates(&self.single),
+            multiple: of_plates(&from_wall),
         }
     }
 }
@@ -264,13 +259,14 @@ impl Fields {
     }
 
     /// Returns intensities, `[wave number][plate]`, with the multiple light so many times as bright
-    /// as the single.
+    /// as the single. What is polarised across the single light, another plate shows.
     pub(crate) fn intensities(&self, ratio: f64, is_depolarised: bool) -> Vec<Vec<f64>> {
         let share = if is_depolarised { 0.5 } else { 1.0 };
         let intensity = |plate: usize, k: usize| {
             let multiple = self.multiple[plate][k] * (share * ratio).sqrt();
             let parallel = (self.single[plate][k] + multiple).norm_sqr();
-            parallel + (1.0 - share) * ratio * self.crossed[plate][k].norm_sqr()
+            let across = self.multiple[(plate + 1) % self.multiple.len()][k];
+            parallel + (1.0 - share) * ratio * across.norm_sqr()
         };
         let of_wave_number = |k| {
             (0..self.single.len())
@@ -283,10 +279,6 @@ impl Fields {
 
 fn turned(phase: f64) -> Complex<f64> {
     Complex::from_polar(1.0, phase)
-}
-
-fn gaussian(count: usize, random: &mut Random) -> Vec<Complex<f64>> {
-    (0..count).map(|_| random.complex_gaussian()).collect()
 }
 
 fn dot(first: &[Complex<f64>], second: &[Complex<f64>]) -> Complex<f64> {

@@ -7,7 +7,6 @@ use tem00::wave::{Complex, DVec3};
 use tem00_testkit::Numbers;
 
 /// Random numbers of a surface.
-#[derive(Clone)]
 pub(crate) struct Random(Numbers);
 
 impl Random {

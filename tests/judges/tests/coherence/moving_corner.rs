@@ -110,7 +110,8 @@ fn frames_of_single_multiple_and_mixed_light_follow_the_paths_that_a_motion_chan
         let wave_numbers = [TAU / corner.view.wavelength];
         let frames = [RigidMotion::IDENTITY, motion].map(|m| corner.waves(&wave_numbers, &m));
         let surfaces = for_surfaces(600, 9, |random| {
-            let frames = [0, 1].map(|i| frames[i].fields(PLATES, &mut random.clone()));
+            let amplitudes = corner.amplitudes(PLATES, random);
+            let frames = frames.each_ref().map(|waves| waves.fields(&amplitudes));
             let of = |frames: [Vec<Vec<f64>>; 2]| {
                 let both = frames.map(|mut frame| frame.remove(0));
                 Moments::of_products([&both[0], &both[1]], &both, [0, 0], [PLATES, 1])

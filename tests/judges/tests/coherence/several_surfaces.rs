@@ -128,7 +128,7 @@ fn a_corner_behind_a_laser_of_one_wavelength_is_fully_developed() {
     let wave_number = TAU / corner.view.wavelength;
     let waves = corner.waves(&[wave_number], &RigidMotion::IDENTITY);
     let surfaces = for_surfaces(1000, 18, |random| {
-        let fields = waves.fields(PLATES, random);
+        let fields = waves.fields(&corner.amplitudes(PLATES, random));
         let single = fields.intensities(0.0, false);
         LIGHTS.map(|light| {
             let mixed = &fields.intensities(light.ratio, light.is_depolarised)[0];
@@ -159,7 +159,11 @@ fn a_corner_loses_coherence_with_single_light_before_that_with_itself() {
         assert!((found.within_multiple - itself).abs() < 0.005, "{found:?}");
         assert!((found.with_single - with_single).abs() < 0.005, "{found:?}");
         let surfaces = for_surfaces(800, 8, |random| {
-            moments(&waves.fields(PLATES, random), &LIGHTS, &spectra)
+            moments(
+                &waves.fields(&corner.amplitudes(PLATES, random)),
+                &LIGHTS,
+                &spectra,
+            )
         });
         for (i, (light, known)) in LIGHTS.iter().zip(contrasts).enumerate() {
             let moments: Vec<Moments> = surfaces.iter().map(|surface| surface[i]).collect();
@@ -182,8 +186,8 @@ fn a_corner_sends_the_waves_of_its_lit_surfaces() {
     let wave_number = TAU / corner.view.wavelength;
     let waves = corner.waves(&[wave_number], &RigidMotion::IDENTITY);
     let ratios = (0..4).map(|seed| {
-        let field = waves.fields(1, &mut Random::new(seed)).multiple[0][0];
-        corner.multiple_field(wave_number, &mut Random::new(seed)) / field
+        let amplitudes = corner.amplitudes(1, &mut Random::new(seed));
+        corner.multiple_field(wave_number, &amplitudes) / waves.fields(&amplitudes).multiple[0][0]
     });
     let ratios: Vec<_> = ratios.collect();
     for ratio in &ratios {
@@ -215,15 +219,15 @@ fn intensities_of_a_corner_are_sums_of_two_patterns_that_interfere_in_parts() {
     let corner = right_angle();
     for linewidth in [0.05e-9, 0.1e-9, 0.2e-9] {
         let (waves, spectrum) = in_line(&corner, linewidth);
+        let coherence = coherence(&corner, &spectrum.line);
+        let fields = for_surfaces(400, 20, |random| {
+            waves.fields(&corner.amplitudes(PLATES, random))
+        });
         for light in LIGHTS.into_iter().filter(|light| !light.is_depolarised) {
-            let surfaces = for_surfaces(400, 20, |random| {
-                let images = waves.fields(PLATES, random).intensities(light.ratio, false);
-                spectrum.mix(&images)
-            });
-            let mut samples: Vec<f64> = surfaces.into_iter().flatten().collect();
+            let mixed = |fields: &Fields| spectrum.mix(&fields.intensities(light.ratio, false));
+            let mut samples: Vec<f64> = fields.iter().flat_map(mixed).collect();
             let mean = samples.iter().sum::<f64>() / samples.len() as f64;
             samples.iter_mut().for_each(|value| *value /= mean);
-            let coherence = coherence(&corner, &spectrum.line);
             let mut random = Random::new(21);
             let mut drawn: Vec<f64> = (0..300_000)
                 .map(|_| draw_recombined(light, coherence, &mut random))
@@ -283,7 +287,11 @@ fn compare(geometry: u64, random: &mut Random) -> Vec<Comparison> {
     let wave_numbers = (-STEPS..=STEPS).map(|i| TAU / wavelength + f64::from(i) * step);
     let waves = corner.waves(&wave_numbers.collect::<Vec<_>>(), &RigidMotion::IDENTITY);
     let surfaces = for_surfaces(400, 1000 + geometry, |random| {
-        moments(&waves.fields(PLATES, random), &LIGHTS, &spectra)
+        moments(
+            &waves.fields(&corner.amplitudes(PLATES, random)),
+            &LIGHTS,
+            &spectra,
+        )
     });
     let lines: Vec<_> = spectra
         .iter()

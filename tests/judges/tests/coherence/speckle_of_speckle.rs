@@ -44,7 +44,7 @@ fn a_small_lit_part_makes_speckle_of_speckle() {
         let wave_number = TAU / corner.view.wavelength;
         let waves = corner.waves(&[wave_number], &RigidMotion::IDENTITY);
         let surfaces = for_surfaces(20_000, 10, |random| {
-            let fields = waves.fields(PLATES, random);
+            let fields = waves.fields(&corner.amplitudes(PLATES, random));
             Moments::new(&fields.multiple_alone()[0], &fields.intensities(0.0, false))
         });
         let law = (1.0 + 2.0 * cascade_variance(relative_aperture).expect("a ratio")).sqrt();

@@ -3,10 +3,12 @@
 use core::sync::atomic::AtomicBool;
 
 use tem00::{
+    numerics::Grid,
     scan::SetupSensor,
     topography::{Artefact, ProfileSensor, Shape},
     triangulation::{
-        Budget, BudgetTerm, LineImage, LineImageData, Setup, UncertaintySource, parse_setup,
+        Budget, BudgetTerm, ImagedLine, LineImage, LineImageData, Setup, UncertaintySource,
+        parse_setup,
     },
     wave::DVec3,
 };
@@ -15,13 +17,13 @@ use tem00_testkit::assert_absolute;
 
 use super::line_by_waves::{Judged, PIXELS, Waves};
 
-/// A set-up, the heights at which it is judged, and how far its formula may be off.
+/// A set-up, and the heights at which it is judged.
 struct Case {
     laser: &'static str,
     camera: &'static str,
     /// The full width of the line on the part.
     thickness: &'static str,
-    window: usize,
+    windows: &'static [usize],
     columns: usize,
     /// In millimetres.
     heights: [f64; 5],
@@ -29,12 +31,11 @@ struct Case {
 }
 
 impl Case {
-    fn setup(&self, columns: usize) -> Setup {
+    fn setup(&self, window: usize, columns: usize) -> Setup {
         let Self {
             laser,
             camera,
             thickness,
-            window,
             ..
         } = self;
         let text = format!(
@@ -70,43 +71,55 @@ fn root_mean(deviations: &[Vec<f64>], columns: usize) -> [f64; 2] {
     [mean.sqrt(), 0.5 * error / mean.sqrt()]
 }
 
-/// Holds trials and formula to waves at all heights, for single columns and for means of some;
-/// `formula` says how far below and above waves it may be.
-fn judge(case: &Case, formula: [f64; 2]) {
-    let mut wrong = Vec::new();
+/// Holds trials and formula to waves at all heights, in all windows, for single columns and for
+/// means of some; `formula` says how far below and above waves it may be.
+///
+/// Returns the deviation of single columns in the middle by waves, and its standard error.
+fn judge(case: &Case, formula: [f64; 2]) -> [f64; 2] {
+    let (mut wrong, mut at_heights) = (Vec::new(), Vec::new());
     for height in case.heights {
-        let judged = Judged::new(&case.setup(1), 1e-3 * height);
-        let by_waves = Waves::deviations(&judged, case.images);
-        let by_trials = trials(&judged, case.images);
-        for columns in [1, case.columns] {
-            let [by_waves, error] = root_mean(&by_waves, columns);
-            let [tried, error_of_trials] = root_mean(&by_trials, columns);
-            let budget = Budget::at_height(&case.setup(columns), 1e-3 * height).expect("a line");
-            let law = budget.contribution(UncertaintySource::Speckle);
-            let law = law / judged.line.height_per_pixel.abs();
-            let found = format!(
-                "{height} mm, {columns} columns, blur {:.1} px: waves {by_waves:.4} ± {error:.4}, \
-                 trials {tried:.4} ± {error_of_trials:.4}, formula {law:.4} px",
-                judged.line.blur
-            );
-            let chance = 3.3 * error.hypot(error_of_trials) / by_waves;
-            let far = (tried / by_waves - 1.0).abs() > 0.03 + chance;
-            let [below, above] = formula;
-            let allowed = 1.0 - below - chance..1.0 + above + chance;
-            if far || !allowed.contains(&(law / by_waves)) {
-                wrong.push(found);
+        let judged = |window| Judged::new(&case.setup(window, 1), 1e-3 * height);
+        let lines = judged(case.windows[0]);
+        let images = [
+            Waves::images(&lines, case.images),
+            trials(&lines.line, case.images),
+        ];
+        at_heights.push(root_mean(&lines.deviations(&images[0]), 1));
+        for &window in case.windows {
+            let judged = judged(window);
+            let deviations = images.each_ref().map(|images| judged.deviations(images));
+            for columns in [1, case.columns] {
+                let [[by_waves, error], [tried, error_of_trials]] =
+                    deviations.each_ref().map(|all| root_mean(all, columns));
+                let setup = case.setup(window, columns);
+                let budget = Budget::at_height(&setup, 1e-3 * height).expect("a line");
+                let law = budget.contribution(UncertaintySource::Speckle);
+                let law = law / judged.line.height_per_pixel.abs();
+                let found = format!(
+                    "{height} mm, window {window}, {columns} columns, blur {:.1} px: waves \
+                     {by_waves:.4} ± {error:.4}, trials {tried:.4} ± {error_of_trials:.4}, formula \
+                     {law:.4} px",
+                    judged.line.blur
+                );
+                let chance = 3.3 * error.hypot(error_of_trials) / by_waves;
+                let far = (tried / by_waves - 1.0).abs() > 0.03 + chance;
+                let [below, above] = formula;
+                let allowed = 1.0 - below - chance..1.0 + above + chance;
+                if far || !allowed.contains(&(law / by_waves)) {
+                    wrong.push(found);
+                }
             }
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
+    at_heights[2]
 }
 
 /// Holds the heights of a level flat on the reference plane, as `characterise` measures it, to
 /// waves and the noise of the sensor.
-fn judge_characteristics(case: &Case) {
-    let setup = case.setup(1);
+fn judge_characteristics(case: &Case, [speckle, error]: [f64; 2]) {
+    let setup = case.setup(case.windows[0], 1);
     let judged = Judged::new(&setup, 0.0);
-    let [speckle, error] = root_mean(&Waves::deviations(&judged, case.images), 1);
     let budget = Budget::new(&setup).expect("a line");
     let of_sensor = |term: &&BudgetTerm| term.source != UncertaintySource::Speckle;
     let of_sensor = budget.terms().iter().filter(of_sensor);
@@ -138,9 +151,8 @@ fn judge_characteristics(case: &Case) {
     assert_absolute(measured, expected, 0.03 * expected + chance);
 }
 
-/// Returns the deviations in images that are drawn as trials draw them.
-fn trials(judged: &Judged, images: u64) -> Vec<Vec<f64>> {
-    let line = &judged.line;
+/// Returns images that are drawn as trials draw them, each with the place of its line.
+fn trials(line: &ImagedLine, images: u64) -> Vec<(Grid<f32>, f64)> {
     let image = LineImage::new(LineImageData {
         size: [PIXELS, PIXELS],
         width: line.projected_thickness,
@@ -154,18 +166,18 @@ fn trials(judged: &Judged, images: u64) -> Vec<Vec<f64>> {
     let image = image.expect("a line");
     let of_image = |seed: u64| {
         let middle = 0.5 * PIXELS as f64 + (0.618 * seed as f64).fract();
-        let electrons = image.speckled(seed, |_| middle).expect("a pattern");
-        judged.deviations(&electrons, middle)
+        (image.speckled(seed, |_| middle).expect("a pattern"), middle)
     };
     (0..images).map(of_image).collect()
 }
 
-/// Red light on a lens at f/8, 0.3 m away: speckle of 1.67 pixels.
+/// Red light on a lens at f/8, 0.3 m away: speckle of 1.67 pixels. The narrow window holds half of
+/// the blurred line's width on either side, and a little.
 const RED: Case = Case {
     laser: r#"wavelength = "660 nm""#,
     camera: r#"focal_length = "25 mm", f_number = 8, pixel_pitch = "3.45 um", distance = "300 mm", angle = "30 deg""#,
     thickness: "0.2 mm",
-    window: 21,
+    windows: &[21, 15],
     columns: 4,
     heights: [-14.0, -7.0, 0.0, 7.0, 14.0],
     images: 100,
@@ -177,7 +189,7 @@ const GREEN: Case = Case {
     laser: r#"wavelength = "520 nm""#,
     camera: r#"focal_length = "16 mm", f_number = 5.6, pixel_pitch = "4.8 um", distance = "110 mm", angle = "32 deg""#,
     thickness: "0.15 mm",
-    window: 25,
+    windows: &[25],
     columns: 4,
     heights: [-6.0, -3.0, 0.0, 3.0, 8.0],
     images: 60,
@@ -188,7 +200,7 @@ const BLUE: Case = Case {
     laser: r#"wavelength = "405 nm""#,
     camera: r#"focal_length = "35 mm", f_number = 16, pixel_pitch = "3.45 um", distance = "220 mm", angle = "25 deg""#,
     thickness: "0.1 mm",
-    window: 25,
+    windows: &[25],
     columns: 6,
     heights: [-12.0, -6.0, 0.0, 6.0, 12.0],
     images: 100,
@@ -196,7 +208,8 @@ const BLUE: Case = Case {
 
 #[test]
 fn the_budget_of_a_line_of_a_speckle_is_that_of_waves() {
-    judge(&RED, [0.05; 2]);
+    let middle = judge(&RED, [0.05; 2]);
+    judge_characteristics(&RED, middle);
 }
 
 #[test]
@@ -204,7 +217,7 @@ fn the_budget_of_a_wide_line_is_that_of_waves() {
     // w = 4.1 h
     let wide = Case {
         thickness: "0.6 mm",
-        window: 31,
+        windows: &[31],
         ..RED
     };
     judge(&wide, [0.05; 2]);
@@ -212,7 +225,8 @@ fn the_budget_of_a_wide_line_is_that_of_waves() {
 
 #[test]
 fn the_budget_of_a_line_far_out_of_focus_is_that_of_waves() {
-    judge(&GREEN, [0.05; 2]);
+    let middle = judge(&GREEN, [0.05; 2]);
+    judge_characteristics(&GREEN, middle);
 }
 
 #[test]
@@ -228,19 +242,8 @@ fn the_budget_of_a_line_a_speckle_wide_in_front_of_a_fast_lens_is_that_of_waves(
 
 #[test]
 fn the_budget_of_a_line_in_blue_light_is_that_of_waves() {
-    judge(&BLUE, [0.05; 2]);
-}
-
-#[test]
-fn the_budget_of_a_line_in_a_narrow_window_is_that_of_waves() {
-    // Half of the blurred line's width on either side, and a little.
-    let narrow = Case { window: 15, ..RED };
-    judge(&narrow, [0.05; 2]);
-}
-
-#[test]
-fn the_noise_of_a_characterised_set_up_is_that_of_waves() {
-    [RED, GREEN, BLUE].iter().for_each(judge_characteristics);
+    let middle = judge(&BLUE, [0.05; 2]);
+    judge_characteristics(&BLUE, middle);
 }
 
 #[test]
@@ -248,6 +251,7 @@ fn trials_of_a_thin_line_are_those_of_waves_and_its_formula_says_too_little() {
     // w = 0.41 h: weak columns, whose position is nearly free, are not of first order.
     let thin = Case {
         thickness: "0.06 mm",
+        windows: &[21],
         ..RED
     };
     judge(&thin, [0.25, 0.0]);

@@ -51,14 +51,18 @@ impl Judged {
         whole(END * self.line.speckle_size[0] + 0.5 * self.line.blur)
     }
 
-    /// Returns how far the detector finds the line from where it is, in pixels, column by column.
-    pub(super) fn deviations(&self, columns: &Grid<f32>, middle: f64) -> Vec<f64> {
-        let found = self.detector.detect(columns).into_iter();
-        let brightest = |points: Vec<LinePoint>| {
-            let best = points.into_iter().max_by(|a, b| a.peak.total_cmp(&b.peak));
-            best.expect("a line").position - middle
+    /// Returns how far the detector finds lines from where they are, in pixels, column by column of
+    /// each image.
+    pub(super) fn deviations(&self, images: &[(Grid<f32>, f64)]) -> Vec<Vec<f64>> {
+        let of_image = |(columns, middle): &(Grid<f32>, f64)| {
+            let brightest = |points: Vec<LinePoint>| {
+                let best = points.into_iter().max_by(|a, b| a.peak.total_cmp(&b.peak));
+                best.expect("a line").position - middle
+            };
+            let found = self.detector.detect(columns).into_iter();
+            found.map(brightest).collect()
         };
-        found.map(brightest).collect()
+        images.iter().map(of_image).collect()
     }
 }
 
@@ -133,15 +137,10 @@ impl Waves {
         }
     }
 
-    /// Returns how far the detector finds the line from where it is, in so many images, column by
-    /// column.
-    pub(super) fn deviations(judged: &Judged, images: u64) -> Vec<Vec<f64>> {
+    /// Returns so many images, each with the place of its line.
+    pub(super) fn images(judged: &Judged, count: u64) -> Vec<(Grid<f32>, f64)> {
         let waves = Self::of(judged);
-        let of_image = |seed| {
-            let (columns, middle) = waves.columns(seed);
-            judged.deviations(&columns, middle)
-        };
-        (0..images).map(of_image).collect()
+        (0..count).map(|seed| waves.columns(seed)).collect()
     }
 
     /// Returns what pixels see of one surface, with the line along the rows, and its place across

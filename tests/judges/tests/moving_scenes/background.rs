@@ -8,7 +8,9 @@ use tem00::{
     tracer::{Scene, Surface, SurfaceSpeckle},
 };
 
-use super::setting::{LENS, SIDE, Setting, Step, part, speckle, tolerance};
+use crate::wave_judges_decorrelation::scene::Body;
+
+use super::setting::{LENS, SIDE, Setting, part, speckle, tolerance};
 
 /// The width of the body, in pixels.
 const WIDTH: usize = 80;
@@ -41,7 +43,7 @@ fn scene() -> Scene {
     let body = Surface {
         name: "body".to_owned(),
         shape: Shape::Rectangle(body),
-        trajectory: Step::along(WAY as f64 * PIXEL * DVec3::X).trajectory(),
+        trajectory: Body::along(WAY as f64 * PIXEL * DVec3::X).trajectory(),
         speckle: SurfaceSpeckle::default(),
         ..scene.surfaces[0].clone()
     };

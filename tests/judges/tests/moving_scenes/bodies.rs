@@ -4,14 +4,19 @@ use core::f64::consts::PI;
 use tem00_testkit::on_threads;
 
 use tem00::{
-    decorrelation::{DVec2, DVec3, RigidMotions, SpeckleMotion, pupil_overlap_correlation},
+    decorrelation::{DVec2, DVec3, SpeckleMotion, pupil_overlap_correlation},
     statistics::pearson_correlation,
     tracer::{Keyframe, Scene, Trajectory},
     wave::displacement_between,
 };
 
+use crate::wave_judges_decorrelation::{
+    finite::{camera, source, surface},
+    scene::{Body, States},
+};
+
 use super::setting::{
-    EYE, LENS, SIDE, Setting, Step, assert_correlation, in_speckles, part, speckle, tolerance,
+    EYE, LENS, SIDE, Setting, assert_correlation, in_speckles, part, speckle, tolerance,
 };
 
 /// Slices per pupil diameter.
@@ -20,14 +25,12 @@ const SLICES: f64 = 32.0;
 struct Case {
     name: &'static str,
     setting: Setting,
-    surface: Step,
-    camera: Step,
-    laser: Step,
+    states: States,
 }
 
 impl Case {
-    /// Plane waves from the front, in focus, in which nothing moves.
-    fn still(name: &'static str) -> Self {
+    /// Plane waves from the front, in focus.
+    fn new(name: &'static str, states: States) -> Self {
         Self {
             name,
             setting: Setting {
@@ -35,27 +38,12 @@ impl Case {
                 to_laser: DVec3::new(0.3, 0.0, 1.0),
                 distance: None,
             },
-            surface: Step::NONE,
-            camera: Step::NONE,
-            laser: Step::NONE,
+            states,
         }
     }
 
     fn scene(&self) -> Scene {
-        let mut scene = self.setting.scene();
-        scene.surfaces[0].trajectory = self.surface.trajectory();
-        scene.camera_trajectory = self.camera.trajectory();
-        let laser = scene.lasers[0].clone();
-        scene.lasers[0] = laser.with_trajectory(self.laser.trajectory());
-        scene
-    }
-
-    fn motions(&self) -> RigidMotions {
-        RigidMotions {
-            surface: self.surface.motion(),
-            camera: self.camera.motion(),
-            source: self.laser.motion(),
-        }
+        self.setting.moving(&self.states)
     }
 }
 
@@ -67,59 +55,63 @@ fn tilt(slices: f64) -> f64 {
 }
 
 fn cases() -> Vec<Case> {
-    let defocused = |focus: f64| Setting {
-        lens: tem00::decorrelation::LensData {
-            surface_to_pupil: focus,
-            ..LENS
+    let origin = DVec3::ZERO;
+    let focused = |case: Case, focus: f64| Case {
+        setting: Setting {
+            lens: tem00::decorrelation::LensData {
+                surface_to_pupil: focus,
+                ..LENS
+            },
+            ..case.setting
         },
-        ..Case::still("").setting
+        ..case
     };
-    let near = Setting {
-        to_laser: DVec3::new(-0.12, 0.05, 0.2),
-        distance: Some(0.24),
-        ..defocused(0.31)
+    let near = |case: Case| {
+        let mut case = focused(case, 0.31);
+        case.setting.to_laser = DVec3::new(-0.12, 0.05, 0.2);
+        case.setting.distance = Some(0.24);
+        case
+    };
+    let oblique = Body::about(origin, DVec3::new(1.0, 1.0, 0.0), tilt(12.0));
+    let all = States {
+        surface: Body {
+            translation: DVec3::new(2e-4, -3e-4, 2e-4),
+            ..Body::about(0.05 * DVec3::Y, DVec3::new(0.3, 1.0, 0.2), 0.6e-3)
+        },
+        camera: Body::about(EYE, DVec3::new(0.3, -1.0, 0.5), 0.7e-3),
+        source: Body::along(DVec3::new(-1e-4, 2e-4, 1e-4)),
+        ..States::default()
     };
     vec![
-        Case {
-            surface: Step::about(DVec3::ZERO, DVec3::Y, tilt(8.0)),
-            ..Case::still("plate tilted in focus")
-        },
-        Case {
-            setting: defocused(0.33),
-            surface: Step::about(DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0), tilt(12.0)),
-            ..Case::still("plate tilted before the focus")
-        },
-        Case {
-            surface: Step::about(DVec3::new(0.03, 0.0, 0.0), DVec3::Z, 8e-3),
-            ..Case::still("plate turned in its plane, beside the axis")
-        },
-        Case {
-            camera: Step::about(EYE, DVec3::new(1.0, 2.0, 0.0), 1e-3),
-            ..Case::still("camera turned about its pupil")
-        },
-        Case {
-            camera: Step::about(DVec3::ZERO, DVec3::Y, -3e-3),
-            ..Case::still("camera turned about the plate")
-        },
-        Case {
-            laser: Step::about(DVec3::ZERO, DVec3::Y, 3e-3),
-            ..Case::still("laser turned about the plate")
-        },
-        Case {
-            setting: near,
-            laser: Step::along(DVec3::new(4e-4, 3e-4, 0.0)),
-            ..Case::still("near laser moved")
-        },
-        Case {
-            setting: near,
-            surface: Step {
-                displacement: DVec3::new(2e-4, -3e-4, 2e-4),
-                ..Step::about(0.05 * DVec3::Y, DVec3::new(0.3, 1.0, 0.2), 0.6e-3)
-            },
-            camera: Step::about(EYE, DVec3::new(0.3, -1.0, 0.5), 0.7e-3),
-            laser: Step::along(DVec3::new(-1e-4, 2e-4, 1e-4)),
-            ..Case::still("all at once, before the focus")
-        },
+        Case::new(
+            "plate tilted in focus",
+            surface(Body::about(origin, DVec3::Y, tilt(8.0))),
+        ),
+        focused(
+            Case::new("plate tilted before the focus", surface(oblique)),
+            0.33,
+        ),
+        Case::new(
+            "plate turned in its plane, beside the axis",
+            surface(Body::about(DVec3::new(0.03, 0.0, 0.0), DVec3::Z, 8e-3)),
+        ),
+        Case::new(
+            "camera turned about its pupil",
+            camera(Body::about(EYE, DVec3::new(1.0, 2.0, 0.0), 1e-3)),
+        ),
+        Case::new(
+            "camera turned about the plate",
+            camera(Body::about(origin, DVec3::Y, -3e-3)),
+        ),
+        Case::new(
+            "laser turned about the plate",
+            source(Body::about(origin, DVec3::Y, 3e-3)),
+        ),
+        near(Case::new(
+            "near laser moved",
+            source(Body::along(DVec3::new(4e-4, 3e-4, 0.0))),
+        )),
+        near(Case::new("all at once, before the focus", all)),
     ]
 }
 
@@ -140,7 +132,7 @@ fn rendered_speckle_goes_where_the_law_of_finite_motions_says() {
     const SEEDS: u64 = 2;
     for case in cases() {
         let geometry = case.setting.geometry();
-        let law = case.setting.law(&case.motions());
+        let law = case.setting.law(&case.states);
         let scene = case.scene();
         let (mut found, mut left) = (DVec2::ZERO, 0.0);
         for seed in 1..=SEEDS {
@@ -167,12 +159,18 @@ fn rendered_speckle_goes_where_the_law_of_finite_motions_says() {
 
 #[test]
 fn a_camera_that_turns_with_its_scene_sees_the_same_picture() {
-    let mut case = Case::still("");
-    let step = Step {
-        displacement: DVec3::new(1e-2, 2e-2, -3e-2),
-        ..Step::about(DVec3::new(0.1, 0.0, 0.2), DVec3::new(0.2, -1.0, 0.4), 0.3)
+    let step = Body {
+        translation: DVec3::new(1e-2, 2e-2, -3e-2),
+        ..Body::about(DVec3::new(0.1, 0.0, 0.2), DVec3::new(0.2, -1.0, 0.4), 0.3)
     };
-    (case.surface, case.camera, case.laser) = (step, step, step);
+    let (surface, camera, source) = (step, step, step);
+    let states = States {
+        surface,
+        camera,
+        source,
+        ..States::default()
+    };
+    let case = Case::new("", states);
     let frames = speckle(&case.scene(), &[0, 1], 3);
     let seen = pearson_correlation(&frames[0], &frames[1]).expect("bright frames");
     // The samples of the pixels differ, of speckles 6.6 pixels wide.
@@ -182,10 +180,9 @@ fn a_camera_that_turns_with_its_scene_sees_the_same_picture() {
 /// A plate that moves by half a pupil diameter, 40 pixels, from frame to frame.
 fn steady(frames: u32, reference: u32) -> (Scene, f64) {
     let pixel = 11.0 * LENS.pixel_pitch;
-    let surface = DVec3::new(40.0 * pixel, 0.0, 0.0);
-    let mut case = Case::still("");
-    case.setting.lens.f_number = LENS.focal_length * 0.5 / surface.x;
-    case.surface = Step::along(surface);
+    let way = DVec3::new(40.0 * pixel, 0.0, 0.0);
+    let mut case = Case::new("", surface(Body::along(way)));
+    case.setting.lens.f_number = LENS.focal_length * 0.5 / way.x;
     let mut scene = case.scene();
     scene.frames = frames;
     scene.reference_frame = reference;
@@ -241,9 +238,8 @@ fn moving_scenes_have_the_same_bits_for_any_number_of_threads() {
 
 #[test]
 fn the_displacement_across_a_plate_that_turns_in_its_plane_is_that_of_each_point() {
-    let mut case = Case::still("");
+    let mut case = Case::new("", surface(Body::about(DVec3::ZERO, DVec3::Z, 0.02)));
     case.setting.to_laser = DVec3::Z;
-    case.surface = Step::about(DVec3::ZERO, DVec3::Z, 0.02);
     let frames = speckle(&case.scene(), &[0, 1], 4);
     let size = case.setting.geometry().speckle_size_in_pixels();
     for [x, y] in [[0, 96], [96, 0], [192, 96], [96, 192], [96, 96]] {

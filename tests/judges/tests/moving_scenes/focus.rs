@@ -2,16 +2,15 @@
 
 use tem00::{
     decorrelation::{
-        DVec2, DVec3, ImagingGeometry, LensData, RigidMotions, axial_correlation,
-        pupil_overlap_correlation,
+        DVec2, DVec3, ImagingGeometry, LensData, axial_correlation, pupil_overlap_correlation,
     },
     speckle::{PupilField, SlicePath, SpeckleStack},
     tracer::Scene,
 };
 
-use super::setting::{
-    LENS, SIDE, Setting, Step, assert_correlation, correlation, speckle, tolerance,
-};
+use crate::wave_judges_decorrelation::{finite::surface as moved, scene::Body};
+
+use super::setting::{LENS, SIDE, Setting, assert_correlation, correlation, speckle, tolerance};
 
 /// One pixel on the plate, in metres.
 const PIXEL: f64 = 11.0 * LENS.pixel_pitch;
@@ -34,7 +33,7 @@ fn moving(lens: LensData, surface: DVec3, frames: u32) -> (Scene, f64) {
     };
     let mut scene = setting.scene();
     scene.frames = frames;
-    scene.surfaces[0].trajectory = Step::along(surface).trajectory();
+    scene.surfaces[0].trajectory = Body::along(surface).trajectory();
     (scene, setting.geometry().speckle_size_in_pixels())
 }
 
@@ -128,10 +127,7 @@ fn the_pattern_moves_by_exactly_the_image_displacement() {
     let field = PupilField::new(256, 128, 4).expect("a valid field");
     let stack = SpeckleStack::generate(&field, SlicePath::Still).expect("a small stack");
     let surface = DVec3::new(0.25e-3, -0.11e-3, 0.0);
-    let displacement = setting.law(&RigidMotions {
-        surface: Step::along(surface).motion(),
-        ..RigidMotions::default()
-    });
+    let displacement = setting.law(&moved(Body::along(surface)));
     let displacement = displacement.image_displacement;
     let intensity = |pixel: DVec2, displacement: DVec2| {
         let c = geometry.pattern_coordinate(pixel, displacement, stack.speckle_size());

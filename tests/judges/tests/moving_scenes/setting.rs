@@ -1,14 +1,14 @@
 use tem00::{
     decorrelation::{
         CameraFrame, Configuration, ConfigurationData, DVec2, DVec3, Illumination, ImagingGeometry,
-        LensData, RigidMotion, RigidMotions, SpeckleMotion,
+        LensData, SpeckleMotion,
     },
     numerics::Grid,
     statistics::pearson_correlation,
-    tracer::{Rotation, Scene, Trajectory},
+    tracer::Scene,
 };
 
-use crate::renders;
+use crate::{renders, wave_judges_decorrelation::scene::States};
 
 /// A plate at the origin that faces a camera 0.3 m away.
 #[derive(Clone, Copy, Debug)]
@@ -77,12 +77,22 @@ impl Setting {
         ))
     }
 
+    /// The scene with two frames, in which bodies move.
+    pub(crate) fn moving(&self, states: &States) -> Scene {
+        let mut scene = self.scene();
+        scene.surfaces[0].trajectory = states.surface.trajectory();
+        scene.camera_trajectory = states.camera.trajectory();
+        let laser = scene.lasers[0].clone();
+        scene.lasers[0] = laser.with_trajectory(states.source.trajectory());
+        scene
+    }
+
     pub(crate) fn geometry(&self) -> ImagingGeometry {
         ImagingGeometry::from_lens(self.lens).expect("a lens")
     }
 
     /// The law of finite motions for the point in the middle of the plate.
-    pub(crate) fn law(&self, motions: &RigidMotions) -> SpeckleMotion {
+    pub(crate) fn law(&self, states: &States) -> SpeckleMotion {
         let illumination = match self.distance {
             Some(distance) => Illumination::point_source(self.to_laser.normalize() * distance),
             None => Illumination::collimated(self.to_laser),
@@ -96,56 +106,10 @@ impl Setting {
             pupil: EYE,
         });
         let before = before.expect("a point before the camera");
-        let after = before.moved(motions).expect("a point before the camera");
+        let after = before
+            .moved(&states.motions())
+            .expect("a point before the camera");
         SpeckleMotion::between(&self.geometry(), &before, &after)
-    }
-}
-
-/// A rotation about a pivot and a displacement from each frame to the next.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Step {
-    pub(crate) pivot: DVec3,
-    pub(crate) axis: DVec3,
-    pub(crate) angle: f64,
-    pub(crate) displacement: DVec3,
-}
-
-impl Step {
-    pub(crate) const NONE: Self = Self {
-        pivot: DVec3::ZERO,
-        axis: DVec3::Z,
-        angle: 0.0,
-        displacement: DVec3::ZERO,
-    };
-
-    pub(crate) fn along(displacement: DVec3) -> Self {
-        Self {
-            displacement,
-            ..Self::NONE
-        }
-    }
-
-    pub(crate) fn about(pivot: DVec3, axis: DVec3, angle: f64) -> Self {
-        Self {
-            pivot,
-            axis,
-            angle,
-            ..Self::NONE
-        }
-    }
-
-    pub(crate) fn trajectory(&self) -> Trajectory {
-        let rotation = Rotation {
-            axis: self.axis,
-            angle: self.angle,
-        };
-        Trajectory::turning(self.pivot, rotation, self.displacement).expect("a motion")
-    }
-
-    pub(crate) fn motion(&self) -> RigidMotion {
-        RigidMotion::about(self.pivot, self.axis, self.angle)
-            .expect("a rotation")
-            .then(&RigidMotion::along(self.displacement).expect("a displacement"))
     }
 }
 
@@ -153,8 +117,8 @@ impl Step {
 pub(crate) fn speckle(scene: &Scene, frames: &[u32], seed: u64) -> Vec<Grid<f32>> {
     let (options, model) = (renders::options(4, seed), renders::speckle(scene, seed));
     let render = |&frame: &u32| {
-        let rendered = renders::frame(scene, Some(&model), frame, &options);
-        rendered.lasers.into_iter().next().expect("a laser").speckle
+        let mut rendered = renders::frame(scene, Some(&model), frame, &options);
+        rendered.lasers.remove(0).speckle
     };
     frames.iter().map(render).collect()
 }

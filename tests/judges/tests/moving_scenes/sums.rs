@@ -9,7 +9,9 @@ use tem00::{
     tracer::{Scene, SurfaceSpeckle},
 };
 
-use super::setting::{LENS, Setting, Step, assert_correlation, speckle};
+use crate::wave_judges_decorrelation::scene::Body;
+
+use super::setting::{LENS, Setting, assert_correlation, speckle};
 
 /// Pixels between samples that count as independent: the first zero of the covariance lies 1.22
 /// speckles of 6.6 pixels away.
@@ -80,7 +82,7 @@ fn sums_of_patterns_decorrelate_as_each_of_them_does() {
     let mut setting = setting();
     setting.lens.f_number = LENS.focal_length * 0.25 / surface;
     let mut scene = setting.scene();
-    scene.surfaces[0].trajectory = Step::along(surface * DVec3::X).trajectory();
+    scene.surfaces[0].trajectory = Body::along(surface * DVec3::X).trajectory();
     scene.surfaces[0].speckle = SurfaceSpeckle {
         patterns: 3,
         polarisation: 0.4,

@@ -19,21 +19,21 @@ fn judge(name: &str, scene: &Scene, states: &States) {
     assert!(error < 0.01, "{name}: {error:.4} of {speckles:.2} speckles");
 }
 
-fn surface(body: Body) -> States {
+pub(crate) fn surface(body: Body) -> States {
     States {
         surface: body,
         ..States::default()
     }
 }
 
-fn camera(body: Body) -> States {
+pub(crate) fn camera(body: Body) -> States {
     States {
         camera: body,
         ..States::default()
     }
 }
 
-fn source(body: Body) -> States {
+pub(crate) fn source(body: Body) -> States {
     States {
         source: body,
         ..States::default()

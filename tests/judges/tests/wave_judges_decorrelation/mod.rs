@@ -5,8 +5,8 @@
 //! wavefront curvatures, stationary phases, pupil overlaps or lines of sight.
 
 mod correlation;
-mod finite;
-mod geometries;
-mod image;
+pub(crate) mod finite;
+pub(crate) mod geometries;
+pub(crate) mod image;
 mod pupil;
-mod scene;
+pub(crate) mod scene;

@@ -3,6 +3,7 @@
 use tem00::{
     beam::GaussianBeam,
     decorrelation::{self, CameraFrame, Configuration, ConfigurationData, RigidMotions, Wavefront},
+    tracer::{Rotation, Trajectory},
     wave::{
         Amplitudes, Arrangement, BeamDescription, Camera, DVec2, DVec3, FanDescription,
         Illumination, Lens, LitSurface, PatchDescription, RigidMotion, RoughSurface, Roughness,
@@ -248,13 +249,17 @@ impl States {
             let changed = before.with_wavelength(light.wave.wavelength())?;
             changed.with_illumination(light.near_origin())
         });
-        let motions = RigidMotions {
+        lit.and_then(|lit| lit.moved(&self.motions()))
+            .expect("a configuration")
+    }
+
+    /// The motions, as the law describes them.
+    pub(crate) fn motions(&self) -> RigidMotions {
+        RigidMotions {
             surface: self.surface.judged(),
             camera: self.camera.judged(),
             source: self.source.judged(),
-        };
-        lit.and_then(|lit| lit.moved(&motions))
-            .expect("a configuration")
+        }
     }
 }
 
@@ -299,6 +304,15 @@ impl Body {
     pub(crate) fn judge(&self) -> RigidMotion {
         let turn = RigidMotion::rotation(self.axis, self.angle, self.pivot).expect("a rotation");
         turn.then(&RigidMotion::translation(self.translation).expect("a translation"))
+    }
+
+    /// The motion from each frame of a render to the next.
+    pub(crate) fn trajectory(&self) -> Trajectory {
+        let rotation = Rotation {
+            axis: self.axis,
+            angle: self.angle,
+        };
+        Trajectory::turning(self.pivot, rotation, self.translation).expect("a motion")
     }
 
     fn judged(&self) -> decorrelation::RigidMotion {

@@ -14,6 +14,8 @@ mod interval_coverage;
 #[path = "../../../examples/line_image/mod.rs"]
 mod line_image;
 mod line_noise;
+#[path = "../../means.rs"]
+mod means;
 mod moving_scenes;
 mod reference_and_engine;
 #[path = "../../renders.rs"]

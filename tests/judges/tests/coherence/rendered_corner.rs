@@ -1,7 +1,6 @@
 //! A rendered corner: contrasts and frames against the law, over sums of the light of the wall.
 
 use core::f64::consts::{PI, TAU};
-use std::sync::atomic::AtomicBool;
 
 use glam::{DVec2, DVec3};
 use tem00::camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
@@ -10,12 +9,14 @@ use tem00::coherence::{
     ResolutionCell, Spectrum,
 };
 use tem00::decorrelation::pupil_overlap_correlation;
-use tem00::engine::{FollowedPoint, SpeckleChange, SpeckleModel, SpecklePlan, render_frame};
+use tem00::engine::{FollowedPoint, SpeckleChange};
 use tem00::geometry::{Rectangle, Shape};
 use tem00::tracer::{
     BeamShape, Laser, LaserDescription, Material, RenderOptions, Rotation, Scene, Surface,
     Trajectory,
 };
+
+use crate::renders;
 
 const WAVELENGTH: f64 = 450e-9;
 const DISTANCE: f64 = 0.2;
@@ -87,17 +88,13 @@ fn corner(line: Spectrum, polarisation: f64) -> Scene {
 fn factors(scene: &Scene, frame: u32) -> Vec<f64> {
     const SEEDS: u64 = 32;
     let of_seed = |seed: u64| {
-        let plan = SpecklePlan::new(scene, seed).expect("a plan");
-        let model = SpeckleModel::generate(scene, &plan).expect("patterns");
         let options = RenderOptions {
             // Each draws a wave number.
             samples_per_pixel: 16,
             seed,
             ..scene.render
         };
-        let never = AtomicBool::new(false);
-        let frame = render_frame(scene, Some(&model), frame, &options, &|_| (), &never);
-        let frame = frame.expect("a frame");
+        let frame = renders::frame(scene, Some(&renders::speckle(scene, seed)), frame, &options);
         frame.lasers[0].speckle.values().to_vec()
     };
     (0..SEEDS).flat_map(of_seed).map(f64::from).collect()

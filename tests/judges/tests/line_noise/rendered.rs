@@ -18,7 +18,7 @@ const LINE: LineFrames = LineFrames {
 
 /// Holds the noise to both closed forms.
 fn judge(frames: LineFrames) {
-    let noise = frames.noise().expect("frames");
+    let noise = frames.noise();
     let line = SpeckledLine::new(noise.radius, noise.row_height).expect("a line");
     let first_order = noise.deviation / line.centroid_deviation();
     let law = noise.deviation / line_centroid_deviation(noise.radius, noise.row_height);
@@ -100,7 +100,7 @@ fn the_wide_centre_of_gravity_is_the_best_detector() {
         LineMethod::Parabola,
         LineMethod::LinearInterpolation,
     ];
-    let noise = frames.noise_by(&methods).expect("frames");
+    let noise = frames.noise_by(&methods);
     let best = noise[0].deviation;
     for (noise, method) in noise.iter().zip(&methods).skip(1) {
         let ratio = noise.deviation / best;

@@ -1,15 +1,13 @@
 //! Rendered frames of laser lines on a plate under speckle, and the scatter of their columns.
 
-use std::{error::Error, path::Path, sync::atomic::AtomicBool};
-
 use tem00::{
-    engine::{SpeckleModel, SpecklePlan, render_frame},
-    scene::parse_scene,
     tracer::{Crop, RenderOptions, Scene},
     triangulation::{
         DVec2, DVec3, DetectorSettings, LaserPlane, LineDetector, LineMethod, Triangulator,
     },
 };
+
+use crate::renders;
 
 const WAVELENGTH: f64 = 650e-9;
 const DISTANCE: f64 = 0.3;
@@ -50,9 +48,9 @@ pub(crate) struct Noise {
 impl LineFrames {
     /// Returns the scene with the laser square above a place `y` of the plate, and an image of
     /// `resolution`.
-    fn scene(&self, y: f64, resolution: [usize; 2]) -> Result<Scene, Box<dyn Error>> {
+    fn scene(&self, y: f64, resolution: [usize; 2]) -> Scene {
         let (sin, cos) = self.angle.to_radians().sin_cos();
-        let text = format!(
+        renders::scene(&format!(
             r#"
             [camera]
             position = [0, {camera_y}, {camera_z}]
@@ -88,19 +86,18 @@ impl LineFrames {
             size = 2 * self.length,
             diameter = self.length,
             thickness = self.thickness,
-        );
-        Ok(parse_scene(&text, Path::new("."))?)
+        ))
     }
 
     /// Renders the lines and finds them in all columns by their wide centres of gravity.
-    pub(crate) fn noise(&self) -> Result<Noise, Box<dyn Error>> {
-        Ok(self.noise_by(&[LineMethod::CentreOfGravity])?.remove(0))
+    pub(crate) fn noise(&self) -> Noise {
+        self.noise_by(&[LineMethod::CentreOfGravity]).remove(0)
     }
 
     /// Renders the lines and finds them in all columns by each of the methods.
-    pub(crate) fn noise_by(&self, methods: &[LineMethod]) -> Result<Vec<Noise>, Box<dyn Error>> {
-        let camera = self.scene(0.0, [1, 1])?.camera;
-        let geometry = camera.imaging_geometry(WAVELENGTH)?;
+    pub(crate) fn noise_by(&self, methods: &[LineMethod]) -> Vec<Noise> {
+        let camera = self.scene(0.0, [1, 1]).camera;
+        let geometry = camera.imaging_geometry(WAVELENGTH).expect("a lens");
         let speckle_size = geometry.speckle_size_in_pixels();
         let scale = camera.image_distance() / DISTANCE / self.pixel_pitch;
         let radius = 0.5 * self.thickness * scale * self.angle.to_radians().cos();
@@ -115,7 +112,7 @@ impl LineFrames {
         // points of rows, or of the pixels themselves.
         let row_height = speckle_size.recip();
         let independent = (self.lines * self.length) as f64 / row_height.hypot(0.76);
-        let places = self.places([columns, rows], methods)?;
+        let places = self.places([columns, rows], methods);
         let noise = |places: &Vec<f64>| {
             let squares: f64 = places.iter().map(|place| place * place).sum();
             Noise {
@@ -125,42 +122,38 @@ impl LineFrames {
                 error: (2.0 * independent).sqrt().recip(),
             }
         };
-        Ok(places.iter().map(noise).collect())
+        places.iter().map(noise).collect()
     }
 
     /// Returns, for each method, how far each column of each line seems from where it is without
     /// speckle, in pixels.
-    fn places(
-        &self,
-        [columns, rows]: [usize; 2],
-        methods: &[LineMethod],
-    ) -> Result<Vec<Vec<f64>>, Box<dyn Error>> {
+    fn places(&self, [columns, rows]: [usize; 2], methods: &[LineMethod]) -> Vec<Vec<f64>> {
         let detectors = methods.iter().map(|&method| {
             // So wide that the window holds the whole line wherever its brightest speckle is.
-            LineDetector::new(DetectorSettings {
+            let detector = LineDetector::new(DetectorSettings {
                 method,
                 window: 2 * rows - 1,
                 min_peak: 0.0,
                 ..DetectorSettings::default()
-            })
+            });
+            detector.expect("a detector")
         });
-        let detectors = detectors.collect::<Result<Vec<_>, _>>()?;
+        let detectors: Vec<_> = detectors.collect();
         let resolution = [columns, rows * self.lines];
-        let scene = self.scene(0.0, resolution)?;
-        let plate = LaserPlane::new(DVec3::ZERO, DVec3::Z)?;
+        let scene = self.scene(0.0, resolution);
+        let plate = LaserPlane::new(DVec3::ZERO, DVec3::Z).expect("a plane");
         let on_plate = Triangulator::new(scene.camera, plate);
         let options = RenderOptions {
             samples_per_pixel: self.samples_per_pixel,
             seed: self.seed,
             ..RenderOptions::default()
         };
-        let plan = SpecklePlan::new(&scene, self.seed)?;
-        let model = SpeckleModel::generate(&scene, &plan)?;
+        let model = renders::speckle(&scene, self.seed);
         let mut places = vec![Vec::new(); methods.len()];
         for line in 0..self.lines {
             let middle = (line as f64 + 0.5) * rows as f64;
             let point = on_plate.point(DVec2::new(0.5 * columns as f64, middle));
-            let y = point.ok_or("the camera does not see the plate")?.y;
+            let y = point.expect("the camera sees the plate").y;
             let options = RenderOptions {
                 crop: Some(Crop {
                     x: 0,
@@ -170,20 +163,18 @@ impl LineFrames {
                 }),
                 ..options
             };
-            let scene = self.scene(y, resolution)?;
-            let cancel = AtomicBool::new(false);
-            let frame = render_frame(&scene, Some(&model), 0, &options, &|_| (), &cancel)?;
+            let frame = renders::frame(&self.scene(y, resolution), Some(&model), 0, &options);
             let layers = &frame.lasers[0];
             let [speckled, even] = [&layers.radiance, &layers.single];
             for x in 0..columns {
                 let [speckled, even] =
                     [speckled, even].map(|image| between_dark((0..rows).map(|y| image[(x, y)])));
                 for (detector, places) in detectors.iter().zip(&mut places) {
-                    places.push(place(detector, &speckled)? - place(detector, &even)?);
+                    places.push(place(detector, &speckled) - place(detector, &even));
                 }
             }
         }
-        Ok(places)
+        places
     }
 }
 
@@ -194,8 +185,7 @@ fn between_dark(column: impl ExactSizeIterator<Item = f32>) -> Vec<f32> {
     dark().chain(column).chain(dark()).collect()
 }
 
-fn place(detector: &LineDetector, column: &[f32]) -> Result<f64, Box<dyn Error>> {
+fn place(detector: &LineDetector, column: &[f32]) -> f64 {
     let points = detector.detect_column(column);
-    let point = points.first().ok_or("a column without a line")?;
-    Ok(point.position)
+    points.first().expect("a column with a line").position
 }

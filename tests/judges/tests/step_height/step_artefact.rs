@@ -4,8 +4,10 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use tem00::config::FileAccess;
-use tem00::engine::{SpeckleModel, SpecklePlan};
+use tem00::engine::SpeckleModel;
 use tem00::scan::{MeasuredFrame, MeasuredPoint, Measurement, MeasurementScene, mean_point};
+
+use crate::renders;
 
 /// The height of the step, in metres.
 pub(crate) const STEP: f64 = 1e-3;
@@ -22,9 +24,7 @@ pub(crate) fn scene() -> MeasurementScene {
 
 /// Generates the speckle of a scene with its own seed, and prepares to measure it.
 pub(crate) fn prepare(scene: &MeasurementScene) -> (Measurement, SpeckleModel) {
-    let plan = SpecklePlan::new(&scene.scene, scene.scene.render.seed);
-    let plan = plan.expect("the patterns fit");
-    let speckle = SpeckleModel::generate(&scene.scene, &plan).expect("the patterns fit");
+    let speckle = renders::speckle(&scene.scene, scene.scene.render.seed);
     let measurement = Measurement::new(scene.clone()).expect("the scene can be measured");
     (measurement, speckle)
 }

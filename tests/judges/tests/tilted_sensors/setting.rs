@@ -1,16 +1,17 @@
-use std::{path::Path, sync::atomic::AtomicBool};
+use std::sync::atomic::AtomicBool;
 
 use tem00::{
     calibration::CalibrationSettings,
     camera::{Camera, CameraDescription, RadialDistortion, SensorTilt},
-    engine::{SpeckleModel, SpecklePlan, render_frame},
+    engine::SpeckleModel,
     geometry::{Rectangle, Shape},
     numerics::Grid,
     scan::{MeasuredFrame, Measurement, MeasurementScene, ScanSettings},
-    scene::parse_scene,
     tracer::{RenderOptions, Trajectory},
     triangulation::{DVec2, DVec3, DetectorSettings, SensorDescription},
 };
+
+use crate::renders;
 
 /// Columns and rows of the images.
 pub(crate) const SIZE: [usize; 2] = [512, 56];
@@ -74,7 +75,7 @@ impl Setting {
             rectangle.size = ["30 mm", "20 mm"]
             "#
         );
-        let mut scene = parse_scene(&text, Path::new(".")).expect("a scene");
+        let mut scene = renders::scene(&text);
         scene.camera = self.camera(scene.camera.description());
         let plate = Rectangle::new(self.seen, 15e-3 * DVec3::X, 10e-3 * DVec3::Y);
         scene.surfaces[0].shape = Shape::Rectangle(plate.expect("a plate"));
@@ -145,10 +146,8 @@ pub(crate) struct Prepared {
 
 impl Prepared {
     pub(crate) fn new(scene: MeasurementScene) -> Self {
-        let plan = SpecklePlan::new(&scene.scene, scene.scene.render.seed);
-        let speckle = SpeckleModel::generate(&scene.scene, &plan.expect("patterns"));
         Self {
-            speckle: speckle.expect("patterns"),
+            speckle: renders::speckle(&scene.scene, scene.scene.render.seed),
             measurement: Measurement::new(scene).expect("a scan"),
         }
     }
@@ -171,15 +170,7 @@ impl Prepared {
             speckle_in_the_dark: true,
             ..scene.render
         };
-        let cancel = AtomicBool::new(false);
-        let rendered = render_frame(
-            scene,
-            Some(&self.speckle),
-            frame,
-            &options,
-            &|_| (),
-            &cancel,
-        );
-        rendered.expect("a frame").lasers.remove(0).speckle
+        let mut rendered = renders::frame(scene, Some(&self.speckle), frame, &options);
+        rendered.lasers.remove(0).speckle
     }
 }

@@ -1,27 +1,21 @@
 //! Renders of a scene by either method, and tests that they agree.
 
-use std::{path::Path, sync::atomic::AtomicBool};
-
 use tem00::{
     camera::{Camera, CameraDescription},
-    engine::{SpeckleModel, render_frame},
+    engine::SpeckleModel,
     numerics::Grid,
-    scene::parse_scene,
     statistics::{kolmogorov_smirnov, t_test_mean},
     tracer::{Frame, LaserEvents, LaserLayers, Material, Method, RenderOptions, Scene},
 };
 
-/// Correct tracers fail a comparison with this probability at the fixed seeds.
-pub(crate) const SIGNIFICANCE: f64 = 1e-4;
+use crate::{means::assert_mean, renders};
 
-/// Reads a scene.
-pub(crate) fn scene_of(text: &str) -> Scene {
-    parse_scene(text, Path::new(".")).expect("a valid scene")
-}
+/// Correct tracers fail a comparison of pixels with this probability at the fixed seeds.
+const SIGNIFICANCE: f64 = 1e-4;
 
 /// Reads a scene whose camera is sharp everywhere.
 pub(crate) fn sharp_scene(text: &str) -> Scene {
-    let mut scene = scene_of(text);
+    let mut scene = renders::scene(text);
     let sharp = CameraDescription {
         depth_of_field: false,
         ..*scene.camera.description()
@@ -67,8 +61,7 @@ impl Series {
                 laser_events: self.laser_events,
                 ..scene.render
             };
-            let cancel = AtomicBool::new(false);
-            render_frame(scene, speckle, 0, &options, &|_| (), &cancel).expect("a render")
+            renders::frame(scene, speckle, 0, &options)
         };
         (0..self.seeds).map(render).collect()
     }
@@ -117,21 +110,5 @@ fn assert_same_sum(one: &[Vec<f64>], other: &[Vec<f64>]) {
     };
     let (one, other) = (sums(one), sums(other));
     let ratios: Vec<f64> = one.iter().zip(&other).map(|(a, b)| a / b - 1.0).collect();
-    assert_mean(&ratios, 0.0, 0.004);
-}
-
-/// Tests that values scatter about `expected`, and that the test can tell a deviation of four times
-/// the standard error `sharpness`.
-pub(crate) fn assert_mean(values: &[f64], expected: f64, sharpness: f64) {
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    let squares = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
-    let error = (squares / (count - 1.0) / count).sqrt();
-    let test = t_test_mean(values, expected).expect("values with noise");
-    assert!(
-        test.p_value > SIGNIFICANCE,
-        "{mean} ± {error}, expected {expected}: p = {:e}",
-        test.p_value
-    );
-    assert!(error < sharpness, "{mean} ± {error} tells too little");
+    assert_mean("sums", &ratios, 0.0, 0.004);
 }

@@ -10,7 +10,9 @@ use tem00::{
     tracer::{Frame, Material, Method, Scene},
 };
 
-use super::comparison::{Series, assert_mean, paint, sharp_scene};
+use crate::means::assert_mean;
+
+use super::comparison::{Series, paint, sharp_scene};
 
 const WAVELENGTH: f64 = 650e-9;
 const POWER: f64 = 2e-3;
@@ -107,12 +109,12 @@ fn assert_focused(scene: &Scene, height: f64) {
     // Fresnel's transmittance at normal incidence, twice.
     let transmittance = 4.0 * INDEX / (INDEX + 1.0).powi(2);
     let powers: Vec<f64> = measured.iter().map(|[power, ..]| power / POWER).collect();
-    assert_mean(&powers, transmittance * transmittance, 0.002);
+    assert_mean("power", &powers, transmittance * transmittance, 0.002);
     // Spherical aberration moves the focus by 0.28 x² f = 2 µm, with f = 45 mm and x = 0.014 the
     // angle of incidence at one beam radius, and so the radius by less than 0.04 %.
     for axis in [1, 2] {
         let radii: Vec<f64> = measured.iter().map(|m| m[axis] / expected).collect();
-        assert_mean(&radii, 1.0, 0.002);
+        assert_mean("radius", &radii, 1.0, 0.002);
     }
 }
 

@@ -2,12 +2,13 @@
 
 use tem00::{
     beam::DVec3,
-    engine::{SpeckleModel, SpecklePlan},
     geometry::{Rectangle, Shape},
     tracer::{LaserEvents, LaserLayers, Material, Method, Scene},
 };
 
-use super::comparison::{Series, assert_agree, assert_mean, paint, sharp_scene};
+use crate::{means::assert_mean, renders};
+
+use super::comparison::{Series, assert_agree, paint, sharp_scene};
 
 const REFLECTANCE: f64 = 0.8;
 const POWER: f64 = 2e-3;
@@ -106,8 +107,7 @@ fn a_mirror_lights_a_surface_as_the_image_of_the_laser_does() {
     let direct = scene(REFLECTANCE * POWER, fold.image, None);
     let folded = scene(POWER, fold.laser, Some((&fold, fold.mirror)));
     assert!(folded.has_specular_surfaces(), "a mirror");
-    let plan = SpecklePlan::new(&direct, 0).expect("a small pattern");
-    let speckle = SpeckleModel::generate(&direct, &plan).expect("a small pattern");
+    let speckle = renders::speckle(&direct, 0);
     let path = PATHS.render(&direct, Some(&speckle));
     let light = PATHS.render(&folded, Some(&speckle));
     assert_agree(&path, &light, |layers| &layers.single, 0.1);
@@ -149,7 +149,7 @@ fn light_past_a_mirror_and_light_from_it_add_up_to_all() {
     };
     let (both, all) = (sums(Method::Path), sums(Method::Light));
     let ratios: Vec<f64> = both.iter().zip(&all).map(|(a, b)| a / b - 1.0).collect();
-    assert_mean(&ratios, 0.0, 0.002);
+    assert_mean("sums", &ratios, 0.0, 0.002);
 }
 
 #[test]

@@ -3,7 +3,12 @@
 use tem00::camera::{Camera, CameraDescription, SensorTilt};
 use tem00::tracer::{LaserEvents, Material, Method, Scene};
 
-use super::comparison::{Series, assert_agree, assert_mean, paint, scene_of, sharp_scene};
+use crate::{
+    means::{assert_mean, mean},
+    renders,
+};
+
+use super::comparison::{Series, assert_agree, paint, sharp_scene};
 
 const CAMERA: &str = r#"
     [camera]
@@ -53,7 +58,7 @@ fn a_spot_on_a_tilted_plate_looks_the_same_from_both_ends() {
 #[test]
 fn a_spot_out_of_focus_looks_the_same_from_both_ends() {
     let text = tilted_plate(r#"spot = { waist_radius = ["0.6 mm", "0.9 mm"], m_squared = 3 }"#);
-    let mut scene = scene_of(&text);
+    let mut scene = renders::scene(&text);
     // In focus 0.1 m in front of the plate: the spot is blurred over 4 mm, and the sensor is
     // tilted.
     let near = CameraDescription {
@@ -183,12 +188,8 @@ fn lasers_in_an_integrating_sphere_lose_no_power() {
         let expected = REFLECTANCE * irradiance / std::f64::consts::PI;
         let means: Vec<f64> = frames
             .iter()
-            .map(|frame| {
-                let values = frame.lasers[index].multiple.values();
-                let sum: f64 = values.iter().map(|&value| f64::from(value)).sum();
-                sum / values.len() as f64 / expected
-            })
+            .map(|frame| mean(frame.lasers[index].multiple.values()) / expected)
             .collect();
-        assert_mean(&means, 1.0, 0.004);
+        assert_mean("sphere", &means, 1.0, 0.004);
     }
 }

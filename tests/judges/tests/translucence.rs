@@ -1,8 +1,8 @@
 //! Light below a surface against the exact integral equation, reciprocity, the balance of energy,
 //! and photons that another program counted.
 
+use core::f64::consts::FRAC_PI_4;
 use std::sync::atomic::AtomicBool;
-use tem00_testkit::on_threads;
 
 use tem00::{
     DVec2, DVec3,
@@ -10,7 +10,9 @@ use tem00::{
     translucence::{Bin, LineSpread, Material, Medium, PeakShape, Spectrum, SpreadLine, Walk},
 };
 
-use crate::renders;
+use tem00_testkit::on_threads;
+
+use crate::{means, renders};
 
 /// Chance, up to a constant, that a collision at each of some depths is seen from outside.
 ///
@@ -39,11 +41,12 @@ impl Importance {
         let weights: Vec<_> = (0..NODES)
             .map(|i| step * 0.1 * at(i).sinh() * at(i).cosh())
             .collect();
-        let cosines: Vec<_> = (0..ANGLES)
-            .map(|i| (i as f64 + 0.5) / ANGLES as f64)
+        let cosines = (0..ANGLES).map(|i| (i as f64 + 0.5) / ANGLES as f64);
+        let cosines: Vec<_> = cosines
+            .map(|mu| (mu, medium.reflectance_from_inside(mu)))
             .collect();
         let mirrored = |depth: f64| -> f64 {
-            let part = |&mu: &f64| medium.reflectance_from_inside(mu) * (-depth / mu).exp() / mu;
+            let part = |(mu, reflected): &(f64, f64)| reflected * (-depth / mu).exp() / mu;
             0.5 * cosines.iter().map(part).sum::<f64>() / ANGLES as f64
         };
         let matrix = (0..NODES).map(|i| {
@@ -71,16 +74,17 @@ impl Importance {
         }
     }
 
-    /// Returns the mean of the first flight over those that are seen, as optical depth.
-    fn mean_flight(&self, cosine: f64, seen_from: f64) -> f64 {
-        let source = self
-            .depths
-            .iter()
-            .map(|depth| (-depth / seen_from).exp())
-            .collect();
-        let importance = solved(self.matrix.clone(), source);
+    /// Returns the chances for light that leaves at the cosine, below the surface.
+    fn seen_from(&self, cosine: f64) -> Vec<f64> {
+        let source = self.depths.iter().map(|depth| (-depth / cosine).exp());
+        solved(self.matrix.clone(), source.collect())
+    }
+
+    /// Returns the mean of the first flight at the cosine over those that are seen, as optical
+    /// depth.
+    fn mean_flight(&self, cosine: f64, seen: &[f64]) -> f64 {
         let mut sums = [0.0; 2];
-        for ((depth, weight), seen) in self.depths.iter().zip(&self.weights).zip(importance) {
+        for ((depth, weight), seen) in self.depths.iter().zip(&self.weights).zip(seen) {
             let flight = depth / cosine;
             let light = weight * (-flight).exp() * seen;
             sums[0] += light;
@@ -159,31 +163,36 @@ fn medium([n, scattering, absorption]: [f64; 3]) -> Medium {
     Medium::new(n, 1e3 * scattering, 1e3 * absorption).expect("a medium")
 }
 
+/// Follows photons from a line to cameras.
+fn simulated(medium: &Medium, angles: (f64, &[f64]), photons: u64, seed: u64) -> Vec<LineSpread> {
+    let walk = Walk {
+        incidence: angles.0,
+        exits: angles.1.to_vec(),
+        photons,
+        seed,
+    };
+    LineSpread::simulate(medium, &walk).expect("a simulation")
+}
+
 #[test]
 fn the_centre_of_the_line_is_that_of_the_integral_equation() {
     let angles = [0.0, 20.0, 45.0, 60.0].map(f64::to_radians);
     for body in BODIES {
         let medium = medium(body);
         let importance = Importance::new(&medium);
-        let cosine = |angle: f64| {
+        let ways = angles.map(|angle: f64| {
             let sine = angle.sin() / medium.refractive_index();
-            (1.0 - sine * sine).sqrt()
-        };
-        for incidence in angles {
-            let exits = angles[1..].to_vec();
-            let walk = Walk {
-                incidence,
-                exits,
-                photons: 30_000,
-                seed: 7,
-            };
-            let seen = LineSpread::simulate(&medium, &walk).expect("a simulation");
-            for (exit, seen) in angles[1..].iter().zip(seen) {
-                let part = |own: f64, other: f64| {
-                    let flight = importance.mean_flight(cosine(own), cosine(other));
-                    own.sin() / medium.refractive_index() * flight / medium.extinction()
+            let cosine = (1.0 - sine * sine).sqrt();
+            (sine, cosine, importance.seen_from(cosine))
+        });
+        let (exits, ways_out) = (&angles[1..], &ways[1..]);
+        for (incidence, way_in) in angles.iter().zip(&ways) {
+            let seen = simulated(&medium, (*incidence, exits), 30_000, 7);
+            for ((exit, way_out), seen) in exits.iter().zip(ways_out).zip(seen) {
+                let part = |(sine, cosine, _): &(f64, f64, Vec<f64>), other: &[f64]| {
+                    sine * importance.mean_flight(*cosine, other) / medium.extinction()
                 };
-                let exact = part(incidence, *exit) + part(*exit, incidence);
+                let exact = part(way_in, &way_out.2) + part(way_out, &way_in.2);
                 let error = seen.centroid() / exact - 1.0;
                 let allowed = 4.0 * seen.standard_error() / exact;
                 assert!(
@@ -201,20 +210,11 @@ fn light_paths_can_be_reversed_at_any_anisotropy_and_slope() {
         let medium = medium([1.5, 2.19, 0.05]).with_anisotropy(g);
         let medium = medium.and_then(|medium| medium.with_matt_boundary(slope));
         let medium = medium.expect("a medium");
-        let [low, high] = [0.2, 0.9];
-        let seen = |incidence, exit, seed| {
-            let walk = Walk {
-                incidence,
-                exits: vec![exit],
-                // Steep facets at grazing angles carry rare bright light.
-                photons: if slope > 0.3 { 600_000 } else { 30_000 },
-                seed,
-            };
-            LineSpread::simulate(&medium, &walk)
-                .expect("a simulation")
-                .remove(0)
-        };
-        let [there, back] = [seen(low, high, 1), seen(high, low, 2)];
+        // Steep facets at grazing angles carry rare bright light.
+        let photons = if slope > 0.3 { 600_000 } else { 30_000 };
+        let [there, back] = [(0.2, 0.9, 1), (0.9, 0.2, 2)].map(|(incidence, exit, seed)| {
+            simulated(&medium, (incidence, &[exit]), photons, seed).remove(0)
+        });
         let noise = there.standard_error().hypot(back.standard_error());
         let difference = there.centroid() - back.centroid();
         assert!(
@@ -232,13 +232,7 @@ fn facets_shift_the_line_as_another_program_computed() {
     // Root mean square slopes along each axis.
     for (slope, expected) in [(0.1, 180e-6), (0.25, 187e-6), (0.5, 205e-6)] {
         let matt = medium([1.5, 2.19, 0.05]).with_matt_boundary(slope);
-        let walk = Walk {
-            incidence: 0.0,
-            exits: vec![45_f64.to_radians()],
-            photons: 60_000,
-            seed: 5,
-        };
-        let seen = LineSpread::simulate(&matt.expect("a medium"), &walk).expect("a simulation");
+        let seen = simulated(&matt.expect("a medium"), (0.0, &[FRAC_PI_4]), 60_000, 5);
         let ratio = seen[0].centroid() / expected;
         assert!((ratio - 1.0).abs() < 0.02, "{slope}: {ratio}");
     }
@@ -246,6 +240,7 @@ fn facets_shift_the_line_as_another_program_computed() {
 
 /// A body that was counted photon by photon, without next events, by a program that shares no code
 /// with this one: lit along the normal, seen at 45°.
+#[derive(Debug)]
 struct Counted {
     body: [f64; 3],
     anisotropy: f64,
@@ -302,46 +297,50 @@ const COUNTED: [Counted; 4] = [
     },
 ];
 
+impl Counted {
+    fn medium(&self) -> Medium {
+        let medium = medium(self.body).with_anisotropy(self.anisotropy);
+        medium.expect("a medium")
+    }
+
+    /// Asserts the contrasts of the whole line and of the light near the entry.
+    fn assert_contrasts(
+        &self,
+        contrast: impl Fn(&Spectrum, [f64; 2]) -> Option<f64>,
+        tolerance: f64,
+    ) {
+        let expected = self.whole.iter().zip(self.near);
+        for (linewidth, (whole, near)) in [1e-12, 1e-11, 1e-10, 1e-9].into_iter().zip(expected) {
+            let line = Spectrum::new(660e-9, linewidth, PeakShape::Gaussian);
+            let line = line.expect("a line");
+            for (end, expected) in [(1.0, *whole), (1e-4, near)] {
+                let contrast = contrast(&line, [-end, end]).expect("paths");
+                assert!(
+                    (contrast / expected - 1.0).abs() < tolerance,
+                    "{self:?}, {linewidth}: {contrast} for {expected}"
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn shift_contrast_and_albedo_are_those_of_photons_that_were_counted() {
     for counted in COUNTED {
-        let name = format!("{:?}, g = {}", counted.body, counted.anisotropy);
-        let medium = medium(counted.body).with_anisotropy(counted.anisotropy);
-        let walk = Walk {
-            incidence: 0.0,
-            exits: vec![45_f64.to_radians()],
-            photons: 100_000,
-            seed: 5,
-        };
-        let seen = LineSpread::simulate(&medium.expect("a medium"), &walk);
-        let seen = seen.expect("a simulation").remove(0);
+        let seen = simulated(&counted.medium(), (0.0, &[FRAC_PI_4]), 100_000, 5).remove(0);
         assert!(
             (seen.albedo() - counted.albedo).abs() < 0.005,
-            "{name}: {}",
+            "{counted:?}: {}",
             seen.albedo()
         );
         let [centroid, error] = counted.centroid.map(|length| 1e-3 * length);
         let error = error.hypot(seen.standard_error());
         assert!(
             (seen.centroid() - centroid).abs() < 3.0 * error,
-            "{name}: {}",
+            "{counted:?}: {}",
             seen.centroid()
         );
-        for (index, linewidth) in [1e-12, 1e-11, 1e-10, 1e-9].into_iter().enumerate() {
-            let line = Spectrum::new(660e-9, linewidth, PeakShape::Gaussian);
-            let line = line.expect("a line");
-            for (places, expected) in [
-                ([-1.0, 1.0], counted.whole[index]),
-                ([-1e-4, 1e-4], counted.near[index]),
-            ] {
-                let contrast = seen.contrast(&line, places).expect("paths");
-                let relative = contrast / expected - 1.0;
-                assert!(
-                    relative.abs() < 0.05,
-                    "{name}, {linewidth}: {contrast} for {expected}"
-                );
-            }
-        }
+        counted.assert_contrasts(|line, places| seen.contrast(line, places), 0.05);
     }
 }
 
@@ -394,22 +393,9 @@ impl Profile {
 #[test]
 fn detectors_find_the_line_where_they_find_counted_photons() {
     for counted in COUNTED {
-        let medium = medium(counted.body).with_anisotropy(counted.anisotropy);
-        let line = SpreadLine::new(&medium.expect("a medium"), 0.0, 45_f64.to_radians());
-        let line = line.expect("a line");
+        let line = SpreadLine::new(&counted.medium(), 0.0, FRAC_PI_4).expect("a line");
         // A twentieth of the photons that a simulation of one's own has.
-        for (index, linewidth) in [1e-12, 1e-11, 1e-10, 1e-9].into_iter().enumerate() {
-            let spectrum = Spectrum::new(660e-9, linewidth, PeakShape::Gaussian);
-            let spectrum = spectrum.expect("a spectrum");
-            for (end, expected) in [(1.0, counted.whole[index]), (1e-4, counted.near[index])] {
-                let contrast = line.contrast(&spectrum, [-end, end]).expect("paths");
-                let relative = contrast / expected - 1.0;
-                assert!(
-                    relative.abs() < 0.12,
-                    "{linewidth}: {contrast} for {expected}"
-                );
-            }
-        }
+        counted.assert_contrasts(|spectrum, places| line.contrast(spectrum, places), 0.12);
         let profile = Profile::new(&line, 0.2e-3);
         // Forward scattering spreads the line to a plateau, whose counts are noisy.
         let tolerance = if counted.anisotropy > 0.0 { 0.12 } else { 0.03 };
@@ -421,9 +407,7 @@ fn detectors_find_the_line_where_they_find_counted_photons() {
             let expected = 1e-3 * expected;
             assert!(
                 (found - expected).abs() < tolerance * expected + 2e-6,
-                "{:?}, g = {}: {found} m for {expected} m",
-                counted.body,
-                counted.anisotropy
+                "{counted:?}: {found} m for {expected} m"
             );
         }
     }
@@ -433,7 +417,7 @@ fn detectors_find_the_line_where_they_find_counted_photons() {
 /// centre in windows.
 #[test]
 fn a_rendered_line_is_that_of_the_half_space() {
-    let angle = 45_f64.to_radians();
+    let angle = FRAC_PI_4;
     let mut scene = renders::scene(&format!(
         r#"
         [camera]
@@ -454,7 +438,7 @@ fn a_rendered_line_is_that_of_the_half_space() {
         angle.sin()
     ));
     scene.render.samples_per_pixel = 512;
-    let frame = renders::frame(&scene, None, 0, &scene.render);
+    let frame = means::render(&scene, &scene.render);
     let image = &frame.lasers[0].single;
     // The place and the light of each column, with the length that it covers.
     let columns = (0..image.width()).map(|column| {
@@ -499,13 +483,7 @@ fn a_rendered_line_is_that_of_the_half_space() {
             "±{window}: {found} for {expected}"
         );
     }
-    let view = Walk {
-        incidence: 0.0,
-        exits: vec![angle],
-        photons: 100_000,
-        seed: 1,
-    };
-    let spread = &LineSpread::simulate(&medium, &view).expect("a spread")[0];
+    let spread = &simulated(&medium, (0.0, &[angle]), 100_000, 1)[0];
     let laser = scene.laser_at(0, 0);
     let irradiance = |step: i32| {
         let event = laser.next_event(DVec3::new(1e-6 * f64::from(step), 0.0, 0.0));
@@ -622,14 +600,7 @@ fn materials_have_the_diffuse_reflectance_that_was_published_with_them() {
     ]) {
         for (wavelength, expected) in [650e-9, 550e-9, 450e-9].into_iter().zip(published) {
             let medium = material.medium(wavelength).expect("a medium");
-            let walk = Walk {
-                incidence: 0.0,
-                exits: vec![0.0],
-                photons: 20_000,
-                seed: 3,
-            };
-            let seen = LineSpread::simulate(&medium, &walk).expect("a simulation");
-            let albedo = seen[0].albedo();
+            let albedo = simulated(&medium, (0.0, &[0.0]), 20_000, 3)[0].albedo();
             let name = material.name;
             assert!(
                 (albedo - expected).abs() < 0.02,
@@ -661,13 +632,7 @@ fn h_function(c: f64, mu: f64) -> f64 {
 fn a_half_space_reflects_what_theory_says() {
     let albedo = |n: f64, c: f64, incidence: f64| {
         let medium = Medium::new(n, 1e3, 1e3 * (1.0 / c - 1.0)).expect("a medium");
-        let view = Walk {
-            incidence,
-            exits: vec![0.0],
-            photons: 400_000,
-            seed: 3,
-        };
-        LineSpread::simulate(&medium, &view).expect("a spread")[0].albedo()
+        simulated(&medium, (incidence, &[0.0]), 400_000, 3)[0].albedo()
     };
     for c in [0.5_f64, 0.9, 0.99] {
         for incidence in [0.0_f64, 60_f64.to_radians()] {
@@ -689,18 +654,15 @@ fn a_half_space_reflects_what_theory_says() {
 fn tables_hold_for_every_body_and_angle() {
     for body in BODIES {
         let medium = medium(body);
-        for [incidence, exit] in [[0.0, 45.0], [0.0, 22.5], [12.5, 37.5]] {
-            let [incidence, exit] = [incidence, exit].map(f64::to_radians);
-            let line = SpreadLine::new(&medium, incidence, exit).expect("a line");
-            let walk = Walk {
-                incidence,
-                exits: vec![exit],
-                photons: 100_000,
-                seed: 9,
-            };
-            let simulated = LineSpread::simulate(&medium, &walk).expect("a simulation");
-            let ratio = line.centroid() / simulated[0].centroid();
-            assert!((ratio - 1.0).abs() < 0.012, "{body:?}, {exit}: {ratio}");
+        for (incidence, exits) in [(0.0_f64, &[45.0_f64, 22.5][..]), (12.5, &[37.5])] {
+            let incidence = incidence.to_radians();
+            let exits: Vec<_> = exits.iter().map(|exit| exit.to_radians()).collect();
+            let seen = simulated(&medium, (incidence, &exits), 100_000, 9);
+            for (exit, seen) in exits.into_iter().zip(seen) {
+                let line = SpreadLine::new(&medium, incidence, exit).expect("a line");
+                let ratio = line.centroid() / seen.centroid();
+                assert!((ratio - 1.0).abs() < 0.012, "{body:?}, {exit}: {ratio}");
+            }
         }
     }
 }
@@ -713,13 +675,7 @@ fn radiances_of_all_directions_add_up_to_the_light_that_leaves() {
     for body in BODIES {
         let medium = medium(body);
         let exits: Vec<_> = sines.clone().map(|square| square.sqrt().asin()).collect();
-        let walk = Walk {
-            incidence: 0.0,
-            exits,
-            photons: 60_000,
-            seed: 11,
-        };
-        let seen = LineSpread::simulate(&medium, &walk).expect("a simulation");
+        let seen = simulated(&medium, (0.0, &exits), 60_000, 11);
         let left: f64 = seen.iter().map(LineSpread::radiance_factor).sum();
         let left = left / f64::from(DIRECTIONS);
         let expected = seen[0].albedo() * (1.0 - medium.reflectance_from_inside(1.0));
@@ -736,14 +692,6 @@ fn radiances_of_all_directions_add_up_to_the_light_that_leaves() {
 #[test]
 fn the_same_seed_gives_the_same_bits_for_any_number_of_threads() {
     let medium = medium(BODIES[1]);
-    let walk = Walk {
-        incidence: 0.1,
-        exits: vec![0.3, 0.5],
-        photons: 2_000,
-        seed: 3,
-    };
-    let run = |threads| {
-        on_threads(threads, || LineSpread::simulate(&medium, &walk)).expect("a simulation")
-    };
+    let run = |threads| on_threads(threads, || simulated(&medium, (0.1, &[0.3, 0.5]), 2_000, 3));
     assert_eq!(run(1), run(3));
 }

@@ -85,21 +85,23 @@ fn a_sphere_keeps_each_reflection_of_the_series() {
     sphere.surfaces[0].material = Material::lambertian(REFLECTANCE).unwrap();
     // What a diffuse sphere reflects spreads evenly over it: ρᵏP / (πA) for each k-th reflection.
     let once = 2.0 / (PI * 4.0 * PI * 0.01);
-    let layers = |depth: i32, samples, seed| {
-        let max_depth = Some(depth.unsigned_abs());
+    let layers = |max_depth: Option<i32>, samples, seed| {
+        let max_depth = max_depth.map(i32::unsigned_abs);
         let options = RenderOptions {
             max_depth,
             ..options(samples, seed)
         };
         render(&sphere, &options).lasers.remove(0)
     };
-    for depth in [2, 3, 5] {
+    for depth in [Some(2), Some(3), Some(5), None] {
         let radiances = over_seeds(|seed| mean(layers(depth, 16, seed).multiple.values()));
-        let expected: f64 = (2..=depth).map(|k| once * REFLECTANCE.powi(k)).sum();
-        // The next reflection would add at least 8 %.
+        let left_out = depth.map_or(0.0, |depth| REFLECTANCE.powi(depth - 1));
+        let all = once * REFLECTANCE.powi(2) / (1.0 - REFLECTANCE);
+        let expected = all * (1.0 - left_out);
+        // The next reflection would add at least 8 %, those beyond the tenth 4 %.
         assert_mean("series", &radiances, expected, 0.01 * expected);
     }
-    let direct = layers(1, 4, 0);
+    let direct = layers(Some(1), 4, 0);
     assert!(
         direct.multiple.values().iter().all(|&v| v == 0.0),
         "one surface"

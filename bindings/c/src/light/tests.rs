@@ -10,6 +10,7 @@ use core::{f64::consts::FRAC_PI_4, ptr::null};
 use tem00_beam::{
     AngularProfile, AstigmaticBeam, FanGeometry, GaussianBeam, LaserLine, LocatedBeam,
 };
+use tem00_testkit::Numbers;
 
 use super::*;
 use crate::testing::Owned;
@@ -154,29 +155,13 @@ fn pairs() -> [Pair; 4] {
 
 /// Points on rays of a light, beside it and behind it.
 fn points(light: &dyn Emitter) -> Vec<[f64; 3]> {
-    let mut variates = Variates(1);
+    let mut variates = Numbers::new(1);
     let mut points = vec![[0.0; 3], [0.1, -0.2, 0.3], [1e30, -1e30, 1e30]];
     for _ in 0..40 {
-        let ray = light.sample_ray(variates.next());
-        let [distance] = variates.next().map(|x: f64| x - 0.1);
+        let ray = light.sample_ray(variates.units());
+        let distance = variates.unit() - 0.1;
         let point = |i| ray.origin[i] + distance * ray.direction[i];
         points.push(core::array::from_fn(point));
     }
     points
-}
-
-/// Uniform numbers of the generator of Steele, Lea and Flood (2014).
-struct Variates(u64);
-
-impl Variates {
-    fn next<const N: usize>(&mut self) -> [f64; N] {
-        [(); N].map(|()| {
-            self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let mut z = self.0;
-            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            let bits = u32::try_from((z ^ (z >> 31)) >> 32).unwrap();
-            f64::from(bits) / 4_294_967_296.0
-        })
-    }
 }

@@ -20,9 +20,9 @@ fn answers_are_those_of_the_library_to_the_last_bit() {
     } in &pairs()
     {
         let light = light.handle.cast_const();
-        let mut variates = Variates(2);
+        let mut variates = Numbers::new(2);
         for p in points(&**peer) {
-            let (u, v) = (variates.next(), variates.next());
+            let (u, v) = (variates.units(), variates.units());
             let point = p.as_ptr();
             let drawn = peer.next_event_sampled(p, u);
             let wi = drawn.map_or([0.0, 0.6, 0.8], |event| event.wi);
@@ -181,9 +181,9 @@ fn batches_of_samples_are_single_answers_to_the_last_bit() {
     for Pair { light, peer, .. } in &pairs() {
         let points = points(&**peer);
         let count = points.len();
-        let mut variates = Variates(4);
-        let pairs: Vec<[f64; 2]> = points.iter().map(|_| variates.next()).collect();
-        let fours: Vec<[f64; 4]> = points.iter().map(|_| variates.next()).collect();
+        let mut variates = Numbers::new(4);
+        let pairs: Vec<[f64; 2]> = points.iter().map(|_| variates.units()).collect();
+        let fours: Vec<[f64; 4]> = points.iter().map(|_| variates.units()).collect();
         let mut events = vec![SampledEvent::default(); count];
         let mut rays = vec![RaySample::default(); count];
         let (p, two, four) = (points.as_ptr(), pairs.as_ptr(), fours.as_ptr());

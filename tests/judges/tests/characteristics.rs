@@ -61,7 +61,7 @@ fn instrument_noise(setup: &Setup, budget: &Budget) -> f64 {
 fn a_rendered_set_up_has_the_characteristics_of_its_budget() {
     let setup = parse_setup(SETUP).expect("a set-up");
     let cancel = AtomicBool::new(false);
-    let mut sensor = SetupSensor::new(&setup, 16, 5, &|_| (), &cancel);
+    let mut sensor = SetupSensor::new(&setup, 8, 5, &|_| (), &cancel);
     let found = characterise(&mut sensor, Options { repetitions: 16 }).expect("it is measured");
     let budget = Budget::at_height(&setup, 0.0).expect("it measures");
     let flat = found.flat.expect("seen");

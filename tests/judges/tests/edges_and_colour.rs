@@ -116,6 +116,7 @@ fn scene(part: &Part) -> Scene {
         [render]
         frames = {FRAMES}
         samples_per_pixel = 1024
+        max_depth = 1
         [camera]
         position = [0, {}, {}]
         look_at = [0, 0, 0]

@@ -113,15 +113,19 @@ impl<'a> Value<'a> {
     pub fn problem(&self, message: impl Display) -> Problem {
         let message = message.to_string();
         let problem = Problem::new(self.retyped(&message)).at(self.location());
-        let is_bare = matches!(self.item.get_ref(), DeValue::Integer(_) | DeValue::Float(_));
-        let named = |dimension: &&&Dimension| {
-            let unit = format!("(in {})", dimension.si_unit);
-            message.contains(&unit)
-        };
-        match DIMENSIONS.iter().find(named).filter(|_| is_bare) {
+        let is_named = |unit: &str| message.contains(&format!("(in {unit})"));
+        let dimension = DIMENSIONS
+            .iter()
+            .find(|dimension| is_named(dimension.si_unit));
+        match dimension.filter(|_| self.is_bare()) {
             Some(dimension) => problem.with_help(dimension.how_to_write()),
             None => problem,
         }
+    }
+
+    /// Returns whether it is a number without a unit.
+    fn is_bare(&self) -> bool {
+        matches!(self.item.get_ref(), DeValue::Integer(_) | DeValue::Float(_))
     }
 
     /// Returns a message about this value with its quantities in the unit of this value.
@@ -152,11 +156,9 @@ impl<'a> Value<'a> {
             return Ok(value);
         }
         let problem = self.must_be(allowed);
-        Err(match self.item.get_ref() {
-            DeValue::Integer(_) | DeValue::Float(_) if !dimension.si_unit.is_empty() => {
-                problem.with_help(dimension.how_to_write())
-            }
-            _ => problem,
+        Err(match self.is_bare() && !dimension.si_unit.is_empty() {
+            true => problem.with_help(dimension.how_to_write()),
+            false => problem,
         })
     }
 

@@ -65,7 +65,7 @@ fn clone() -> tempfile::TempDir {
 }
 
 #[test]
-#[ignore = "renders for a minute"]
+#[ignore = "takes 20 s: `cargo test --test command_line -- --ignored`"]
 fn the_commands_of_the_tutorial_work() {
     let (folder, page) = (clone(), page("tutorial.md"));
     let commands = commands(&page);
@@ -140,7 +140,7 @@ fn check_results(quoted: &[&str], printed: &str) {
 }
 
 #[test]
-#[ignore = "renders for a minute"]
+#[ignore = "takes 20 s: `cargo test --test command_line -- --ignored`"]
 fn the_results_in_the_tutorial_are_those_of_the_program() {
     let (folder, page) = (clone(), page("tutorial.md"));
     // The table of the decision has the same numbers, rounded.
@@ -183,7 +183,7 @@ fn the_results_in_the_tutorial_are_those_of_the_program() {
 }
 
 #[test]
-#[ignore = "renders for a minute"]
+#[ignore = "takes 20 s: `cargo test --test command_line -- --ignored`"]
 fn the_commands_of_the_page_on_certificates_print_its_results() {
     let (folder, page) = (clone(), page("certificate.md"));
     let parts: Vec<&str> = page.split("\ntem00-inspect ").skip(1).collect();

@@ -15,7 +15,6 @@ mod means;
 mod rendered_spot;
 mod renders;
 mod rings;
-mod shaders;
 mod speckle;
 mod stated_correlations;
 mod tracer;

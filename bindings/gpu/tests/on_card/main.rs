@@ -1,4 +1,4 @@
-//! What runs on a card against the library. Without a card Mesa's software adapter does it: on
+//! What runs on a card against the library, and what the texts of the function files promise. Without a card Mesa's software adapter does it: on
 //! Debian the package `mesa-vulkan-drivers`.
 
 #![expect(
@@ -16,3 +16,4 @@ mod motion;
 mod passes;
 mod patterns;
 mod phasors;
+mod shaders;

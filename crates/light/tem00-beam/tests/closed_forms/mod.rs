@@ -7,4 +7,3 @@ mod c_header;
 mod comparison;
 mod layouts;
 mod samples;
-mod wgsl;

@@ -1,10 +1,15 @@
-//! The function files for graphics cards: what their texts promise. What they compute is tested on
-//! a card.
+//! The function files for graphics cards: what their texts promise.
 
-use naga::{
+#[path = "../../../../crates/light/tem00-beam/tests/closed_forms/layouts.rs"]
+mod layouts;
+
+use wgpu::naga::{
     Module, Type, TypeInner,
+    front::wgsl::parse_str,
     valid::{Capabilities, ValidationFlags, Validator},
 };
+
+use layouts::{Layout, layouts};
 
 /// What the host writes.
 const HOST: &str = "
@@ -14,17 +19,16 @@ const HOST: &str = "
 
 /// The last calls functions of those before it.
 const FILES: [&str; 4] = [
-    tem00::beam::closed_form::WGSL,
-    tem00::decorrelation::closed_form::WGSL,
-    tem00::speckle::closed_form::WGSL,
-    tem00::shading::WGSL,
+    tem00_beam::closed_form::WGSL,
+    tem00_decorrelation::closed_form::WGSL,
+    tem00_speckle::closed_form::WGSL,
+    tem00_shading::WGSL,
 ];
 
 /// The text with what the host writes.
 fn module(text: &str) -> Module {
     let text = format!("{text}{HOST}");
-    naga::front::wgsl::parse_str(&text)
-        .unwrap_or_else(|error| panic!("{}", error.emit_to_string(&text)))
+    parse_str(&text).unwrap_or_else(|error| panic!("{}", error.emit_to_string(&text)))
 }
 
 #[test]
@@ -51,13 +55,36 @@ fn the_files_have_no_bindings_and_a_prefix_on_every_name() {
     }
 }
 
+fn structure<'a>(module: &'a Module, name: &str) -> &'a TypeInner {
+    let named = |ty: &&Type| ty.name.as_deref() == Some(name);
+    &module
+        .types
+        .iter()
+        .map(|(_, ty)| ty)
+        .find(named)
+        .unwrap()
+        .inner
+}
+
+#[test]
+fn lights_have_the_layout_of_their_counterparts() {
+    let module = module(tem00_beam::closed_form::WGSL);
+    for (name, expected) in layouts() {
+        let TypeInner::Struct { members, span } = structure(&module, name) else {
+            panic!("{name} is no struct");
+        };
+        let members = members.iter();
+        let fields = members.map(|member| (member.name.clone().unwrap(), member.offset as usize));
+        let found: Layout = (fields.collect(), *span as usize);
+        assert_eq!(found, expected, "{name}");
+    }
+}
+
 #[test]
 fn a_frame_of_a_kernel_is_fourteen_rows() {
     let module = module(&FILES.concat());
-    let frame = |ty: &&Type| ty.name.as_deref() == Some("Tem00SpeckleFrame");
-    let ty = module.types.iter().map(|(_, ty)| ty).find(frame).unwrap();
-    let TypeInner::Struct { members, span } = &ty.inner else {
-        panic!("{ty:?}");
+    let TypeInner::Struct { members, span } = structure(&module, "Tem00SpeckleFrame") else {
+        panic!("a frame is a struct");
     };
     assert_eq!(*span, 14 * 16, "bytes");
     // No member is moved to where its alignment wants it: three numbers and one in a row.

@@ -9,8 +9,11 @@ use toml::de::{DeTable, DeValue};
 /// From the ground up. Bindings and tests stand on all of them.
 const RINGS: [&str; 4] = ["light", "judge", "render", "inspect"];
 
+/// Of the workspace.
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+
 fn read(path: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
+    let path = Path::new(ROOT).join(path);
     fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
@@ -27,9 +30,7 @@ fn keys(manifest: &str, section: &str) -> Vec<String> {
 fn crates() -> BTreeMap<String, (usize, String)> {
     let mut found = BTreeMap::new();
     for (ring, folder) in RINGS.iter().enumerate() {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("crates")
-            .join(folder);
+        let path = Path::new(ROOT).join("crates").join(folder);
         for entry in fs::read_dir(path).expect("a ring is a folder") {
             let name = entry.expect("an entry").file_name();
             let name = name.to_string_lossy().into_owned();

@@ -109,6 +109,9 @@ fn derivative(k: RadialDistortion, s: f64) -> f64 {
 
 /// Returns the smallest radius at which the distorted radius stops growing, or infinity.
 fn turning_point(k: RadialDistortion) -> f64 {
+    if [k.k1, k.k2, k.k3].iter().all(|&k| k >= 0.0) {
+        return f64::INFINITY;
+    }
     // Between the extrema of its derivative the derivative is monotone.
     let mut start = 0.0;
     for end in extrema(k) {

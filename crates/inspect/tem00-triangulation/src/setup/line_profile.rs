@@ -159,8 +159,8 @@ pub(crate) fn transfer(shift: f64, blur: f64) -> f64 {
         return disc_overlap(shift);
     }
     let f = |angle: f64| {
-        let phase = PI * blur * (angle.cos() - shift);
-        angle.sin().powi(2) * phase.cos()
+        let cos = angle.cos();
+        (1.0 - cos * cos) * (PI * blur * (cos - shift)).cos()
     };
     // A panel holds a period at most.
     4.0 / PI * integrate(f, [0.0, shift.min(1.0).acos()], 2.0 / blur.max(1.0))

@@ -117,7 +117,8 @@ impl Propagation {
                 }
             }
         }
-        result.values.sort_unstable_by(f64::total_cmp);
+        // The stable sort merges the blocks, which are sorted.
+        result.values.sort_by(f64::total_cmp);
         Ok(result)
     }
 

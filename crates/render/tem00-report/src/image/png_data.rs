@@ -92,8 +92,8 @@ fn filtered(rows: &[u8], above: Option<&[u8]>, row: usize, pixel: usize) -> Vec<
 
 /// Of left, up and up-left, the nearest to `left + up − up_left` (§ 9.4).
 fn paeth(left: u8, up: u8, up_left: u8) -> u8 {
-    let [a, b, c] = [left, up, up_left].map(i16::from);
-    let [to_a, to_b, to_c] = [b - c, a - c, a + b - 2 * c].map(i16::abs);
+    let (a, b, c) = (i16::from(left), i16::from(up), i16::from(up_left));
+    let (to_a, to_b, to_c) = ((b - c).abs(), (a - c).abs(), (a + b - 2 * c).abs());
     if to_a <= to_b && to_a <= to_c {
         left
     } else if to_b <= to_c {

@@ -272,15 +272,15 @@ fn correlated_values_have_no_parts_of_the_variance() {
 
 #[test]
 fn few_readings_are_quoted_with_the_factor_of_students_t() {
-    let offset = "{ value = 0, uncertainty = \"0.1 mm\", degrees_of_freedom = 4 }";
+    let offset = "{ value = 0, uncertainty = \"0.3 mm\", degrees_of_freedom = 4 }";
     let (record, _) = budget(&format!(
-        "--trials 0 --set budget.height=0 --set average.columns=400 --set 'laser.offset={offset}'"
+        "--trials 0 --set budget.height=0 --set average.columns=50 --set 'laser.offset={offset}'"
     ));
     let found = &record["measurement"];
     assert_eq!(found["quoted"], "first_order", "{found}");
-    // The 0.975 quantile of t for 4, the offset and cot 30°. Noise adds 4 µm to 173 in quadrature,
-    // 0.03 %; ends of the trials are known to a fifth of 50 µm.
-    let half = 2.776_445 * 1e-4 * 3_f64.sqrt();
+    // The 0.975 quantile of t for 4, the offset and cot 30°. Noise adds 8 µm to 520 in quadrature,
+    // 0.01 %; ends of the trials are known to a fifth of 50 µm.
+    let half = 2.776_445 * 3e-4 * 3_f64.sqrt();
     for (index, tolerance) in [(0, 0.002), (1, 0.02)] {
         let [low, high] = ["low", "high"].map(|end| number(&found["answers"][index][end]));
         assert!(

@@ -40,7 +40,7 @@ fn a_folder_that_another_process_writes_into_is_refused() {
     let folder = with_scene();
     let path = folder.path();
     images::write_line(&path.join("frame.png"));
-    let line = "triangulate scene.toml -o out --spp 100000";
+    let line = "triangulate scene.toml -o out --spp 100000 --threads 1";
     let mut first = start(path, line, "out/.tem00.lock");
     let process = format!("process {}", first.0.id());
     for line in [

@@ -139,11 +139,8 @@ fn begun(folder: &Path, line: &str) -> std::process::Child {
 
 #[test]
 fn of_two_sweeps_each_task_is_done_by_one() {
-    let folder = with_grid(&replaced(
-        GRID,
-        "\"--trials\", \"0\"",
-        "\"--trials\", \"20\"",
-    ));
+    let trials = replaced(GRID, "\"--trials\", \"0\"", "\"--trials\", \"20\"");
+    let folder = with_grid(&replaced(&trials, "steps = 3", "steps = 2"));
     let path = folder.path();
     said(path, "sweep a.toml -o ref", 0);
     let mut first = begun(path, "sweep a.toml -o out --task 0..1");

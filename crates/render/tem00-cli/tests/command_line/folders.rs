@@ -26,7 +26,11 @@ fn running(folder: &Path, line: &str, there: &str) -> Running {
 fn a_folder_that_another_process_writes_into_is_refused() {
     let folder = scene_folder();
     let path = folder.path();
-    let mut first = running(path, "render a.toml -o out --spp 100000", "out/.tem00.lock");
+    let mut first = running(
+        path,
+        "render a.toml -o out --spp 100000 --threads 1",
+        "out/.tem00.lock",
+    );
     let process = format!("process {}", first.0.id());
     for line in [
         "render a.toml -o out",
@@ -47,9 +51,9 @@ fn a_folder_that_another_process_writes_into_is_refused() {
 
 #[test]
 fn parts_of_one_render_may_share_a_folder() {
-    let folder = sequence::moving_folder(4, 1_000);
+    let folder = sequence::moving_folder(40, 200);
     let path = folder.path();
-    let line = "render a.toml -o out --frames 1..999";
+    let line = "render a.toml -o out --frames 1..199 --threads 1";
     let mut first = running(path, line, "out/a_0001.json");
     done(path, "render a.toml -o out --frames 0");
     for other in ["--frames 0 --seed 1", "--resume", ""] {

@@ -42,7 +42,7 @@ fn quiet_leaves_notes_out_and_keeps_results_and_errors() {
 #[test]
 fn progress_is_told_in_lines_where_there_is_no_terminal() {
     let folder = scene_folder();
-    let mut child = start(folder.path(), "render a.toml --spp 1000000");
+    let mut child = start(folder.path(), "render a.toml --spp 1000000 --threads 1");
     let stderr = BufReader::new(child.stderr.take().expect("it is piped"));
     let lines = stderr.lines().map_while(Result::ok);
     let mut lines = lines.filter(|line| line.starts_with("a: ") && line.contains(" %, "));

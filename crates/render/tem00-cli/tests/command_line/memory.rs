@@ -63,16 +63,16 @@ fn commands_end_by_themselves_in_any_memory() {
     let folder = folder();
     let path = folder.path();
     for end in ["npy", "png", "exr"] {
-        done(path, &format!("pattern -o in.{end} --size 1024"));
+        done(path, &format!("pattern -o in.{end} --size 768"));
     }
     let scene = SCENE
-        .replace("[48, 40]", "[800, 600]")
+        .replace("[48, 40]", "[600, 450]")
         .replace("samples_per_pixel = 4", "samples_per_pixel = 1");
     fs::write(path.join("a.toml"), scene).expect("written");
     let limits = |end: u32| (1..=6).map(move |step| end * step / 6);
     for (line, end) in [
-        ("pattern -o a.npy --size 1024", 360_000),
-        ("pattern -o a.exr --size 1024 --amplitude", 360_000),
+        ("pattern -o a.npy --size 768", 360_000),
+        ("pattern -o a.exr --size 768 --amplitude", 360_000),
         ("stats in.npy", 480_000),
         ("stats in.png", 480_000),
         ("stats in.exr", 480_000),

@@ -305,7 +305,7 @@ fn adaptive_samples_find_edges_with_fewer_samples_and_without_bias() {
         (options.sampling, options.max_depth) = (sampling, Some(1));
         render_smooth(&scene, &options)
     };
-    let truth = render(Sampling::Even, 1 << 14, 100);
+    let truth = render(Sampling::Even, 1 << 13, 100);
     // The mean square error of the light of both lasers and of the lamp, and the error of the mean.
     let errors = |sampling, samples_per_pixel| {
         let (mut squares, mut bias, mut samples) = (0.0, 0.0, 0.0);

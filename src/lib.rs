@@ -67,8 +67,8 @@
 
 pub use tem00_shading as shading;
 pub use tem00_shading::{
-    Camera, CameraDescription, DMat3, DVec2, DVec3, Laser, Motion, Pose, PreparedSpeckle,
-    ShadingError, Speckle, SpeckleFrame,
+    Camera, CameraDescription, DMat3, DVec2, DVec3, Laser, LaserBuilder, Motion, Pose,
+    PreparedSpeckle, ShadingError, Speckle, SpeckleFrame,
 };
 
 pub use tem00_beam as beam;

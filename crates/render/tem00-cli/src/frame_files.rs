@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use tem00_numerics::Grid;
 use tem00_report::{
-    atomic::write_atomically,
     failure::Failure,
     image::{Layer, Window, write_exr, write_rgb_png},
     output,
@@ -112,10 +111,9 @@ pub(crate) fn write_preview(
             format!("white is the radiance {white:e} W/(m² sr)"),
         ),
     ];
-    write_atomically(path, |file| {
+    output::save(path, |file| {
         write_rgb_png(file, &picture.exposed(white), &text)
     })
-    .map_err(|error| Failure::writing(path, error))
 }
 
 /// Writes all layers of a frame whose whole image has `size` pixels: the picture in linear sRGB,
@@ -132,8 +130,7 @@ pub(crate) fn write_layers(
         origin: frame.origin,
         image: size,
     };
-    write_atomically(path, |file| write_exr(file, &layers, Some(window)))
-        .map_err(|error| Failure::writing(path, error))
+    output::save(path, |file| write_exr(file, &layers, Some(window)))
 }
 
 fn layers_of<'a>(frame: &'a Frame, [red, green, blue]: &'a [Grid<f32>; 3]) -> Vec<Layer<'a>> {

@@ -11,7 +11,6 @@ use std::{
 use num_complex::Complex;
 use tem00_numerics::{Grid, parallel::map_pieces};
 use tem00_report::{
-    atomic::write_atomically,
     failure::Failure,
     image::{Format, ImageError, Layer, open, write_exr, write_grey_png},
     interrupt,
@@ -65,10 +64,9 @@ fn write_and_compare(args: &PatternArgs) -> Result<Report, Failure> {
         ));
     }
     let compared = theory::compare(&field, &pattern)?;
-    write_atomically(&args.output, |file| {
+    output::save(&args.output, |file| {
         write(file, format, &values, &description(args, &field))
-    })
-    .map_err(|error| Failure::writing(&args.output, error))?;
+    })?;
     let mut report = Report::new("Speckle pattern, measured and theory");
     let table = comparison::table(&compared.rows);
     report.section("Statistics").table(table);

@@ -137,8 +137,7 @@ fn draw(measurement: &Measurement, path: &Path, format: PlotFormat) -> Result<()
     };
     let bytes = page.draw().bytes(format);
     let bytes = bytes.map_err(|error| Failure::writing(path, error))?;
-    tem00_report::atomic::write_atomically(path, |file| file.write_all(&bytes))
-        .map_err(|error| Failure::writing(path, error))
+    output::save(path, |file| file.write_all(&bytes))
 }
 
 impl Measurement {

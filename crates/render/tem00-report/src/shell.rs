@@ -7,7 +7,6 @@ use clap_mangen::Man;
 
 use crate::{
     args::{CompletionsArgs, ManArgs},
-    atomic::write_atomically,
     failure::Failure,
     output,
 };
@@ -43,8 +42,7 @@ pub fn man(args: &ManArgs, program: Command, out: &mut impl Write) -> Result<(),
     for command in [&program].into_iter().chain(program.get_subcommands()) {
         let name = command.get_display_name().unwrap_or(command.get_name());
         let path = args.folder.join(format!("{name}.1"));
-        write_atomically(&path, |file| Man::new(command.clone()).render(file))
-            .map_err(|error| Failure::writing(&path, error))?;
+        output::save(&path, |file| Man::new(command.clone()).render(file))?;
         writeln!(out, "{}", path.display()).map_err(|error| Failure::stdout(&error))?;
     }
     Ok(())

@@ -12,7 +12,7 @@ use std::{
 use serde::{Deserialize, Serialize};
 use tem00_config::{MAX_TEXT_BYTES, open_input, read_input};
 use tem00_geometry::{Shape, TriangleMesh};
-use tem00_report::{atomic::write_atomically, failure::Failure};
+use tem00_report::{failure::Failure, output};
 use tem00_tracer::Scene;
 
 use crate::summary::{Exposure, FrameSummary};
@@ -168,11 +168,10 @@ impl Record {
 
     /// Writes the record, the last step in finishing a frame.
     pub(super) fn write(&self, path: &Path) -> Result<(), Failure> {
-        write_atomically(path, |file| {
+        output::save(path, |file| {
             serde_json::to_writer_pretty(&mut *file, self)?;
             writeln!(file)
         })
-        .map_err(|error: io::Error| Failure::writing(path, error))
     }
 }
 

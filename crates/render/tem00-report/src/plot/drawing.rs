@@ -10,7 +10,7 @@ use kuva::{
 };
 
 use super::cells::Cells;
-use crate::{atomic::write_atomically, failure::Failure, kind::of_ending, report::is_unwanted};
+use crate::{failure::Failure, kind::of_ending, output, report::is_unwanted};
 
 /// The pixels of a PNG per unit of the drawing.
 const PNG_SCALE: f32 = 2.5;
@@ -73,8 +73,7 @@ impl Drawing {
     pub fn save(self, folder: &Path, name: &str) -> Result<String, Failure> {
         let write = |end: &str, bytes: &[u8]| {
             let path = folder.join(format!("{name}.{end}"));
-            write_atomically(&path, |file| file.write_all(bytes))
-                .map_err(|error| Failure::writing(&path, error))
+            output::save(&path, |file| file.write_all(bytes))
         };
         write("svg", self.svg.as_bytes())?;
         let png = self.bytes(PlotFormat::Png).map_err(Failure::running)?;

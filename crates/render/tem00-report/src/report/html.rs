@@ -6,7 +6,7 @@ use std::{io::Write as _, path::Path};
 use base64::{Engine, engine::general_purpose::STANDARD};
 
 use super::{Block, Report, Section, Table, cell::Cell, cloud, escape::escaped, style};
-use crate::{atomic::write_atomically, failure::Failure};
+use crate::{failure::Failure, output};
 
 impl Report {
     /// Writes the report as a page.
@@ -15,8 +15,7 @@ impl Report {
     ///
     /// Returns a failure if the file cannot be written.
     pub fn save_page(&self, path: &Path) -> Result<(), Failure> {
-        write_atomically(path, |file| file.write_all(self.html().as_bytes()))
-            .map_err(|error| Failure::writing(path, error))
+        output::save(path, |file| file.write_all(self.html().as_bytes()))
     }
 
     /// Returns the page. It refers to nothing outside of itself: scripts, styles, fonts or

@@ -5,7 +5,7 @@ use std::{io::Write as _, path::Path};
 use serde_json::{Map, Value};
 
 use super::{Block, Report, Section, Table, cell::Cell};
-use crate::{atomic::write_atomically, failure::Failure};
+use crate::{failure::Failure, output};
 
 impl Report {
     /// Returns the report as JSON.
@@ -19,8 +19,7 @@ impl Report {
     ///
     /// Returns a failure if the file cannot be written.
     pub fn save_json(&self, path: &Path) -> Result<(), Failure> {
-        write_atomically(path, |file| writeln!(file, "{}", self.json()))
-            .map_err(|error: std::io::Error| Failure::writing(path, error))
+        output::save(path, |file| writeln!(file, "{}", self.json()))
     }
 
     fn values(&self) -> Map<String, Value> {

@@ -1,5 +1,5 @@
 use glam::{DVec2, DVec3};
-use tem00_numerics::check;
+use tem00_numerics::{Shown, check};
 
 use crate::Refusal;
 
@@ -118,9 +118,11 @@ impl CameraDescription {
         }
         let allowed = "at least 0.5, the limit of an aplanatic lens";
         check::that(self.f_number >= 0.5, "f_number", self.f_number, "", allowed)?;
-        let (distance, allowed) = (self.focus_distance, "greater than the focal length");
-        let holds = distance > self.focal_length;
-        check::that(holds, "focus_distance", distance, "m", allowed)?;
+        let (distance, focal_length) = (self.focus_distance, self.focal_length);
+        if distance <= focal_length {
+            let allowed = format!("greater than the focal length of {} m", Shown(focal_length));
+            return Err(Refusal::new("focus_distance", distance, allowed).in_unit("m"));
+        }
         let [width, height] = self.resolution;
         let pixels = width.checked_mul(height);
         let holds = pixels.is_some_and(|pixels| (1..=MAXIMUM_PIXELS).contains(&pixels));

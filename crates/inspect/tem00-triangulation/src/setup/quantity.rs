@@ -121,9 +121,9 @@ quantities! {
             .note("of the plane of the laser, away from the camera");
     }
     camera [resolution, scheimpflug] {
-        /// length from 0.1 mm to 100 m
+        /// length from 0.1 mm to 1 m
         FocalLength: focal_length = Row::new(field!(camera.focal_length), &MILLIMETRES)
-            .within(|_| (1e-4, 100.0), "from 0.1 mm to 100 m (in metres)")
+            .within(|_| (1e-4, 1.0), "from 0.1 mm to 1 m (in metres)")
             .required("\"25 mm\"").varied(9);
         /// number from 0.5 to 1000
         FNumber: f_number = Row::new(field!(camera.f_number), &PLAIN)

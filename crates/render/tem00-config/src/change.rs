@@ -1,6 +1,6 @@
 //! Values from a command line that replace values of a file.
 
-use core::str::FromStr;
+use core::{ops::Range, str::FromStr};
 
 use toml_edit::{DocumentMut, Item, Value};
 
@@ -141,6 +141,30 @@ impl Change {
     pub fn overlaps(&self, other: &Self) -> bool {
         let steps = self.path.len().min(other.path.len());
         self.path[..steps] == other.path[..steps]
+    }
+
+    /// Returns whether a line holds the last key of the path, as the line that this change has
+    /// written does.
+    pub(crate) fn is_written_in(&self, line: &str) -> bool {
+        let key = self.path.iter().rev().find_map(|step| match step {
+            Step::Key(key) => Some(key.as_str()),
+            Step::Index(_) => None,
+        });
+        key.is_some_and(|key| line.contains(key))
+    }
+
+    /// Returns the text of the change.
+    pub(crate) fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Returns the place in the text of the change of what it has written, which may have
+    /// quotation marks there.
+    pub(crate) fn span_of(&self, written: &str) -> Range<usize> {
+        let found = [written, written.trim_matches('"')]
+            .into_iter()
+            .find_map(|part| Some((self.text.rfind(part)?, part.len())));
+        found.map_or(0..self.text.len(), |(start, length)| start..start + length)
     }
 
     fn apply(&self, documents: &mut [DocumentMut], main: usize) -> Result<(), Problem> {

@@ -18,6 +18,8 @@ pub(crate) struct Source {
     pub(crate) canonical: Option<PathBuf>,
     pub(crate) directory: PathBuf,
     pub(crate) text: String,
+    /// The text of the file, where changes have replaced parts of it.
+    pub(crate) written: Option<String>,
     /// Whether the text lies outside the folder of the file, and is therefore not quoted.
     pub(crate) is_outside: bool,
 }

@@ -23,6 +23,7 @@ pub(crate) struct Sources {
     order: Vec<usize>,
     /// The texts that are being read, outermost first.
     open: Vec<usize>,
+    changes: Vec<Change>,
 }
 
 impl Sources {
@@ -51,8 +52,10 @@ impl Sources {
         let main = texts.len().saturating_sub(1);
         change::apply(changes, &mut texts, main)?;
         for (&index, text) in self.order.iter().zip(texts) {
-            self.all[index].text = text;
+            let source = &mut self.all[index];
+            source.written = Some(core::mem::replace(&mut source.text, text));
         }
+        changes.clone_into(&mut self.changes);
         Ok(())
     }
 
@@ -69,6 +72,7 @@ impl Sources {
             all: Vec::new(),
             order: Vec::new(),
             open: Vec::new(),
+            changes: Vec::new(),
         };
         let source = Source {
             index: 0,
@@ -76,6 +80,7 @@ impl Sources {
             canonical: path.and_then(|path| fs::canonicalize(path).ok()),
             directory: directory.to_path_buf(),
             text,
+            written: None,
             is_outside: false,
         };
         let added = sources.add(source);
@@ -111,7 +116,37 @@ impl Sources {
             Some(source) if source.is_outside => {
                 ConfigError::new(path, "", unquoted(source, &problem))
             }
-            source => ConfigError::new(path, source.map_or("", Source::text), problem),
+            Some(source) => match source.written.as_deref() {
+                Some(written) => self.as_written(source, written, problem),
+                None => ConfigError::new(path, &source.text, problem),
+            },
+            None => ConfigError::new(path, "", problem),
+        }
+    }
+
+    /// Returns the error at its place in the file as it is written, or in the change that has
+    /// written that place.
+    fn as_written(&self, source: &Source, written: &str, mut problem: Problem) -> ConfigError {
+        let path = source.path.as_deref();
+        let Some(Location { span, .. }) = &mut problem.location else {
+            return ConfigError::new(path, written, problem);
+        };
+        let before = source.text.get(..span.start).unwrap_or_default();
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let number = before.matches('\n').count();
+        if let Some(start) = line_as_written(&source.text, written, number) {
+            *span = span.start - line_start + start..span.end - line_start + start;
+            return ConfigError::new(path, written, problem);
+        }
+        let line = source.text[line_start..].lines().next();
+        let what = source.text.get(span.clone()).unwrap_or_default();
+        let mut changes = self.changes.iter().rev();
+        match changes.find(|change| change.is_written_in(line.unwrap_or_default())) {
+            Some(change) => {
+                *span = change.span_of(what);
+                ConfigError::new(Some(Path::new("--set")), change.text(), problem)
+            }
+            None => ConfigError::new(path, &source.text, problem),
         }
     }
 
@@ -164,6 +199,7 @@ impl Sources {
             path: Some(include.path),
             canonical: Some(canonical),
             text,
+            written: None,
             is_outside,
         };
         self.add(source)
@@ -197,6 +233,26 @@ fn unquoted(source: &Source, problem: &Problem) -> Problem {
          quoted"
     ))
     .unreadable(problem.is_unreadable)
+}
+
+/// Returns where a line of a changed text starts in the text before the changes, or `None` if a
+/// change has written the line.
+fn line_as_written(changed: &str, written: &str, number: usize) -> Option<usize> {
+    let mut before = written.split_inclusive('\n').peekable();
+    let mut start = 0;
+    let mut lines = changed.split_inclusive('\n').enumerate().peekable();
+    while let Some((index, line)) = lines.next() {
+        let same = before.peek() == Some(&line);
+        if index == number {
+            return same.then_some(start);
+        }
+        let after = lines.peek().map(|&(_, line)| line);
+        let replaced = !same && after != before.peek().copied() && after == before.clone().nth(1);
+        if same || replaced {
+            start += before.next().map_or(0, str::len);
+        }
+    }
+    None
 }
 
 /// An included file, and the location that includes it.
@@ -250,4 +306,25 @@ fn read_text(path: &Path, format: &Format) -> Result<String, ConfigError> {
             Problem::new(format!("the {} file must be text in UTF-8", format.noun)).at(location);
         ConfigError::new(Some(path), &text, problem)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_that_no_change_has_written_are_those_of_the_file() {
+        let written = "a = 1\n[b]\nc = 2\n\n[[d]]\ne = 3\n";
+        for changed in [
+            "a = 1\n[b]\nc = 9 #\n\n[[d]]\ne = 3\n",
+            "a = 1\n[b]\nc = 2\nf = 4 #\ng = 5 #\n\n[[d]]\ne = 3\n",
+            "h = {} #\na = 1\n[b]\nc = 2\n\n[[d]]\ne = 8 #\ni = 7 #\n",
+        ] {
+            for (number, line) in changed.lines().enumerate() {
+                let found = line_as_written(changed, written, number);
+                let expected = written.find(line).filter(|_| !line.is_empty());
+                assert!(line.is_empty() || found == expected, "{line}: {found:?}");
+            }
+        }
+    }
 }

@@ -160,7 +160,7 @@ pub(crate) fn transfer(shift: f64, blur: f64) -> f64 {
     }
     let f = |angle: f64| {
         let cos = angle.cos();
-        (1.0 - cos * cos) * (PI * blur * (cos - shift)).cos()
+        (1.0 - cos) * (1.0 + cos) * (PI * blur * (cos - shift)).cos()
     };
     // A panel holds a period at most.
     4.0 / PI * integrate(f, [0.0, shift.min(1.0).acos()], 2.0 / blur.max(1.0))

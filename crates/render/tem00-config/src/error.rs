@@ -33,8 +33,8 @@ impl ConfigError {
         }
     }
 
-    /// Returns the path of the file with the error: the requested file or one that it includes;
-    /// `None` if the text did not come from a file.
+    /// Returns the path of the file with the error: the requested file or one that it includes, or
+    /// `--set` for a [`Change`](crate::Change); `None` if the text did not come from a file.
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()
     }
@@ -49,7 +49,8 @@ impl ConfigError {
         self.problem.help.as_deref()
     }
 
-    /// Returns the text of the file with the error; empty if it could not be read.
+    /// Returns the text of the file, or of the change, with the error; empty if it could not be
+    /// read.
     pub fn source_text(&self) -> &str {
         &self.source_text
     }

@@ -11,7 +11,7 @@ mod view;
 
 pub use aperture::Aperture;
 pub use field::PupilField;
-pub(crate) use field::too_large;
+pub(crate) use field::not_a_side;
 pub use pattern::{SpeckleField, SpecklePattern};
 pub use shape::{Phasors, Pupil};
 pub use transmission::Transmission;

@@ -15,10 +15,10 @@ const NAN: f64 = f64::NAN;
 #[test]
 fn fields() {
     refuses!(size = 256, diameter = 128 => PupilField::new(size, diameter, 0);
-        size: [1_000_000], size as "diameter": [0, 255], diameter: [129, 7, 0]);
+        size: [1_000_000, 0, 15], size as "diameter": [255], diameter: [129, 7, 0]);
     refuses!(size = [256, 128], speckle_size = 16.0
         => PupilField::from_speckle_size(size, speckle_size, 0);
-        size: [[64, 1 << 16]], size as "speckle_size": [[0, 128]],
+        size: [[64, 1 << 16], [0, 128]],
         speckle_size: [1.99, 16.1, NAN, UP]);
     let field = |im| {
         let mut samples = Grid::filled(20, 20, Complex::new(1.0_f32, 0.0));
@@ -119,14 +119,22 @@ fn stacks() {
 
 #[test]
 fn messages_say_what_is_allowed_and_what_was_given() {
-    let message = |error: SpeckleError| error.to_string();
-    assert_eq!(
-        PupilField::new(256, 129, 0)
-            .map_err(message)
-            .err()
-            .as_deref(),
-        Some("diameter must be 8 to 128 lattice points, half the size at most, got 129")
-    );
+    for (refused, message) in [
+        (
+            PupilField::new(256, 129, 0),
+            "diameter must be 8 to 128 lattice points, half the size at most, got 129",
+        ),
+        (
+            PupilField::new(0, 0, 0),
+            "size must be 16 to 32768 samples, got 0",
+        ),
+        (
+            PupilField::from_speckle_size([64, 8], 2.0, 0),
+            "size must be 16 to 32768 samples, got 8",
+        ),
+    ] {
+        assert_eq!(refused.unwrap_err().to_string(), message);
+    }
     let (needed, limit) = (2, 1);
     let error = SpeckleError::MemoryLimit { needed, limit };
     assert!(

@@ -106,7 +106,7 @@ impl PupilField {
     ///
     /// # Errors
     ///
-    /// Returns an error unless `8 ≤ diameter ≤ size / 2` and `size ≤ MAX_SIZE`.
+    /// Returns an error unless `8 ≤ diameter ≤ size / 2` and `16 ≤ size ≤ MAX_SIZE`.
     ///
     /// # Examples
     ///
@@ -117,9 +117,7 @@ impl PupilField {
     /// assert_eq!(aliased.unwrap_err().parameter(), "diameter");
     /// ```
     pub fn new(size: usize, diameter: usize, seed: u64) -> Result<Self, SpeckleError> {
-        if size > Self::MAX_SIZE {
-            return Err(too_large(size));
-        }
+        check_side(size)?;
         if diameter < Self::MIN_DIAMETER || diameter > size / 2 {
             let limits = [Self::MIN_DIAMETER as f64, (size / 2) as f64];
             let allowed = within(limits, "lattice points, half the size at most");
@@ -150,7 +148,7 @@ impl PupilField {
     ///
     /// # Errors
     ///
-    /// Returns an error unless both sides are at most `MAX_SIZE` and
+    /// Returns an error unless both sides are from 16 to `MAX_SIZE` and
     /// `2 ≤ speckle_size ≤ min(W, H) / 8`.
     ///
     /// # Examples
@@ -193,7 +191,7 @@ impl PupilField {
     ///
     /// # Errors
     ///
-    /// Returns an error unless all samples are finite, both sides are at most `MAX_SIZE` and
+    /// Returns an error unless all samples are finite, both sides are from 16 to `MAX_SIZE` and
     /// `2 ≤ speckle_size ≤ min(W, H) / 8`.
     pub fn from_samples(
         samples: Grid<Complex<f32>>,
@@ -302,7 +300,7 @@ impl PupilField {
         }
         let [columns, rows] = mask.extent();
         let transform = Fft2::with_aperture(size[0], size[1], columns, rows)
-            .map_err(|_| too_large(size[0].max(size[1])))?;
+            .map_err(|_| not_a_side(size[0].max(size[1])))?;
         Ok(Self {
             lattice,
             size,
@@ -460,9 +458,7 @@ impl PartialEq for PupilField {
 
 impl Layout {
     fn new(size: [usize; 2], speckle_size: f64) -> Result<Self, SpeckleError> {
-        if let Some(&side) = size.iter().find(|&&side| side > PupilField::MAX_SIZE) {
-            return Err(too_large(side));
-        }
+        size.into_iter().try_for_each(check_side)?;
         let largest = size[0].min(size[1]) as f64 / PupilField::MIN_DIAMETER as f64;
         if !(speckle_size >= 2.0 && speckle_size <= largest) {
             return Err(not_a_speckle_size(speckle_size, largest));
@@ -482,9 +478,19 @@ const fn seeded(seed: u64) -> Lattice {
     }))
 }
 
-/// The refusal of a side above [`PupilField::MAX_SIZE`].
-pub(crate) fn too_large(side: usize) -> SpeckleError {
-    SpeckleError::refused("size", side as f64, "at most 32768 samples")
+/// Refuses a side that is too short for the smallest pupil, or longer than
+/// [`PupilField::MAX_SIZE`].
+fn check_side(side: usize) -> Result<(), SpeckleError> {
+    if (2 * PupilField::MIN_DIAMETER..=PupilField::MAX_SIZE).contains(&side) {
+        Ok(())
+    } else {
+        Err(not_a_side(side))
+    }
+}
+
+/// The refusal of a side of a pattern.
+pub(crate) fn not_a_side(side: usize) -> SpeckleError {
+    SpeckleError::refused("size", side as f64, "16 to 32768 samples")
 }
 
 fn within([min, max]: [f64; 2], unit: &str) -> String {

@@ -3,7 +3,7 @@
 use num_complex::Complex;
 use tem00_numerics::{Grid, available_memory};
 
-use crate::{SlicePath, SpeckleError, pupil::too_large};
+use crate::{SlicePath, SpeckleError, pupil::not_a_side};
 
 /// Options of a [`SpeckleStack`](crate::SpeckleStack).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,7 +68,7 @@ pub(crate) fn dark(
     [width, height]: [usize; 2],
 ) -> Result<Grid<Complex<f32>>, SpeckleError> {
     room.resize(width * height, Complex::new(0.0, 0.0));
-    Grid::from_vec(width, height, room).map_err(|_| too_large(width.min(height)))
+    Grid::from_vec(width, height, room).map_err(|_| not_a_side(width.min(height)))
 }
 
 #[cfg(test)]

@@ -1,11 +1,8 @@
 use glam::DVec2;
 use tem00_camera::Camera;
 use tem00_numerics::{Grid, cast::to_f32};
-use tem00_tracer::Frame;
+use tem00_tracer::{Frame, WHITE_LIGHT_WAVELENGTH};
 use tem00_triangulation::Sensor;
-
-/// The wavelength at which white light is counted, in metres: it has its middle there.
-pub const WHITE_LIGHT_WAVELENGTH: f64 = 550e-9;
 
 /// Electrons that a rendered frame frees in the pixels of a sensor, before any noise.
 #[derive(Clone, Debug, PartialEq)]

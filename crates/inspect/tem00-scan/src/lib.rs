@@ -44,7 +44,7 @@ pub use self::{
     average::mean_point,
     boards::BoardPlan,
     error::ScanError,
-    exposure::{Exposure, WHITE_LIGHT_WAVELENGTH},
+    exposure::Exposure,
     frame::{IndirectLight, MeasuredFrame, MeasuredPoint},
     frame_correlation::FrameCorrelation,
     height_map::{HeightMap, Raster},

@@ -44,7 +44,7 @@ pub use error::TracerError;
 pub use film::{Frame, LaserLayers};
 pub use filter::{Filter, FilterSample, FilterSampler};
 pub use finish::FinishingProcess;
-pub use light::{Light, LightSample};
+pub use light::{Light, LightSample, WHITE_LIGHT_WAVELENGTH};
 pub use local_frame::LocalFrame;
 pub use material::{BsdfSample, Material, OpticalRoughness, OpticalRoughnessQuery};
 pub use metal::Metal;

@@ -10,6 +10,10 @@ pub use self::sample::LightSample;
 use self::spherical_rectangle::SphericalRectangle;
 use crate::{Environment, TracerError, error::check_light};
 
+/// The wavelength of white light, in metres, which has its middle there: materials are evaluated at
+/// it, and its photons are counted at it.
+pub const WHITE_LIGHT_WAVELENGTH: f64 = 550e-9;
+
 /// The solid angle, in steradian, below which near rectangles are sampled by area, as far
 /// rectangles are: its rounding error is 1e−11 of this.
 const SMALL_SOLID_ANGLE: f64 = 1e-4;

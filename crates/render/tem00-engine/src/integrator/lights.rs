@@ -1,11 +1,10 @@
 use tem00_camera::Ray;
 use tem00_geometry::Hit;
-use tem00_tracer::{Light, LightEvents};
+use tem00_tracer::{Light, LightEvents, WHITE_LIGHT_WAVELENGTH};
 
 use super::{
     Integrator,
     batch::{Arrival, Batch, Path},
-    rules::WHITE_LIGHT_WAVELENGTH,
     weights::{power_heuristic, random_number},
 };
 use crate::sampler::Use;

@@ -1,9 +1,7 @@
 use tem00_geometry::Shape;
-use tem00_tracer::{Laser, Light, LightEvents, Method, RenderOptions, Scene, Surface};
-
-/// The wavelength at which materials are evaluated for lights, in metres: lights are white and
-/// materials grey under them.
-pub(super) const WHITE_LIGHT_WAVELENGTH: f64 = 550e-9;
+use tem00_tracer::{
+    Laser, Light, LightEvents, Method, RenderOptions, Scene, Surface, WHITE_LIGHT_WAVELENGTH,
+};
 
 /// Rules for the paths that are followed and for the methods by which they find light.
 #[derive(Clone, Copy, Debug)]

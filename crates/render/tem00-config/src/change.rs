@@ -135,22 +135,30 @@ pub(crate) fn apply(changes: &[Change], texts: &mut [String], main: usize) -> Re
     Ok(())
 }
 
+/// Returns the first change after which the text with a number has a line.
+pub(crate) fn writer<'a>(
+    changes: &'a [Change],
+    texts: &[String],
+    number: usize,
+    line: &str,
+) -> Option<&'a Change> {
+    let has_line = |&last: &usize| {
+        let mut texts = texts.to_vec();
+        let main = texts.len() - 1;
+        let applied = apply(&changes[..=last], &mut texts, main);
+        applied.is_ok() && texts[number].lines().any(|written| written == line)
+    };
+    (0..changes.len())
+        .find(has_line)
+        .map(|index| &changes[index])
+}
+
 impl Change {
     /// Returns whether both change the same value, or one replaces a whole of which the other
     /// changes a part.
     pub fn overlaps(&self, other: &Self) -> bool {
         let steps = self.path.len().min(other.path.len());
         self.path[..steps] == other.path[..steps]
-    }
-
-    /// Returns whether a line holds the last key of the path, as the line that this change has
-    /// written does.
-    pub(crate) fn is_written_in(&self, line: &str) -> bool {
-        let key = self.path.iter().rev().find_map(|step| match step {
-            Step::Key(key) => Some(key.as_str()),
-            Step::Index(_) => None,
-        });
-        key.is_some_and(|key| line.contains(key))
     }
 
     /// Returns the text of the change.

@@ -138,10 +138,12 @@ impl Sources {
             *span = span.start - line_start + start..span.end - line_start + start;
             return ConfigError::new(path, written, problem);
         }
-        let line = source.text[line_start..].lines().next();
+        let line = source.text[line_start..].lines().next().unwrap_or_default();
         let what = source.text.get(span.clone()).unwrap_or_default();
-        let mut changes = self.changes.iter().rev();
-        match changes.find(|change| change.is_written_in(line.unwrap_or_default())) {
+        let texts = self.in_order().filter_map(|source| source.written.clone());
+        let texts: Vec<_> = texts.collect();
+        let place = self.order.iter().position(|&index| index == source.index);
+        match place.and_then(|place| change::writer(&self.changes, &texts, place, line)) {
             Some(change) => {
                 *span = change.span_of(what);
                 ConfigError::new(Some(Path::new("--set")), change.text(), problem)
@@ -326,5 +328,25 @@ mod tests {
                 assert!(line.is_empty() || found == expected, "{line}: {found:?}");
             }
         }
+    }
+
+    #[test]
+    fn an_error_of_a_change_lies_in_the_change_that_wrote_its_line() {
+        let text = "[[laser]]\npower = 1\n[[laser]]\npower = 1\n".to_owned();
+        let place = (Path::new(""), FileAccess::WithinFolder);
+        let format = Format {
+            noun: "scene",
+            keys: &["laser"],
+            uncertain: &[],
+            help: "",
+        };
+        let mut sources = Sources::of_text(text, None, place, format).unwrap();
+        let changes = ["laser[0].power=-1", "laser[1].power=2"].map(|text| text.parse().unwrap());
+        sources.change(&changes).unwrap();
+        let start = sources.all[0].text.find("-1").unwrap();
+        let location = sources.all[0].location(start..start + 2);
+        let error = sources.locate(Problem::new("no").at(location));
+        assert_eq!(error.to_string(), "--set:1:16: no");
+        assert_eq!(error.source_text(), "laser[0].power=-1");
     }
 }

@@ -26,7 +26,7 @@ static PENDING: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 /// # Errors
 ///
 /// Returns the error of `write` or of the file system.
-pub fn write_atomically<E: From<io::Error>>(
+pub(crate) fn write_atomically<E: From<io::Error>>(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> Result<(), E>,
 ) -> Result<(), E> {

@@ -141,7 +141,8 @@ impl<W: Write> Write for Printable<W> {
     }
 }
 
-/// Writes a file completely or not at all, as [`write_atomically`] does.
+/// Writes a file, so that no reader ever sees an incomplete one: an earlier file stays as it was
+/// until the new one is complete and on the disk, and where `write` fails.
 ///
 /// # Errors
 ///

@@ -1,5 +1,5 @@
-//! What runs on a card against the library, and what the texts of the function files promise. Without a card Mesa's software adapter does it: on
-//! Debian the package `mesa-vulkan-drivers`.
+//! What runs on a card against the library, and what the texts of the function files promise.
+//! Without a card Mesa's software adapter runs it: on Debian the package `mesa-vulkan-drivers`.
 
 #![expect(
     clippy::expect_used,

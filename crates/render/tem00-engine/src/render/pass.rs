@@ -48,6 +48,13 @@ struct Pixel {
     sums: PixelSums,
 }
 
+/// Working memory of a thread, kept from strip to strip.
+#[derive(Default)]
+struct Memory<'a> {
+    batch: Batch<'a>,
+    pixels: Vec<Pixel>,
+}
+
 impl<'a> PathPass<'a> {
     /// Renders all layers.
     pub(super) fn render(&self) -> Result<Frame, RenderError> {
@@ -108,8 +115,9 @@ impl<'a> PathPass<'a> {
         level: impl Fn([usize; 2]) -> Option<u8> + Sync,
         done: impl Fn(usize, &[Pixel], u64) + Sync,
     ) -> Result<(), RenderError> {
-        let strips = parallel::map_with(self.strips(), |batch: &mut Batch<'a>, strip| {
-            let mut pixels = self.strip(strip);
+        let strips = parallel::map_with(self.strips(), |state: &mut Memory<'a>, strip| {
+            let Memory { batch, pixels } = state;
+            self.start_strip(strip, pixels);
             batch.clear();
             for slot in 0..pixels.len() {
                 let position = pixels[slot].position;
@@ -123,13 +131,13 @@ impl<'a> PathPass<'a> {
                 };
                 for index in (0..self.count(first)).step_by(RUN as usize) {
                     if batch.samples.len() + RUN as usize > BATCH {
-                        self.trace(batch, &mut pixels)?;
+                        self.trace(batch, pixels)?;
                     }
                     self.add_samples(slot, position, Stream { index, ..first }, batch);
                 }
             }
-            self.trace(batch, &mut pixels)?;
-            done(strip, &pixels, batch.take_ray_count());
+            self.trace(batch, pixels)?;
+            done(strip, pixels, batch.take_ray_count());
             Ok(())
         });
         strips.into_iter().collect()
@@ -187,17 +195,20 @@ impl<'a> PathPass<'a> {
         self.area.width.div_ceil(STRIP) * self.area.height
     }
 
-    /// Returns the pixels of a strip, without samples.
-    fn strip(&self, strip: usize) -> Vec<Pixel> {
+    /// Makes `pixels` those of a strip, without samples.
+    fn start_strip(&self, strip: usize, pixels: &mut Vec<Pixel>) {
         let per_row = self.area.width.div_ceil(STRIP);
         let (row, first) = (strip / per_row, strip % per_row * STRIP);
-        let columns = first..self.area.width.min(first + STRIP);
+        let width = STRIP.min(self.area.width - first);
         let lasers = self.integrator.laser_count();
-        let pixels = columns.map(|column| Pixel {
-            position: [self.area.x + column, self.area.y + row],
+        pixels.resize_with(width, || Pixel {
+            position: [0; 2],
             sums: PixelSums::new(lasers),
         });
-        pixels.collect()
+        for (column, pixel) in (first..).zip(pixels) {
+            pixel.position = [self.area.x + column, self.area.y + row];
+            pixel.sums.clear();
+        }
     }
 
     const fn in_area(&self, [x, y]: [usize; 2]) -> [usize; 2] {

@@ -69,6 +69,16 @@ impl PixelSums {
         }
     }
 
+    /// Forgets all samples, and keeps the memory.
+    pub fn clear(&mut self) {
+        let mut lasers = core::mem::take(&mut self.lasers);
+        lasers.fill(LaserSums::default());
+        *self = Self {
+            lasers,
+            ..Self::default()
+        };
+    }
+
     /// Adds a camera sample with its values for each laser.
     pub fn add(&mut self, sample: &Sample, lasers: &[LaserSample]) {
         let weight = sample.weight;

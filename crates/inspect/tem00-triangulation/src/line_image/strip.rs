@@ -1,11 +1,10 @@
-use core::f64::consts::{PI, TAU};
-
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use tem00_numerics::{
     Fft2, Grid,
     cast::{to_c32, to_f32, to_i64, to_usize},
+    circle_point_at_turn,
 };
 use tem00_speckle::Complex;
 
@@ -101,7 +100,7 @@ impl Strip<'_> {
                         return scattered;
                     }
                     let turns = tilt * (position + distance) / self.speckle_size[1];
-                    scattered * Complex::cis(TAU * turns)
+                    scattered * at_turn(turns)
                 })
                 .collect();
             for (y, waves) in waves.chunks_exact(across.len().max(1)).enumerate() {
@@ -135,7 +134,7 @@ impl Strip<'_> {
         {
             let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
             let turns = tilt * place(index / light.width()) / self.speckle_size[1];
-            let wave = Complex::new(normal(), normal()) * Complex::cis(TAU * turns);
+            let wave = Complex::new(normal(), normal()) * at_turn(turns);
             let wave = wave * (0.5 * f64::from(electrons)).sqrt();
             *amplitude = to_c32(wave);
         }
@@ -157,7 +156,7 @@ impl Strip<'_> {
                 // sign.
                 let at = (mirrored(x, columns, wide), mirrored(y, rows, high));
                 let [fx, fy] = [(x, columns), (y, rows)].map(|(i, n)| i as f64 - (n / 2) as f64);
-                let phase = Complex::cis(TAU * (fx * start[0] + fy * start[1]));
+                let phase = at_turn(fx * start[0] + fy * start[1]);
                 *amplitude = spectrum[at] * to_c32(phase);
             }
         });
@@ -211,8 +210,7 @@ impl Strip<'_> {
         pupil.for_each_row_mut(|y, amplitudes| {
             for (x, amplitude) in amplitudes.iter_mut().enumerate() {
                 let squared = place(x, 0).powi(2) + place(y, 1).powi(2);
-                let phase = Complex::cis(PI * self.defocus * squared);
-                *amplitude *= to_c32(phase);
+                *amplitude *= to_c32(at_turn(0.5 * self.defocus * squared));
             }
         });
     }
@@ -254,7 +252,7 @@ impl Strip<'_> {
     /// Returns the wave of a scatterer at a distance across the line in a row of the pupil.
     fn wave(&self, rows: usize, row: usize, distance: f64) -> Complex<f64> {
         let frequency = row as f64 - (rows / 2) as f64;
-        Complex::from_polar(1.0, TAU * frequency * distance / self.period[1])
+        at_turn(frequency * distance / self.period[1])
     }
 
     fn waves(
@@ -268,6 +266,12 @@ impl Strip<'_> {
         };
         (0..rows).flat_map(of_row).collect()
     }
+}
+
+/// Returns the point of the unit circle at the angle 2π `turns`.
+fn at_turn(turns: f64) -> Complex<f64> {
+    let [re, im] = circle_point_at_turn(turns - turns.floor());
+    Complex::new(re, im)
 }
 
 /// The index, in a transform of `length`, of the opposite of the frequency that stands at `index`

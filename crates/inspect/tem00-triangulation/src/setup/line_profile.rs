@@ -126,19 +126,9 @@ impl LineProfile {
     /// whose middle is `distance` from the middle of the line.
     pub(crate) fn at(&self, distance: f64) -> f64 {
         let angle = 2.0 * PI * distance / self.period;
-        let (double, mut before, mut now) = (2.0 * angle.cos(), angle.cos(), 1.0);
-        let mut sum = 0.0;
-        for amplitude in &self.spectrum {
-            sum += amplitude * now;
-            // cos((k + 1) a) = 2 cos a cos(k a) − cos((k − 1) a)
-            (before, now) = (now, double * now - before);
-        }
-        let (mut before, mut now) = (-angle.sin(), 0.0);
-        for amplitude in &self.odd {
-            sum += amplitude * now;
-            (before, now) = (now, double * now - before);
-        }
-        (sum - self.copies(0.5 * angle)).max(0.0)
+        let even = sum_of_waves(&self.spectrum, angle, f64::cos);
+        let odd = sum_of_waves(&self.odd, angle, f64::sin);
+        (even + odd - self.copies(0.5 * angle)).max(0.0)
     }
 
     /// The wings of all copies: Σ 2h/(π³ (y + k P)²) over k ≠ 0, at `angle` = π y/P.
@@ -150,6 +140,28 @@ impl LineProfile {
         };
         2.0 * self.speckle_size / (PI * self.period * self.period) * sum
     }
+}
+
+/// Returns Σ aₖ wave(k φ) over the amplitudes aₖ from k = 0, for a sine or cosine.
+///
+/// Four sums are independent of each other, so that none waits for the one before it:
+/// wave((k + 4) φ) = 2 cos 4φ wave(k φ) − wave((k − 4) φ).
+fn sum_of_waves(amplitudes: &[f64], angle: f64, wave: fn(f64) -> f64) -> f64 {
+    if amplitudes.is_empty() {
+        return 0.0;
+    }
+    let double = 2.0 * (4.0 * angle).cos();
+    let mut before = [-4.0, -3.0, -2.0, -1.0].map(|k| wave(k * angle));
+    let mut now = [0.0, 1.0, 2.0, 3.0].map(|k| wave(k * angle));
+    let mut sums = [0.0; 4];
+    for amplitudes in amplitudes.chunks(4) {
+        for ((sum, amplitude), wave) in sums.iter_mut().zip(amplitudes).zip(now) {
+            *sum += amplitude * wave;
+        }
+        let after = core::array::from_fn(|k| double * now[k] - before[k]);
+        (before, now) = (now, after);
+    }
+    sums.iter().sum()
 }
 
 /// The transfer function of a round pupil at the frequency at which its copies lie `shift`

@@ -250,9 +250,11 @@ fn dorsch(setup: &Setup, contrast: f64) -> Option<f64> {
         wavelength: d.laser.light.wavelength,
         contrast,
         aperture_angle: (0.5 * setup.camera().pupil_diameter() / d.camera.distance).asin(),
-        triangulation_angle: d.camera.angle,
+        triangulation_angle: d.camera.angle + d.laser.tilt,
     };
-    sensor.distance_deviation().ok()
+    // Along the light; a height is its part along the normal of the reference plane.
+    let along = sensor.distance_deviation().ok()?;
+    Some(along * d.laser.tilt.cos())
 }
 
 #[cfg(test)]

@@ -55,7 +55,7 @@ const MAX_ERROR: f64 = 0.05;
 
 impl SpeckleFrame {
     /// Returns the factor by which speckle multiplies the radiance at a point of a surface in this
-    /// frame, given its unit normal.
+    /// frame, given its normal of any length.
     ///
     /// The factor is 1 where the camera does not see the point. Where the camera sees the point but
     /// the law has no value, as for a surface seen edge-on, the speckle is new.
@@ -82,14 +82,14 @@ impl SpeckleFrame {
         let seen = SeenPoint {
             pixel,
             position: point,
-            normal,
+            normal: normal.normalize_or_zero(),
         };
         let mut factor = [1.0];
         self.look_up(None, &[Some(seen)], &mut factor);
         factor[0]
     }
 
-    /// Writes the factors at many points, with their unit normals; the bits are the same as from
+    /// Writes the factors at many points, with their normals; the bits are the same as from
     /// [`factor`](Self::factor) one by one.
     ///
     /// Look-ups are fastest if consecutive points are neighbours in the image.

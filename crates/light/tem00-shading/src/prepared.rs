@@ -44,7 +44,7 @@ impl PreparedSpeckle {
     }
 
     /// Writes the factors at points that have moved since the reference state, for a host that has
-    /// no bodies but image buffers: the positions of the points, their unit normals, and their
+    /// no bodies but image buffers: the positions of the points, their normals, and their
     /// positions in the reference state.
     ///
     /// Each point is treated as translated without rotation. Look-ups are fastest if consecutive

@@ -65,6 +65,9 @@ impl Speckle {
     /// the phasors of `seed`. The defaults are one look, polarised light, at most 256 MiB, and
     /// bodies at rest.
     ///
+    /// A laser that is tuned while it is watched is not followed: patterns of one seed at two
+    /// wavelengths do not correlate by the law.
+    ///
     /// Two lasers need two seeds: [`derived`](tem00_numerics::seed::derived) derives them from one.
     pub fn new(camera: &Camera, laser: &Laser, seed: u64) -> Self {
         Self {

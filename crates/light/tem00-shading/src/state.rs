@@ -71,7 +71,8 @@ impl State {
         Some(SeenPoint {
             pixel,
             position,
-            normal,
+            // Normals that a host interpolates are too short.
+            normal: normal.normalize_or_zero(),
         })
     }
 

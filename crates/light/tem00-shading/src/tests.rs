@@ -203,6 +203,21 @@ fn batches_have_the_bits_of_single_calls() {
 
 /// Two bodies and the background in the buffers of an image; steps of powers of two are exact.
 #[test]
+fn normals_may_have_any_length() {
+    let slide = pose(DVec3::new(40e-6, 20e-6, 0.0), DVec3::Z, 0.0);
+    let frame = prepared(3, &[slide]).frame(&slide.into()).unwrap();
+    for point in places(20) {
+        let of_length = |length: f64| frame.factor(point, length * DVec3::Z);
+        for length in [0.5, 2.0] {
+            assert!(
+                of_length(length).to_bits() == of_length(1.0).to_bits(),
+                "{point}"
+            );
+        }
+    }
+}
+
+#[test]
 fn buffers_have_the_bits_of_hits() {
     let steps = [
         DVec3::ZERO,

@@ -4,7 +4,10 @@ use glam::{DVec2, DVec3};
 use num_complex::Complex;
 use tem00_numerics::check;
 
-use crate::{Refusal, SourceExtent, blur::Blur, excess::HeightExcess, kernel::LagKernel};
+use crate::{
+    Refusal, SourceExtent, blur::Blur, excess::HeightExcess, kernel::LagKernel,
+    spectrum::WAVELENGTHS,
+};
 
 /// Geometry of illumination and observation of a rough surface, for [`ResolutionCell::new`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,7 +109,7 @@ impl ResolutionCell {
             "",
             "positive and at most 1",
         )?;
-        check::positive("wavelength", geometry.wavelength, "m")?;
+        check::range("wavelength", geometry.wavelength, WAVELENGTHS, "m")?;
         let height_factor = (1.0 + source.dot(pupil)) / normal.dot(pupil);
         Ok(Self {
             wavelength: geometry.wavelength,

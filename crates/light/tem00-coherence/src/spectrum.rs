@@ -76,6 +76,9 @@ struct Peak {
     weight: f64,
 }
 
+/// The range of wavelengths in metres.
+pub(crate) const WAVELENGTHS: [f64; 2] = [10e-9, 1e-3];
+
 /// The largest linewidth as a fraction of the wavelength.
 const MAX_RELATIVE_WIDTH: f64 = 0.1;
 /// The largest number of peaks whose widths are included in the modes.
@@ -144,7 +147,7 @@ impl Spectrum {
     pub fn from_peaks(peaks: &[[f64; 2]]) -> Result<Self, Refusal> {
         check_count(peaks.len())?;
         for &[wavelength, power] in peaks {
-            check::positive("wavelength", wavelength, "m")?;
+            check::range("wavelength", wavelength, WAVELENGTHS, "m")?;
             check::positive("power", power, "")?;
         }
         let largest = peaks.iter().fold(0.0, |max: f64, peak| max.max(peak[1]));
@@ -188,7 +191,7 @@ impl Spectrum {
     fn checked(wavelength: f64, peaks: Vec<Peak>) -> Result<Self, Refusal> {
         check_count(peaks.len())?;
         Ok(Self {
-            wavelength: check::positive("wavelength", wavelength, "m")?,
+            wavelength: check::range("wavelength", wavelength, WAVELENGTHS, "m")?,
             shape: PeakShape::Gaussian,
             width: 0.0,
             peaks,
@@ -446,7 +449,7 @@ fn check_count(peaks: usize) -> Result<(), Refusal> {
 
 /// Converts a width in wavelength to a width in wave number.
 fn full_width(wavelength: f64, width: f64, parameter: &'static str) -> Result<f64, Refusal> {
-    check::positive("wavelength", wavelength, "m")?;
+    check::range("wavelength", wavelength, WAVELENGTHS, "m")?;
     let holds = width >= 0.0 && width <= MAX_RELATIVE_WIDTH * wavelength;
     check::that(
         holds,

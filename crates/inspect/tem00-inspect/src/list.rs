@@ -28,7 +28,7 @@ pub(crate) fn run(args: &ListArgs, out: &mut impl Write) -> Result<(), Failure> 
 }
 
 const DETECTORS: &str = "\
-In [detector]: method = \"parabola\". --method of `tem00-inspect lines` takes the same names.";
+In [detector]: method = \"parabola\". --detector of `tem00-inspect lines` takes the same names.";
 
 fn detectors() -> Table {
     let headings = ["method", "minimum window", "position of the line"];

@@ -70,6 +70,8 @@ methods! {
         this.0.with_illumination(illumination).or_raise_renamed(&["point"], "illumination");
 
     /// Return the state with another wavelength, in metres.
+    ///
+    /// The heights of a rough surface decorrelate its speckle then: see `speckle_motion`.
     try with_wavelength(wavelength: f64) -> Configuration = this.0.with_wavelength(wavelength);
 
     /// Vacuum wavelength in metres.
@@ -103,6 +105,11 @@ named_tuple! {
 
 functions! {
     /// Return the motion of the speckle between two states of the same surface point.
+    ///
+    /// The correlation is that of a surface without depth. Where the wavelength or the directions
+    /// of light and sight change, heights multiply it by exp(−σ² Δq²), with the standard deviation
+    /// σ of normally distributed heights and the change Δq of 2π (cos i + cos o)/λ: for visible
+    /// light of another colour on a surface of 1 µm almost nothing is left.
     ///
     /// Parameters
     /// ----------

@@ -97,7 +97,8 @@ def test_lines_have_the_coherence_of_their_shapes() -> None:
     ("wrong", "parameter"),
     [
         (lambda: Spectrum(0.0), "wavelength"),
-        (lambda: Spectrum(1e-9, 650e-9), "linewidth"),
+        (lambda: Spectrum(650.0), "wavelength"),
+        (lambda: Spectrum(650e-9, 100e-9), "linewidth"),
         (lambda: Spectrum.comb(650e-9, 1e-9, 0), "count"),
         (lambda: Spectrum.from_peaks([650e-9], [-1.0]), "powers"),
         (lambda: Spectrum.from_peaks([650e-9], [1.0, 2.0]), "powers"),

@@ -71,7 +71,7 @@ methods! {
 
     /// Return the state with another wavelength, in metres.
     ///
-    /// The heights of a rough surface decorrelate its speckle then: see `speckle_motion`.
+    /// The heights of a rough surface decorrelate its speckle then: see ``speckle_motion``.
     try with_wavelength(wavelength: f64) -> Configuration = this.0.with_wavelength(wavelength);
 
     /// Vacuum wavelength in metres.

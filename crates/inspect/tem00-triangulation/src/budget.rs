@@ -250,11 +250,12 @@ fn dorsch(setup: &Setup, contrast: f64) -> Option<f64> {
         wavelength: d.laser.light.wavelength,
         contrast,
         aperture_angle: (0.5 * setup.camera().pupil_diameter() / d.camera.distance).asin(),
-        triangulation_angle: d.camera.angle + d.laser.tilt,
+        triangulation_angle: d.camera.angle,
     };
-    // Along the light; a height is its part along the normal of the reference plane.
-    let along = sensor.distance_deviation().ok()?;
-    Some(along * d.laser.tilt.cos())
+    // A tilt ε of the light replaces sin θ by |sin(θ + ε)|/cos ε.
+    let (angle, tilt) = (d.camera.angle, d.laser.tilt);
+    let by_tilt = libm::sin(angle) * libm::cos(tilt) / libm::sin(angle + tilt).abs();
+    Some(sensor.distance_deviation().ok()? * by_tilt)
 }
 
 #[cfg(test)]

@@ -226,6 +226,16 @@ fn closed_forms_stand_beside_the_budget() {
     // sin u = D/2L = 1/192 and sin θ = 1/2.
     let dorsch = 650e-9 / (2.0 * PI / 192.0 * 0.5);
     assert_relative(budget.dorsch(), dorsch, 1e-12);
+    // A tilted laser scales the height of a pixel, and with it that of the noise of an image.
+    for [angle, tilt] in [[30.0_f64, 10.0_f64], [60.0, 40.0], [30.0, -35.0]] {
+        let at = |tilt: f64| {
+            let of = |d: &mut SetupDescription| {
+                (d.camera.angle, d.laser.tilt) = (angle.to_radians(), tilt.to_radians());
+            };
+            budget_of(of).dorsch() / setup_of(of).line().height_per_pixel.abs()
+        };
+        assert_relative(at(tilt), at(0.0), 1e-9);
+    }
     // The line law at 4.56 pixels of full width on speckle of 1.644 pixels, as high as a pixel.
     let h = setup.line().speckle_size[1];
     let radius = 0.5 * setup.line().projected_thickness / h;

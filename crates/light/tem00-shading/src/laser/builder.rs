@@ -132,10 +132,7 @@ impl LaserBuilder {
         }
         let spectrum = match self.spectrum {
             Some(spectrum) => spectrum,
-            None => {
-                let allowed = [10e-9, 1e-3];
-                Spectrum::monochromatic(check::range("wavelength", self.wavelength, allowed, "m")?)?
-            }
+            None => Spectrum::monochromatic(self.wavelength)?,
         };
         let focus = self.focus.unwrap_or_else(|| origin.distance(target));
         let shape = match self.line {

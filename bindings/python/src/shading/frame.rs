@@ -60,7 +60,7 @@ methods! {
     /// points : array_like, shape (..., 3)
     ///     Points, in metres. Neighbours in the image, one after the other, are looked up fastest.
     /// normals : array_like, shape (..., 3)
-    ///     Unit normals, to either side.
+    ///     Normals of any length, to either side.
     ///
     /// Returns
     /// -------

@@ -10,6 +10,7 @@ use tem00_report::{
 };
 use tem00_scan::{HeightMap, MeasuredPoint, QuantisedGrid, Raster};
 use tem00_tracer::Sampling;
+use tem00_triangulation::LineMethod;
 
 use super::{
     drawings::Drawings,
@@ -44,6 +45,21 @@ fn speckle_by_waves(report: &mut Report, job: &Job<'_>, measured: &ScanResult) {
     }
 }
 
+/// Notes that the noise of a detector is not first order, where that makes U much too large.
+fn first_order(report: &mut Report, method: LineMethod) {
+    let why = match method {
+        LineMethod::Parabola | LineMethod::LogGaussian | LineMethod::LinearInterpolation => {
+            "it is not linear in the speckle of three pixels"
+        }
+        LineMethod::Steger { .. } => "it also averages neighbouring columns",
+        _ => return,
+    };
+    report.verdict(format!(
+        "U is first order in the noise, and too large for this detector, up to twice: {why}. The \
+         trials of `tem00-inspect budget` find its noise."
+    ));
+}
+
 /// Returns the report, and writes its diagrams.
 ///
 /// # Errors
@@ -67,6 +83,7 @@ pub(super) fn report(job: &Job<'_>, measured: &ScanResult) -> Result<Report, Fai
             for line in terms.notes_of_indirect_light() {
                 report.verdict(line);
             }
+            first_order(&mut report, job.measurement.detector().settings().method);
             let average = job.measurement.settings().average;
             measured
                 .speckle_sentence(average)

@@ -109,6 +109,22 @@ fn profiles_are_tables_with_uncertainties() {
 }
 
 #[test]
+fn detectors_whose_noise_is_not_first_order_are_noted() {
+    const SENTENCE: &str = "too large for this detector";
+    let folder = written(SCAN);
+    let line = "triangulate a.toml --frames 0 --spp 4";
+    let table = said(folder.path(), line, 0).out;
+    assert!(!table.contains(SENTENCE), "{table}");
+    let table = said(
+        folder.path(),
+        &format!("{line} --set detector.method=parabola"),
+        0,
+    )
+    .out;
+    assert_has(&table, &[SENTENCE]);
+}
+
+#[test]
 fn results_depend_on_the_seed_and_on_speckle() {
     let folder = written(SCAN);
     let cloud = |options: &str, out: &str| {

@@ -22,7 +22,7 @@ pub(super) fn verdicts(measured: &ThreeMethods) -> Vec<String> {
         quoted.name()
     )];
     lines.push(why(measured));
-    if !measured.propagation.is_stable() {
+    if !measured.is_stable() {
         lines.push(format!(
             "The propagation of distributions is not stable after {} trials.",
             measured.propagation.values().len()
@@ -95,7 +95,7 @@ pub(super) fn section(section: &mut Section, measured: &ThreeMethods) {
              standard uncertainty is the root mean square error, ± its standard error.",
         )
         .data("trials", propagation.values().len())
-        .data("is_stable", propagation.is_stable())
+        .data("is_stable", measured.is_stable())
         .data(
             "validation",
             json!({

@@ -14,7 +14,8 @@ use crate::args::BudgetArgs;
 
 /// The number of samples of the decomposition of the variance.
 const SAMPLES: u32 = 1 << 15;
-/// The maximum number of trials of the propagation of distributions.
+/// The maximum number of trials of the propagation of distributions: for a smooth distribution,
+/// enough to make two digits stable.
 const MAX_TRIALS: u64 = 2_000_000;
 
 /// Returns whether the uncertainties of two methods differ: whether their ratio, with its standard
@@ -96,7 +97,7 @@ impl ThreeMethods {
 
     fn of(args: &BudgetArgs, measurement: Measurement) -> Result<Self, TriangulationError> {
         let propagation = PropagationOptions {
-            digits: 1,
+            digits: 2,
             // What a validation of the first order asks for.
             tolerance_divisor: 5.0,
             max_trials: MAX_TRIALS,
@@ -194,6 +195,11 @@ impl ThreeMethods {
                 )
             })
             .filter(|(_, coefficient)| *coefficient != 0.0)
+    }
+
+    /// Returns whether the trials of distributions were enough for two digits.
+    pub(super) fn is_stable(&self) -> bool {
+        self.propagation.largest_error() <= self.validation().tolerance
     }
 
     /// Compares the law of propagation with the propagation of distributions.

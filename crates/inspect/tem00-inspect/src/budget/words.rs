@@ -1,6 +1,6 @@
 //! A budget in sentences.
 
-use tem00_report::report::units::{MICROMETRES, MILLIMETRES, NUMBER, PERCENT};
+use tem00_report::report::units::{MICROMETRES, MILLIMETRES, NUMBER, PERCENT, PIXELS};
 use tem00_triangulation::{LightLevel, LineMethod, MeasurementInput, Setup};
 
 use super::{
@@ -32,6 +32,8 @@ pub(super) fn verdicts(answer: &Answer, setup: &Setup) -> Vec<String> {
         Some(_) => [dominates, result(answer)],
         None => [result(answer), dominates],
     });
+    lines.extend(of_trials(answer, setup));
+    lines.extend(narrow_window(setup));
     // The closed forms are those of a line that stays where it enters.
     lines.push(subsurface(answer, setup).unwrap_or_else(|| {
         format!(
@@ -44,7 +46,6 @@ pub(super) fn verdicts(answer: &Answer, setup: &Setup) -> Vec<String> {
     if level != LightLevel::Good {
         lines.push(format!("The light is not right: {}.", level.advice()));
     }
-    lines.extend(of_trials(answer, setup));
     lines
 }
 
@@ -109,10 +110,11 @@ fn result(answer: &Answer) -> String {
     };
     let other = other.map(|(method, found)| format!(" By {method} {}.", length(found)));
     format!(
-        "Expanded uncertainty of a height{exact}: U = {} (95 %, {how}).{}{}",
+        "Expanded uncertainty of a height{exact}: U = {} (95 %, {how}).{}{}{}",
         length(expanded),
         other.unwrap_or_default(),
-        away_from_the_reference_plane(answer, expanded).unwrap_or_default()
+        away_from_the_reference_plane(answer, expanded).unwrap_or_default(),
+        without_a_line(answer).unwrap_or_default()
     )
 }
 
@@ -129,6 +131,20 @@ fn away_from_the_reference_plane(answer: &Answer, expanded: f64) -> Option<Strin
              at {}.",
             MICROMETRES.text(ratio * expanded),
             MILLIMETRES.text(height)
+        )
+    })
+}
+
+/// Returns how much of the measuring range has no line, if any.
+fn without_a_line(answer: &Answer) -> Option<String> {
+    let heights = &answer.over_range;
+    let lost = heights.iter().filter(|(_, found)| found.is_none()).count();
+    (lost > 0).then(|| {
+        format!(
+            " In {} of the measuring range the detector finds no line.",
+            PERCENT
+                .with_digits(2)
+                .text(lost as f64 / heights.len() as f64)
         )
     })
 }
@@ -155,6 +171,13 @@ fn of_trials(answer: &Answer, setup: &Setup) -> Vec<String> {
             NUMBER.with_digits(3).text(ratio)
         ));
     }
+    if let Some(joint) = answer.joint_part().filter(|joint| *joint > 0.1) {
+        lines.push(format!(
+            "Another {} of the variance has several sources: where speckle is dark, the noise of \
+             the sensor moves the line farther. More light lowers this part.",
+            PERCENT.with_digits(2).text(joint)
+        ));
+    }
     if let Some(invalid) = trials
         .map(|trials| trials.invalid)
         .filter(|invalid| *invalid > 0.01)
@@ -165,6 +188,26 @@ fn of_trials(answer: &Answer, setup: &Setup) -> Vec<String> {
         ));
     }
     lines
+}
+
+/// Notes a window that cuts off flanks of the line, whose light a centre of gravity needs: in a
+/// window of one and a half widths of the line, speckle moves it a sixth farther than in a wide one.
+fn narrow_window(setup: &Setup) -> Option<String> {
+    let detector = setup.description().detector;
+    let needs_flanks = matches!(
+        detector.method,
+        LineMethod::CentreOfGravity | LineMethod::IteratedCentreOfGravity
+    );
+    let width = setup.line().width;
+    (needs_flanks && (detector.window as f64) < 1.5 * width).then(|| {
+        format!(
+            "The window of {} pixels cuts off flanks of the line, which is {} wide: speckle then \
+             moves the centre of gravity farther. Set `window` in [detector] to {} or more.",
+            detector.window,
+            PIXELS.text(width),
+            (2.0 * width).ceil()
+        )
+    })
 }
 
 /// Begins text as a sentence.

@@ -141,7 +141,9 @@ fn a_set_up_that_measures_nothing_has_no_uncertainty() {
 
 #[test]
 fn an_uncertain_set_up_has_three_answers_and_one_to_quote() {
-    let (record, _) = budget(&format!("--trials 40 --seed 3 {UNCERTAIN_ANGLE}"));
+    // A tenth of it, whose square is far below two digits of the uncertainty.
+    let angle = UNCERTAIN_ANGLE.replace("0.3", "0.03");
+    let (record, _) = budget(&format!("--trials 40 --seed 3 {angle}"));
     let found = &record["measurement"];
     let height = number(&found["height"]);
     let highest = &record["image"]["measuring_range"][1];
@@ -234,6 +236,43 @@ fn the_largest_uncertainty_within_the_measuring_range_is_stated() {
     let ratio = combined.fold(0.0, f64::max) / number(&record["combined"]);
     let largest = 1e6 * ratio * number(&record["expanded"]);
     assert_has(&table, &[&format!("{SENTENCE} {largest:.1}"), "µm, at -"]);
+}
+
+#[test]
+fn heights_without_a_line_are_stated() {
+    let (record, table) =
+        budget("--trials 0 --set detector.min_peak=700 --set 'camera.resolution=[640, 2000]'");
+    let heights = record["over_range"].as_array().expect("heights");
+    let lost = heights.iter().filter(|height| height["combined"].is_null());
+    let percent = 100.0 * lost.count() as f64 / heights.len() as f64;
+    assert!(percent > 0.0, "{record}");
+    let sentence = format!("In {percent:.0} % of the measuring range the detector finds no line");
+    assert_has(&table, &[&sentence]);
+}
+
+#[test]
+fn noise_in_dark_speckle_is_a_part_of_the_variance_of_its_own() {
+    const SENTENCE: &str = "of the variance has several sources";
+    let (record, table) =
+        budget("--trials 40 --set sensor.exposure=5us --set 'laser.line_thickness=\"0.1 mm\"'");
+    let terms = record["terms"].as_array().expect("terms").iter();
+    let alone = terms.map(|term| term["by_trials"].as_f64().unwrap_or(0.0).powi(2));
+    let joint = 100.0 * (1.0 - alone.sum::<f64>() / number(&record["combined"]).powi(2));
+    assert!(joint > 10.0, "{joint}");
+    assert_has(&table, &[&format!("Another {joint:.0} % {SENTENCE}")]);
+    let (_, bright) = budget("--trials 40");
+    assert!(!bright.contains(SENTENCE), "{bright}");
+}
+
+#[test]
+fn a_window_that_cuts_off_the_line_is_noted() {
+    const SENTENCE: &str = "cuts off flanks of the line";
+    let (_, table) = budget("--trials 0 --set detector.window=5");
+    assert_has(&table, &[SENTENCE]);
+    let (_, wide) = budget("--trials 0");
+    assert!(!wide.contains(SENTENCE), "{wide}");
+    let (_, fit) = budget("--trials 0 --set detector.window=7 --set detector.method=parabola");
+    assert!(!fit.contains(SENTENCE), "{fit}");
 }
 
 #[test]

@@ -69,6 +69,15 @@ impl<'a> Findings<'a> {
             answer,
         })
     }
+
+    /// Returns the result of trials, if there were any.
+    pub(super) fn trials(&self) -> Option<&Simulation> {
+        let trials = match &self.answer {
+            Ok(answer) => &answer.trials,
+            Err(refusal) => &refusal.trials,
+        };
+        trials.as_ref()
+    }
 }
 
 impl Answer {

@@ -5,7 +5,7 @@ use tem00_report::report::{
     Cell, Column, Report, Section, Table,
     units::{MICROMETRES, MILLIMETRES, MILLISECONDS, NUMBER, PERCENT, PIXELS},
 };
-use tem00_triangulation::{BudgetTerm, Setup, UncertaintySource};
+use tem00_triangulation::{BudgetTerm, Setup, SimulationOptions, UncertaintySource};
 
 use super::{
     answers,
@@ -55,14 +55,32 @@ pub(super) fn report(findings: &Findings<'_>, drawings: Vec<String>, day: &str) 
         .section("The inputs")
         .in_detail()
         .table(inputs(setup))
-        .paragraph(format!(
-            "Computed on {day} from {file}, whose text has the MD5 checksum {checksum}."
-        ));
+        .paragraph(origin(findings, &checksum, day));
     report.section("Files").file(file, &findings.file.text);
     report
 }
 
-/// Returns every value that the budget depends on, given or by default.
+/// Says what the budget was computed from.
+fn origin(findings: &Findings<'_>, checksum: &str, day: &str) -> String {
+    let file = &findings.file;
+    let changed = match std::fs::read_to_string(file.path) {
+        Ok(text) if text == file.text => "",
+        _ => ", with the files that it includes and the changes of the command line",
+    };
+    let trials = findings
+        .trials()
+        .map(|trials| trials.options)
+        .map_or_else(String::new, |SimulationOptions { trials, seed }| {
+            format!(" Trials: {trials}, with the seed {seed}.")
+        });
+    format!(
+        "Computed on {day} from {}{changed}. The text below has the MD5 checksum {checksum}.{trials}",
+        file.path.display()
+    )
+}
+
+/// Returns the values that the budget depends on, given or by default. Calibration, environment and
+/// averages are left out where they are the defaults.
 fn inputs(setup: &Setup) -> Table {
     let columns = [
         Column::new("key", "key"),
@@ -136,13 +154,11 @@ fn numbers(report: &mut Report, answer: Option<&Answer>) {
 /// Returns the results of trials, and the combined uncertainty by them; without an uncertainty, how
 /// many columns have no line that can be trusted.
 fn trials(findings: &Findings<'_>) -> serde_json::Value {
-    let (trials, combined) = match &findings.answer {
-        Ok(answer) => (&answer.trials, answer.combined_by_trials()),
-        Err(refusal) => (&refusal.trials, None),
-    };
-    let Some(trials) = trials else {
+    let Some(trials) = findings.trials() else {
         return serde_json::Value::Null;
     };
+    let answer = findings.answer.as_ref().ok();
+    let combined = answer.and_then(Answer::combined_by_trials);
     let total = trials.total;
     json!({
         "trials": trials.options.trials,

@@ -80,8 +80,9 @@ fn a_page_has_name_day_checksum_and_every_input_and_the_json_no_day() {
     // The last two are by default.
     let parts = [
         "<h1>Uncertainty budget of Rig &lt;7&gt;</h1>",
-        "Computed on 2026-11-26 from a.toml",
+        "Computed on 2026-11-26 from a.toml. ",
         &checksum,
+        "Trials: 10, with the seed 0.",
         "<td>laser.wavelength</td><td>650 nm</td>",
         "<td>sensor.dark_current</td>",
         "<td>surface.polarisation</td>",
@@ -95,6 +96,16 @@ fn a_page_has_name_day_checksum_and_every_input_and_the_json_no_day() {
     let [later, same] = files("1795737600");
     assert_eq!(same, record, "no day");
     assert_eq!(later, page.replace("2026-11-26", "2026-11-27"));
+    said(
+        folder.path(),
+        "budget a.toml --trials 0 --set camera.f_number=11",
+        0,
+    );
+    let changed = read(&folder.path().join("out/a/budget.html"));
+    assert_has(
+        &changed,
+        &["from a.toml, with", "changes of the command line"],
+    );
     for wrong in ["-1", "today", "1e9", "253402300800"] {
         let output = of_day(wrong);
         assert_code(&output, 2);

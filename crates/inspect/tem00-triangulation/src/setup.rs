@@ -211,8 +211,8 @@ impl Setup {
         let allowed = "such that the speckle size λ F (1 + m) is from 1/16 to 64 pixels";
         within("f_number", per_pixel[0], SPECKLE_SIZES, allowed)?;
         within("f_number", per_pixel[1], SPECKLE_SIZES, allowed)?;
-        let allowed = "such that the line is from 0.1 pixel to a third of the image wide in it; \
-                       its width there, in pixels, is the value";
+        let allowed = "such that the width of its image, in pixels, is from 0.1 to a third of the \
+                       rows in `resolution`";
         let widest = match self.line.subsurface_width > self.line.projected_thickness {
             true => "transport_length",
             false => "line_thickness",

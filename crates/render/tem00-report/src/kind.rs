@@ -37,13 +37,13 @@ impl Kind {
         }
     }
 
-    /// Returns the command that takes such a file.
+    /// Returns the command that takes such a file, or both.
     const fn command(self) -> &'static str {
         match self {
-            Self::Scene => "tem00 render",
+            Self::Scene => "tem00 render` or `tem00-inspect triangulate",
             Self::Setup => "tem00-inspect budget",
             Self::Grid => "tem00-inspect sweep",
-            Self::Image => "tem00 stats",
+            Self::Image => "tem00 stats` or `tem00-inspect lines",
         }
     }
 

@@ -36,7 +36,7 @@ pub(super) fn thin(speckles: f64, quote: &str) -> String {
     format!(
         "The line is {} speckles wide: formulas, which are first order, do not hold below {}; \
          quote {quote}.",
-        NUMBER.with_digits(2).text(speckles),
+        NUMBER.with_digits(3).text(speckles),
         NUMBER.text(Budget::LEAST_SPECKLES)
     )
 }

@@ -33,6 +33,7 @@ pub(super) fn report(findings: &Findings<'_>, drawings: Vec<String>, day: &str) 
     );
     report.data("setup", &file);
     report.data("reason", refusal.map(|refusal| &refusal.why));
+    words::without_effect(setup).for_each(|note| report.note(note));
     let verdicts = match &findings.answer {
         Ok(answer) => words::verdicts(answer, setup),
         Err(refusal) => words::refusal(refusal).into(),

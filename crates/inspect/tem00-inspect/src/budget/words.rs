@@ -1,7 +1,7 @@
 //! A budget in sentences.
 
 use tem00_report::report::units::{MICROMETRES, MILLIMETRES, NUMBER, PERCENT, PIXELS};
-use tem00_triangulation::{LightLevel, LineMethod, MeasurementInput, Setup};
+use tem00_triangulation::{BandwidthEffect, LightLevel, LineMethod, MeasurementInput, Setup};
 
 use super::{
     answers,
@@ -208,6 +208,30 @@ fn narrow_window(setup: &Setup) -> Option<String> {
             (2.0 * width).ceil()
         )
     })
+}
+
+/// Names the keys that say something and change nothing.
+pub(super) fn without_effect(setup: &Setup) -> impl Iterator<Item = &'static str> {
+    let (d, environment) = (setup.description(), setup.description().environment);
+    let is_rigid = environment.base_expansion == 0.0 && environment.mount_expansion == 0.0;
+    [
+        (
+            d.surface.relief.rms_height > 0.0 && setup.line().bandwidth == BandwidthEffect::NONE,
+            "`rms_height` in [surface] has no effect on light of one wavelength: give [laser] its \
+             `linewidth`",
+        ),
+        (
+            d.average.independent_speckle && d.average.frames == 1,
+            "`independent_speckle` in [average] has no effect on one frame: set `frames`",
+        ),
+        (
+            environment.temperature_change != 0.0 && is_rigid,
+            "`temperature_change` in [environment] has no effect without `base_expansion` and \
+             `mount_expansion`",
+        ),
+    ]
+    .into_iter()
+    .filter_map(|(holds, note)| holds.then_some(note))
 }
 
 /// Begins text as a sentence.

@@ -287,6 +287,30 @@ fn a_window_that_cuts_off_the_line_is_noted() {
 }
 
 #[test]
+fn keys_without_effect_are_noted() {
+    let folder = written(SETUP);
+    let told = |options: &str| {
+        said(
+            folder.path(),
+            &format!("budget a.toml --trials 0 {options}"),
+            0,
+        )
+        .told
+    };
+    for [key, value, effect] in tem00_testkit::rows(
+        "surface.rms_height => '\"1 um\"' => laser.linewidth='\"1 nm\"'
+        average.independent_speckle => true => average.frames=2
+        environment.temperature_change => 5 => environment.base_expansion=2e-5",
+    ) {
+        let (_, name) = key.split_once('.').expect("a section");
+        let without = format!("--set {key}={value}");
+        assert_has(&told(&without), &[&format!("`{name}` in [")]);
+        let with = told(&format!("{without} --set {effect}"));
+        assert!(!with.contains("no effect"), "{with}");
+    }
+}
+
+#[test]
 fn what_dominates_is_of_the_answer_to_quote() {
     // 30 % of a height, whose interval ends at √3 u and not at 1.96 u.
     let pitch = "{ value = \"3.45 um\", uncertainty = \"0.6 um\", distribution = \"rectangular\" }";

@@ -4,6 +4,7 @@ mod strip;
 use tem00_numerics::{
     Grid, Refusal,
     cast::{to_f32, to_usize},
+    is_fast_side,
 };
 use tem00_speckle::{PupilField, SpeckleError, incoherent_fractions};
 
@@ -363,17 +364,7 @@ fn samples_per_pixel([along, across]: [f64; 2]) -> [usize; 2] {
 /// to transform: the smallest number without prime factors above 5.
 fn pattern_side(needed: usize, dark: f64) -> usize {
     let min = needed.saturating_add(to_usize(dark.ceil()));
-    let smooth = |&n: &usize| {
-        let mut rest = n;
-        for factor in [2, 3, 5] {
-            while rest.is_multiple_of(factor) {
-                rest /= factor;
-            }
-        }
-        rest == 1
-    };
-    // There is one between any number and twice it.
-    (min..).find(smooth).unwrap_or(min)
+    (min..).find(|&side| is_fast_side(side)).unwrap_or(min)
 }
 
 fn check(d: &LineImageData) -> Result<(), TriangulationError> {

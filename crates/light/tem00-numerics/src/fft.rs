@@ -410,5 +410,17 @@ impl fmt::Display for Fft2Error {
 
 impl error::Error for Fft2Error {}
 
+/// Returns whether transforms of a side are fast: whether it has no prime factor above 5.
+///
+/// There is such a number between any number and its double; 0 is none.
+pub fn is_fast_side(mut side: usize) -> bool {
+    for prime in [2, 3, 5] {
+        while side > 0 && side.is_multiple_of(prime) {
+            side /= prime;
+        }
+    }
+    side == 1
+}
+
 #[cfg(test)]
 mod tests;

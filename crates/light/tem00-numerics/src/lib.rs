@@ -35,7 +35,7 @@ mod vectorised;
 pub use circle::{circle_point_at_eighth, circle_point_at_turn};
 pub use crop::Crop;
 #[cfg(feature = "fft")]
-pub use fft::{Fft2, Fft2Error, Fft2Scratch};
+pub use fft::{Fft2, Fft2Error, Fft2Scratch, is_fast_side};
 pub use fractions::fractions;
 pub use grid::{Grid, GridError, wrap_coordinate};
 pub use least_squares::{

@@ -1,4 +1,4 @@
-use tem00_numerics::cast::to_usize;
+use tem00_numerics::{cast::to_usize, is_fast_side};
 
 use crate::{PupilField, SlicePath, SpeckleError, SpeckleStack, StackOptions};
 
@@ -346,17 +346,8 @@ fn diameter_for(speckles: f64) -> usize {
     let multiples = smallest.div_ceil(8)..=PupilField::MAX_SIZE / 8;
     multiples
         .map(|multiple| 8 * multiple)
-        .find(|&diameter| is_smooth(diameter))
+        .find(|&diameter| is_fast_side(diameter))
         .unwrap_or(smallest)
-}
-
-fn is_smooth(mut number: usize) -> bool {
-    for prime in [2, 3, 5] {
-        while number.is_multiple_of(prime) {
-            number /= prime;
-        }
-    }
-    number == 1
 }
 
 /// The length of a straight path, in pupil diameters, whose end does not overlap its start after a

@@ -210,7 +210,10 @@ fn cells(
     if let Some(decomposition) = &measured.decomposition {
         let parts = decomposition.inputs()[index];
         // As many decimals as their standard errors leave.
-        let percent = |value: f64| Cell::new(value, format!("{:.1}", PERCENT.of(value)));
+        let percent = |value: f64| {
+            let text = format!("{:.1}", PERCENT.of(value));
+            Cell::new(value, text.replace("-0.0", "0.0"))
+        };
         cells.extend([parts.first_order, parts.total].map(|part| percent(part.value)));
     }
     cells

@@ -51,7 +51,7 @@ fn best(design: &Design<'_>) -> Result<Option<String>, Failure> {
     let text = Design::setup_of(winner)?.description().to_toml();
     Ok(Some(format!(
         "# The best of the {} set-ups that `tem00-inspect design {file}` tried: number {}.\n\
-         # A height on the reference plane is known to ±{} (95 %).\n\
+         # By formulas, a height on the reference plane is known to ±{} (95 %).\n\
          #\n\
          #     tem00-inspect budget best.toml\n\n\
          {text}",

@@ -16,9 +16,6 @@ use tem00::uncertainty::{
 };
 
 const MEASUREMENTS: u64 = 10_000;
-/// The fewest columns of a frame, whose speckle repeats beyond it: twice those whose mean is a
-/// height.
-const FRAME: usize = 16;
 /// Heights at which intervals are computed; between them they change evenly.
 const NODES: usize = 17;
 
@@ -117,7 +114,7 @@ impl Case {
         let line = drawn.line_at(self.height).expect("a line");
         let rows = 2 * to_usize((3.0 * line.width).ceil()) + 24;
         let columns = to_usize(drawn.description().average.columns.into());
-        let image = LineImage::of_line(&drawn, &line, [FRAME.max(2 * columns), rows]);
+        let image = LineImage::of_line(&drawn, &line, [columns, rows]);
         let phase = f64::from(random.next_u32()) / f64::from(u32::MAX);
         let (centre, seed) = (0.5 * rows as f64 + phase, random.next_u64());
         let electrons = image.expect("a line").speckled(seed, |_| centre);
@@ -127,7 +124,7 @@ impl Case {
             .setup
             .detector()
             .detect(&frame.expect("a frame").grey_values());
-        let positions = found[..columns]
+        let positions = found
             .iter()
             .filter_map(|points| Some(points.first()?.position));
         let (count, sum) =

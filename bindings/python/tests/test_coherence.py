@@ -106,7 +106,13 @@ def test_lines_have_the_coherence_of_their_shapes() -> None:
         (lambda: ResolutionCell((0, 0, 1), (0, 0, 1), (0, 0, 1), 2.0, 1e-6), "sin_aperture"),
         (lambda: cell(rms_height=-1.0), "rms_height"),
         (lambda: cell(defocus=math.inf), "defocus"),
-        (lambda: cell().autocovariance(Spectrum(650e-9), (1e9, 0)), "lag"),
+        (lambda: cell().autocovariance(Spectrum(WAVELENGTH), (1e9, 0)), "lag"),
+        (lambda: cell().autocovariance(Spectrum(650e-9), (0, 0)), "spectrum"),
+        (lambda: cell().covariance(Spectrum(650e-9), (0, 0)), "spectrum"),
+        (lambda: cell().contrast(Spectrum(1.02 * WAVELENGTH)), "spectrum"),
+        (lambda: cell().line_noise_ratio(Spectrum(650e-9)), "spectrum"),
+        (lambda: cell().modes(Spectrum(650e-9)), "spectrum"),
+        (lambda: cell().patterns(Spectrum(650e-9)), "spectrum"),
     ],
 )
 def test_what_cannot_be_is_refused_by_name(wrong: object, parameter: str) -> None:

@@ -1,6 +1,6 @@
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
-use tem00_coherence::{self as physics, DVec3, PolychromaticSpeckle, Rows};
+use tem00_coherence::{self as physics, DVec3, PolychromaticSpeckle, Refusal, Rows};
 
 use crate::{
     arrays::{Array, Floats},
@@ -18,7 +18,7 @@ class! {
     /// sin_aperture : float
     ///     Half the diameter of the pupil over its distance.
     /// wavelength : float
-    ///     Wavelength in metres.
+    ///     Wavelength in metres, that of the spectra asked about to 1 %.
     /// rms_height : float
     ///     Root mean square height of the relief that is finer than the cell, in metres.
     /// correlation_length : float
@@ -32,11 +32,11 @@ class! {
 }
 
 impl ResolutionCell {
-    const fn speckle<'a>(&'a self, spectrum: &'a physics::Spectrum) -> PolychromaticSpeckle<'a> {
-        PolychromaticSpeckle {
-            spectrum,
-            cell: &self.0,
-        }
+    fn speckle<'a>(
+        &'a self,
+        spectrum: &'a physics::Spectrum,
+    ) -> Result<PolychromaticSpeckle<'a>, Refusal> {
+        PolychromaticSpeckle::new(spectrum, &self.0)
     }
 }
 
@@ -79,7 +79,8 @@ methods! {
     call line_noise_ratio(py; spectrum: Bound<'py, PyAny>, tall_rows: bool) -> f64 = {
         take!(spectrum: physics::Spectrum);
         let rows = if tall_rows { Rows::Tall } else { Rows::Thin };
-        Ok(py.detach(|| this.speckle(&spectrum).line_noise_ratio(rows)))
+        let speckle = this.speckle(&spectrum).or_raise()?;
+        Ok(py.detach(|| speckle.line_noise_ratio(rows)))
     };
 
     /// Return the patterns of one wavelength that together have the contrast, as two arrays of
@@ -94,10 +95,8 @@ methods! {
     ///     the light; none where the patterns are looked up as in one wavelength.
     call patterns(py; spectrum: Bound<'py, PyAny>) -> (Floats, Array<'py>) = {
         take!(spectrum: physics::Spectrum);
-        let patterns = py.detach(|| {
-            let speckle = this.speckle(&spectrum);
-            speckle.patterns(|speckle| speckle.contrast().powi(2))
-        });
+        let speckle = this.speckle(&spectrum).or_raise()?;
+        let patterns = py.detach(|| speckle.patterns(|speckle| speckle.contrast().powi(2)));
         let physics::PatternSum { fractions, heights } = patterns;
         let size = [heights.len(), 2];
         let heights = PyArray1::from_vec(py, heights.into_flattened()).reshape(size)?;
@@ -105,12 +104,13 @@ methods! {
     };
 
     /// Return the contrast of the speckle in the light of a spectrum.
-    fn contrast(spectrum: physics::Spectrum) -> f64 = this.speckle(&spectrum).contrast();
+    try contrast(spectrum: physics::Spectrum) -> f64 =
+        this.speckle(&spectrum).map(|speckle| speckle.contrast());
 
     /// Return the covariance, over the squared mean, of two frames by the displacement of the
     /// pupil, of shape (2,).
-    fn covariance(spectrum: physics::Spectrum, displacement: [f64; 2]) -> f64 =
-        this.speckle(&spectrum).covariance(displacement);
+    try covariance(spectrum: physics::Spectrum, displacement: [f64; 2]) -> f64 =
+        this.speckle(&spectrum).map(|speckle| speckle.covariance(displacement));
 
     /// Return the autocovariance, over the squared mean, at a lag of shape (2,), at most 1000
     /// speckles long.
@@ -119,12 +119,13 @@ methods! {
             let message = format!("lag must be at most 1000 speckles long, got {lag:?}");
             return Err(refused("lag", message));
         }
-        PyResult::Ok(this.speckle(&spectrum).autocovariance(lag))
+        this.speckle(&spectrum).or_raise().map(|speckle| speckle.autocovariance(lag))
     };
 
     /// Return the fractions of the light in its coherent modes, float64 of shape (n,), the largest
     /// first.
-    fn modes(spectrum: physics::Spectrum) -> Floats = this.speckle(&spectrum).modes();
+    try modes(spectrum: physics::Spectrum) -> Floats =
+        this.speckle(&spectrum).map(|speckle| speckle.modes());
 
     /// Path per length on the object by the tilt of the cell, across the line of sight, of shape
     /// (3,).

@@ -185,7 +185,7 @@ impl ResolutionCell {
     /// let contrast = |half_angle| {
     ///     let cell = cell.clone().with_source_extent(SourceExtent::disc(half_angle)?);
     ///     Ok::<_, tem00_coherence::Refusal>(
-    ///         PolychromaticSpeckle { spectrum: &spectrum, cell: &cell }.contrast()
+    ///         PolychromaticSpeckle::new(&spectrum, &cell)?.contrast()
     ///     )
     /// };
     /// assert!(contrast(0.002)? > 0.85);
@@ -223,6 +223,11 @@ impl ResolutionCell {
     /// Returns the path q per height.
     pub const fn height_factor(&self) -> f64 {
         self.height_factor
+    }
+
+    /// Returns the wavelength, in metres.
+    pub(crate) const fn wavelength(&self) -> f64 {
+        self.wavelength
     }
 
     /// Returns whether the surface is in focus.

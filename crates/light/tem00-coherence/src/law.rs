@@ -1,10 +1,12 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use glam::DVec2;
-use tem00_numerics::{cast::to_usize, disc_overlap, quadrature::integrate, sinc_pi_squared};
+use tem00_numerics::{
+    Shown, cast::to_usize, check, disc_overlap, quadrature::integrate, sinc_pi_squared,
+};
 
 use crate::{
-    ResolutionCell, Spectrum,
+    Refusal, ResolutionCell, Spectrum,
     cell::{Correlation, Difference},
     chebyshev::Tabulated,
     kernel::LagKernel,
@@ -49,7 +51,7 @@ use crate::{
 ///     wavelength: 450e-9,
 /// })?;
 /// let spectrum = Spectrum::new(450e-9, 20e-9, PeakShape::Gaussian)?;
-/// let speckle = PolychromaticSpeckle { spectrum: &spectrum, cell: &cell };
+/// let speckle = PolychromaticSpeckle::new(&spectrum, &cell)?;
 /// assert!((speckle.contrast() - 0.731).abs() < 1e-3);
 /// assert!((speckle.line_noise_ratio(Rows::Thin) - 0.809).abs() < 1e-3);
 /// # Ok::<(), tem00_coherence::Refusal>(())
@@ -64,8 +66,27 @@ use crate::{
 pub struct PolychromaticSpeckle<'a> {
     /// The spectrum of the light.
     pub spectrum: &'a Spectrum,
-    /// The paths of a resolution cell.
+    /// The paths of a resolution cell, for the wavelength of the spectrum.
     pub cell: &'a ResolutionCell,
+}
+
+impl<'a> PolychromaticSpeckle<'a> {
+    /// Creates the speckle of a cell in the light of a spectrum.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the wavelengths of both differ by more than 1 %: the laws measure the
+    /// tilt in wave numbers of the cell.
+    pub fn new(spectrum: &'a Spectrum, cell: &'a ResolutionCell) -> Result<Self, Refusal> {
+        let (wavelength, of_cell) = (spectrum.wavelength(), cell.wavelength());
+        let is_same = (wavelength - of_cell).abs() <= 0.01 * of_cell;
+        let allowed = format!(
+            "at the wavelength of the cell, {} m, to 1 %",
+            Shown(of_cell)
+        );
+        check::that(is_same, "spectrum", wavelength, "m", allowed)?;
+        Ok(Self { spectrum, cell })
+    }
 }
 
 /// Height of the sensor rows, or width of the columns, along which a line is detected.

@@ -1,8 +1,8 @@
 //! Arguments that constructors refuse, by name.
 
 use tem00_coherence::{
-    CellGeometry, DVec3, LaserLight, MixedLight, PeakShape, Relief, ResolutionCell, SourceExtent,
-    Spectrum, SpectrumForm, cascade_variance,
+    CellGeometry, DVec3, LaserLight, MixedLight, PeakShape, PolychromaticSpeckle, Relief,
+    ResolutionCell, SourceExtent, Spectrum, SpectrumForm, cascade_variance,
 };
 use tem00_testkit::refuses;
 
@@ -79,6 +79,13 @@ fn cells() {
     );
     refuses!(defocus = -1e-3 => cell.clone().with_defocus(defocus);
         defocus: [NAN, INFINITE, -INFINITE]);
+    let mono = |wavelength| Spectrum::monochromatic(wavelength).unwrap();
+    let contrast = |spectrum: &Spectrum| {
+        let speckle = PolychromaticSpeckle::new(spectrum, &cell);
+        speckle.map(|speckle| speckle.contrast())
+    };
+    refuses!(spectrum = mono(454e-9) => contrast(&spectrum);
+        spectrum: [mono(455e-9), mono(445e-9), mono(650e-9)]);
 }
 
 #[test]

@@ -55,6 +55,8 @@ REFUSED: list[tuple[Callable[[], object], str, str]] = [
     (lambda: Pupil.gaussian(radius=-1.0), "radius", "-1"),
     (lambda: Pupil.circle().overlap(np.nan, 0.0), "x", "NaN"),
     (lambda: Pupil.sampled(np.array([[2j]])), "amplitude", "2"),
+    (lambda: Pupil.sampled(np.zeros((4, 4))), "amplitude", "0"),
+    (lambda: PupilField.from_samples(np.zeros((40, 40)), (160, 160), 4.0), "samples", "0"),
     (lambda: SlicePath.circle(half_period=0), "half_period", "0"),
     (lambda: SlicePath.straight(half_period=4, length=1), "length", "1"),
     (lambda: STACK.coefficients(4), "index", "4"),

@@ -3,6 +3,7 @@ use pyo3::{exceptions::PyTypeError, prelude::*};
 use tem00_numerics::{
     Grid,
     cast::to_usize,
+    check,
     seed::{Purpose, derived},
 };
 use tem00_speckle::{self as physics, Phasors, PupilField as Field, SpeckleError};
@@ -157,8 +158,12 @@ methods! {
     ///     Width and height of the pattern in samples.
     /// speckle_size : float
     ///     Speckle size in samples: for a pupil of C samples in diameter, width / C.
-    make from_samples(samples: Grid<Complex32>, size: [usize; 2], speckle_size: f64) =
-        Field::from_samples(samples, size, speckle_size);
+    make from_samples(samples: Grid<Complex32>, size: [usize; 2], speckle_size: f64) = {
+        let is_lit = samples.values().iter().any(|z| z.norm_sqr() > 0.0);
+        check::that(is_lit, "samples", 0.0, "", "other than 0 somewhere")
+            .map_err(SpeckleError::from)
+            .and_then(|()| Field::from_samples(samples, size, speckle_size))
+    };
 
     /// Return the same field behind a pupil of another shape.
     try with_pupil(pupil: physics::Pupil) -> PupilField = this.0.clone().with_pupil(pupil);

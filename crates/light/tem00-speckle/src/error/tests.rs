@@ -48,6 +48,8 @@ fn pupils() {
         amplitude: [1.5, -0.1, f32::NAN, f32::INFINITY]);
     let turned = |t| Transmission::from_complex(disc(t).map(|&t| Complex::new(0.0, t)));
     refuses!(amplitude = -1.0 => turned(amplitude); amplitude: [1.5, f32::NAN, f32::INFINITY]);
+    let even = |t: f32| Transmission::new(&Grid::filled(4, 4, t));
+    refuses!(amplitude = 1e-45 => even(amplitude); amplitude: [0.0, -0.0]);
 }
 
 #[test]

@@ -3,8 +3,8 @@ use std::sync::Arc;
 use num_complex::Complex;
 use tem00_numerics::{
     Grid,
-    cast::to_c64,
-    cast::{to_i64, to_signed, to_usize},
+    cast::{to_c64, to_i64, to_signed, to_usize},
+    check,
 };
 
 use crate::SpeckleError;
@@ -47,7 +47,7 @@ impl Transmission {
     ///
     /// # Errors
     ///
-    /// Returns an error unless all values lie in [0, 1].
+    /// Returns an error unless all values lie in [0, 1] and one of them is above 0.
     pub fn new(amplitude: &Grid<f32>) -> Result<Self, SpeckleError> {
         if let Some(&bad) = amplitude
             .values()
@@ -56,16 +56,15 @@ impl Transmission {
         {
             return Err(amplifies(bad));
         }
-        Ok(Self {
-            values: Arc::new(amplitude.map(|&t| Complex::new(t, 0.0))),
-        })
+        Self::from_complex(amplitude.map(|&t| Complex::new(t, 0.0)))
     }
 
     /// Creates a transmission with a phase, as for a lens with aberrations.
     ///
     /// # Errors
     ///
-    /// Returns an error unless all magnitudes lie in [0, 1], within the rounding of `f32`.
+    /// Returns an error unless all magnitudes lie in [0, 1], within the rounding of `f32`, and one
+    /// of them is above 0.
     pub fn from_complex(amplitude: Grid<Complex<f32>>) -> Result<Self, SpeckleError> {
         // A phasor of cosine and sine may exceed 1 by its rounding.
         let allowed = 1.0 + 2.0 * f32::EPSILON;
@@ -74,6 +73,8 @@ impl Transmission {
         if let Some(bad) = magnitudes.find(|t| !(0.0..=allowed).contains(t)) {
             return Err(amplifies(bad));
         }
+        let is_open = amplitude.values().iter().any(|t| *t != Complex::ZERO);
+        check::that(is_open, "amplitude", 0.0, "", "above 0 somewhere")?;
         Ok(Self {
             values: Arc::new(amplitude),
         })
@@ -107,8 +108,7 @@ impl Transmission {
                 }
             }
         }
-        let power = self.product([0, 0]).re;
-        if power > 0.0 { sum.norm() / power } else { 0.0 }
+        sum.norm() / self.product([0, 0]).re
     }
 
     /// Σ t(x, y) t*(x − shift) over the cells.

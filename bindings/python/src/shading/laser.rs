@@ -188,9 +188,6 @@ impl Laser {
             vector("line_direction", line_direction.as_ref(), DVec3::X.into())?.into(),
         );
         let own = |name: &str| match name {
-            "position" => "origin",
-            "line_direction" => "line_direction",
-            "look_at" => "target",
             "waist_distance" | "focus_distance" => "focused_at",
             _ => names
                 .iter()

@@ -26,19 +26,9 @@ impl ShadingError {
     /// Returns the name of the parameter whose value was rejected, if there is one.
     pub fn parameter(&self) -> Option<&'static str> {
         match self {
-            Self::Refused(refusal) => Some(own_name(refusal.parameter)),
+            Self::Refused(refusal) => Some(refusal.parameter),
             _ => None,
         }
-    }
-}
-
-/// A laser uses the parameter names of the beam, except those of a placement.
-fn own_name(name: &'static str) -> &'static str {
-    match name {
-        "origin" => "position",
-        "direction" => "look_at",
-        "fan_axis" => "line_direction",
-        name => name,
     }
 }
 

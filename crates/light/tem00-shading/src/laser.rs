@@ -104,7 +104,8 @@ impl Laser {
                     LocatedBeam::new(beam, waist_distance[i])
                 };
                 let beam = AstigmaticBeam::new(axis(0)?, axis(1)?)?;
-                let light = SpotLight::place_astigmatic(&beam, &placement, power)?;
+                let light = SpotLight::place_astigmatic(&beam, &placement, power);
+                let light = light.map_err(of_description)?;
                 Source::Spot { beam, light }
             }
             BeamShape::Line {
@@ -115,7 +116,7 @@ impl Laser {
             } => {
                 let focus = beam(wavelength, *waist_radius, *m_squared)?;
                 let line = LaserLine::new(focus, *fan, profile.clone())?;
-                let light = line_light(&line, &placement, power)?;
+                let light = line_light(&line, &placement, power).map_err(of_description)?;
                 Source::Line { line, light }
             }
         };
@@ -265,6 +266,16 @@ impl Source {
                 },
             },
         }
+    }
+}
+
+/// Names a refused vector of a placement as the description of a laser does.
+fn of_description(refusal: Refusal) -> Refusal {
+    match refusal.parameter() {
+        "origin" => refusal.named("position"),
+        "direction" => refusal.named("look_at"),
+        "fan_axis" => refusal.named("line_direction"),
+        _ => refusal,
     }
 }
 

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use tem00_camera::Camera;
 use tem00_coherence::Relief;
 use tem00_decorrelation::ImagingGeometry;
-use tem00_numerics::Refusal;
+use tem00_numerics::{Refusal, check};
 use tem00_speckle::{
     PupilField, SpeckleError, SpeckleStack, StackNeeds, StackPlan, incoherent_fractions,
 };
@@ -164,6 +164,7 @@ impl Speckle {
         self.motions.retain(|motion| !motion.is_still());
         let geometry = self.camera.imaging_geometry(self.laser.wavelength())?;
         let light = self.light(&geometry)?;
+        check::that(self.looks > 0, "looks", self.looks, "", "at least 1")?;
         let fractions = incoherent_fractions(self.looks, self.polarisation, &light.modes)?;
         let mut demand = self.demand(&geometry)?;
         let bandwidth = light.bandwidth.map(|bandwidth| demand.beside(&bandwidth));

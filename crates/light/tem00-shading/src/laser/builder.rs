@@ -130,6 +130,8 @@ impl LaserBuilder {
         for (name, point) in [("origin", origin), ("target", target)] {
             check::each(&point.to_array(), |x| check::coordinate(name, x))?;
         }
+        let allowed = "another point than the origin";
+        check::that(target != origin, "target", target.to_array(), "m", allowed)?;
         let spectrum = match self.spectrum {
             Some(spectrum) => spectrum,
             None => Spectrum::monochromatic(self.wavelength)?,

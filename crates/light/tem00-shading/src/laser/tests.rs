@@ -27,6 +27,27 @@ fn line(profile: LineProfile, focus_curve: FocusCurve) -> Laser {
     .unwrap()
 }
 
+#[test]
+fn refused_vectors_have_the_names_of_the_caller() {
+    let spot = || Laser::spot(650e-9, 1e-3);
+    let error = |laser: Result<Laser, ShadingError>| laser.unwrap_err().to_string();
+    let along = error(spot().placed(DVec3::ZERO, DVec3::Z, DVec3::Z));
+    assert!(along.starts_with("line_direction must be"), "{along}");
+    let nowhere = error(spot().placed(DVec3::X, DVec3::X, DVec3::Z));
+    assert!(nowhere.starts_with("target must be another"), "{nowhere}");
+    let description = line(LineProfile::GaussianTan, FocusCurve::EqualPlane).description;
+    let far = error(Laser::new(LaserDescription {
+        position: DVec3::NAN,
+        ..description.clone()
+    }));
+    assert!(far.starts_with("position must be"), "{far}");
+    let there = error(Laser::new(LaserDescription {
+        look_at: description.position,
+        ..description
+    }));
+    assert!(there.starts_with("look_at must be"), "{there}");
+}
+
 /// The change of direction of a laser's light along one of two directions per length along the
 /// other, in 1/m: a component of the curvature of its wavefront.
 fn curvature(laser: &Laser, point: DVec3, [along, turned]: [DVec3; 2]) -> f64 {

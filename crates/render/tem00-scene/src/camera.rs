@@ -39,8 +39,13 @@ pub(crate) fn read(root: &Document<'_>) -> Result<MovingCamera, Problem> {
         .table("camera", KEYS)?
         .ok_or_else(|| Problem::new("the scene needs a camera: a section [camera]"))?;
     let description = description(&section)?;
-    let camera = Camera::new(description)
-        .map_err(|error| rejected(&error, Some(error.parameter), &[&section]))?;
+    let camera = Camera::new(description).map_err(|error| {
+        let problem = rejected(&error, Some(error.parameter), &[&section]);
+        if error.parameter != "focus_distance" || section.has("focus_distance") {
+            return problem;
+        }
+        problem.with_help("without focus_distance the camera has look_at in focus: it is too near")
+    })?;
     Ok(MovingCamera {
         trajectory: trajectory(&section, pivot(&section, camera.position())?)?,
         camera,

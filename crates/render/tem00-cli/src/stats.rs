@@ -236,7 +236,7 @@ fn measure(
         levels,
         mean: Moments::from_samples(values.values())?.mean(),
         contrast: Contrast::from_samples(values.values())?,
-        is_even: true,
+        has_theory: true,
         rows: Vec::new(),
         warnings: Vec::new(),
         assumptions: Vec::new(),
@@ -246,7 +246,7 @@ fn measure(
     let lags = autocovariance(values, Boundary::Finite)?;
     let size = found.size(&lags)?;
     found.evenness(&lags, size)?;
-    if is_raw && found.is_even && flat.is_none() {
+    if is_raw && found.has_theory && flat.is_none() {
         found.pedestal(image, original.as_ref())?;
     }
     found.contrast(size)?;

@@ -44,8 +44,9 @@ pub(super) struct Findings<'a> {
     pub(super) levels: Option<&'a GreyLevels>,
     pub(super) mean: f64,
     pub(super) contrast: Contrast,
-    /// Whether the light is even, as theory assumes.
-    pub(super) is_even: bool,
+    /// Whether the rows to come have a theory: the light is even, and pixels without gaps have not
+    /// turned out to explain the contrast.
+    pub(super) has_theory: bool,
     pub(super) rows: Vec<Row>,
     pub(super) warnings: Vec<String>,
     pub(super) assumptions: Vec<String>,
@@ -53,7 +54,7 @@ pub(super) struct Findings<'a> {
 
 impl Findings<'_> {
     fn row(&mut self, quantity: impl Into<String>, measured: f64, theory: Expectation) {
-        let theory = Some(theory).filter(|_| self.is_even);
+        let theory = Some(theory).filter(|_| self.has_theory);
         let theory = theory.unwrap_or(Expectation::Open);
         self.rows.push(Row::new(quantity, measured, theory));
     }
@@ -190,7 +191,7 @@ impl Findings<'_> {
                 100.0 * share
             ),
         };
-        self.is_even = false;
+        self.has_theory = false;
         self.warnings.push(format!(
             "the light does not count as even over the image, and nothing is compared with theory: \
              {found}; {help}"
@@ -279,6 +280,13 @@ impl Findings<'_> {
             for [one, other] in [[with_gaps, without_gaps], [without_gaps, with_gaps]] {
                 if self.rows[one].agrees() && !self.rows[other].agrees() {
                     self.rows[other].verdict = None;
+                    if one == without_gaps {
+                        self.has_theory = false;
+                        self.assume(
+                            "pixels without gaps explain the contrast: they average over speckle, \
+                             and no law of intensity at points is compared with them",
+                        );
+                    }
                 }
             }
         }

@@ -214,6 +214,9 @@ fn pixels_without_gaps_see_the_contrast_of_their_size() {
         None,
         "not judged as points"
     );
+    for law in ["KS p-value of exponential", "shape of Gamma"] {
+        assert_eq!(row(&found, law).theory, Expectation::Open, "{law}");
+    }
     let fine = PupilField::new(1024, 512, 10).expect("valid").pattern();
     let points = measured(Grid::from_fn(1024, 1024, |x, y| fine.values()[(x, y)]));
     assert!(row(&points, "contrast").agrees(), "{points:?}");

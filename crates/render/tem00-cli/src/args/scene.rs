@@ -22,7 +22,8 @@ pub struct SceneArgs {
     pub output: Option<PathBuf>,
 
     /// Camera samples per pixel, 1 to a million [default: from the scene].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, alias = "samples", value_name = "N")]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     spp: Option<u32>,
 
     /// Distribute samples adaptively; --spp becomes the maximum mean per pixel

@@ -65,6 +65,22 @@ def test_the_image_moves_as_a_pinhole_sees_the_point() -> None:
     assert math.isclose(sheared.correlation, dc.pupil_overlap_correlation(shift), rel_tol=1e-3)
 
 
+def test_another_wavelength_changes_the_phase_of_heights() -> None:
+    before, _ = Bench().states(np.zeros(3))
+    along = unit(Bench.eye - Bench.point) + unit(Bench.source - Bench.point)
+    # The light keeps its phases along the surface and leaves with the rest along the normal.
+    ratio = 650.3 / WAVELENGTH * 1e-9
+    tangents = ratio * along[:2] - unit(Bench.source - Bench.point)[:2]
+    leaving = math.sqrt(1 - tangents @ tangents) + unit(Bench.source - Bench.point)[2]
+    expected = 2 * math.pi * (leaving / 650.3e-9 - along[2] / WAVELENGTH)
+    change = before.height_phase_change(before.with_wavelength(650.3e-9))
+    assert change is not None
+    assert math.isclose(change, expected, rel_tol=1e-6)
+    assert before.height_phase_change(before) == 0
+    behind = before.with_illumination(dc.Illumination.collimated([0.0, 0.0, -1.0]))
+    assert before.height_phase_change(behind) is None
+
+
 def test_correlations_are_the_laws_of_a_circular_pupil() -> None:
     shifts = np.array([0.0, 0.3, 0.95, 1.0, 2.0])
     inside = np.minimum(shifts, 1)

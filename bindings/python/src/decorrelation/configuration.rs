@@ -74,6 +74,23 @@ methods! {
     /// The heights of a rough surface decorrelate its speckle then: see ``speckle_motion``.
     try with_wavelength(wavelength: f64) -> Configuration = this.0.with_wavelength(wavelength);
 
+    /// Return the change, in rad/m, of the phase per height between this state and another.
+    ///
+    /// Normally distributed heights of standard deviation σ multiply the correlation of intensity
+    /// by exp(−σ² Δq²), where Δq is this change, of q = 2π (cos i + cos o)/λ.
+    ///
+    /// Parameters
+    /// ----------
+    /// after : Configuration
+    ///     The other state of the same surface point.
+    ///
+    /// Returns
+    /// -------
+    /// float or None
+    ///     None where the pattern is decorrelated, as in a grazing view.
+    fn height_phase_change(after: physics::Configuration) -> Option<f64> =
+        this.0.height_phase_change(&after);
+
     /// Vacuum wavelength in metres.
     get wavelength -> f64;
 
@@ -107,9 +124,9 @@ functions! {
     /// Return the motion of the speckle between two states of the same surface point.
     ///
     /// The correlation is that of a surface without depth. Where the wavelength or the directions
-    /// of light and sight change, heights multiply it by exp(−σ² Δq²), with the standard deviation
-    /// σ of normally distributed heights and the change Δq of 2π (cos i + cos o)/λ: for visible
-    /// light of another colour on a surface of 1 µm almost nothing is left.
+    /// of light and sight change, heights multiply it by a factor that follows from
+    /// ``Configuration.height_phase_change``: for visible light of another colour on a surface of
+    /// 1 µm almost nothing is left.
     ///
     /// Parameters
     /// ----------

@@ -9,7 +9,6 @@ from numpy.lib.stride_tricks import as_strided
 from tem00 import beam
 from tem00 import decorrelation as dc
 from tem00 import statistics as st
-from tem00.speckle import PupilField
 
 PAIR = st.JointIntensity(0.5)
 LEVELS = st.GreyLevels.from_values([0.0, 1.0, 2.0, 1.0] * 20)
@@ -107,12 +106,6 @@ def test_one_bad_element_refuses_an_array() -> None:
     with pytest.raises(tem00.ParameterError, match=r"pixel_size must be 0 or more, got -0.25"):
         st.pixel_contrast(sizes)
     np.testing.assert_allclose(st.pixel_contrast(np.zeros(2)), 1.0, atol=1e-12)
-
-
-def test_an_object_that_holds_an_array_is_met_with_it() -> None:
-    pattern = PupilField(64, 32, 1).pattern()
-    with pytest.raises(TypeError, match=r"got object: pass its `values`"):
-        st.Contrast.from_samples(pattern)  # type: ignore[arg-type]
 
 
 def test_arrays_too_large_to_copy_are_a_memory_error() -> None:

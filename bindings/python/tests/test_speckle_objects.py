@@ -22,7 +22,7 @@ from tem00.speckle import (
     StackPlan,
     derived_seed,
 )
-from tem00.statistics import autocovariance
+from tem00.statistics import Contrast, autocovariance
 
 FIELD = PupilField(64, 16, 7)
 PLAN = StackPlan(
@@ -62,6 +62,15 @@ def test_images_are_views_that_nobody_can_write(
         image[0, 0] = 0
     with pytest.raises(ValueError, match="WRITEABLE"):
         image.flags.writeable = True
+
+
+def test_numpy_takes_patterns_and_fields_for_their_values() -> None:
+    pattern, field = FIELD.pattern(), FIELD.field()
+    assert np.shares_memory(np.asarray(pattern), pattern.values)
+    assert not np.shares_memory(np.array(pattern), pattern.values)
+    np.testing.assert_array_equal(np.asarray(field), field.values)
+    assert np.asarray(field, np.complex128).dtype == np.complex128
+    assert Contrast.from_samples(np.asarray(pattern)) == Contrast.from_samples(pattern.values)
 
 
 def test_views_share_their_memory_and_keep_it_alive() -> None:

@@ -3,7 +3,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import ClassVar, SupportsIndex, final, overload
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 from tem00._results import SliceLaw as SliceLaw
 from tem00._typing import (
     ComplexArray,
@@ -40,6 +40,9 @@ def incoherent_fractions(
 class SpeckleField:
     @property
     def values(self) -> NDArray[np.complex64]: ...
+    def __array__(
+        self, dtype: DTypeLike | None = None, copy: bool | None = None
+    ) -> NDArray[np.complexfloating]: ...
     def to_pattern(self) -> SpecklePattern: ...
     @property
     def size(self) -> tuple[int, int]: ...
@@ -53,6 +56,9 @@ class SpeckleField:
 class SpecklePattern:
     @property
     def values(self) -> NDArray[np.float32]: ...
+    def __array__(
+        self, dtype: DTypeLike | None = None, copy: bool | None = None
+    ) -> NDArray[np.floating]: ...
     @staticmethod
     def weighted_mean(weights: Vector, patterns: Iterable[SpecklePattern]) -> SpecklePattern: ...
     @property

@@ -163,11 +163,7 @@ pub(super) fn row_by_row<'py, T: Element>(
     let any = numpy.call_method1("asarray", (argument,))?;
     let dtype = any.cast::<PyUntypedArray>()?.dtype();
     if !kinds.contains(&dtype.kind()) {
-        let hint = match argument.hasattr("values")? {
-            true => ": pass its `values`",
-            false => "",
-        };
-        let message = format!("expected numbers, got {dtype}{hint}");
+        let message = format!("expected numbers, got {dtype}");
         return Err(PyTypeError::new_err(message));
     }
     // A broadcast array has more elements than bytes.

@@ -6,6 +6,7 @@ use pyo3::{
     exceptions::{PyMemoryError, PyRuntimeError},
     prelude::*,
     pyclass::boolean_struct::True,
+    types::PyDict,
 };
 use tem00_numerics::{Grid, available_memory};
 
@@ -30,6 +31,20 @@ pub(crate) fn view<'py, C: PyClass<Frozen = True> + Sync, T: Element>(
     // Not through a borrow to write, which fails while another thread reads the same values.
     array.call_method1("setflags", (false,))?;
     Ok(Some(array))
+}
+
+/// Returns the values of an object as its ``__array__`` gives them to NumPy.
+pub(crate) fn array<'py>(
+    owner: &Bound<'py, PyAny>,
+    dtype: Option<Bound<'py, PyAny>>,
+    copy: Option<bool>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = owner.py();
+    let keywords = PyDict::new(py);
+    keywords.set_item("dtype", dtype)?;
+    keywords.set_item("copy", copy)?;
+    let array = py.import("numpy")?.getattr("array")?;
+    array.call((owner.getattr("values")?,), Some(&keywords))
 }
 
 /// Checks that the machine has memory for an image of `bytes_each` bytes for each of its samples,

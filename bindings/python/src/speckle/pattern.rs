@@ -2,7 +2,7 @@ use numpy::Complex32;
 use pyo3::prelude::*;
 use tem00_speckle as physics;
 
-use super::images::{View, view};
+use super::images::{View, array, view};
 use crate::error::OrRaise;
 
 class! {
@@ -16,6 +16,15 @@ impl SpecklePattern {
     #[getter]
     fn values<'py>(slf: &Bound<'py, Self>) -> PyResult<View<'py, f32>> {
         view(slf, |this| Some(this.0.values()))
+    }
+
+    #[pyo3(signature = (dtype = None, copy = None))]
+    fn __array__<'py>(
+        slf: &Bound<'py, Self>,
+        dtype: Option<Bound<'py, PyAny>>,
+        copy: Option<bool>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        array(slf, dtype, copy)
     }
 }
 
@@ -67,6 +76,15 @@ impl SpeckleField {
     #[getter]
     fn values<'py>(slf: &Bound<'py, Self>) -> PyResult<View<'py, Complex32>> {
         view(slf, |this| Some(this.0.values()))
+    }
+
+    #[pyo3(signature = (dtype = None, copy = None))]
+    fn __array__<'py>(
+        slf: &Bound<'py, Self>,
+        dtype: Option<Bound<'py, PyAny>>,
+        copy: Option<bool>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        array(slf, dtype, copy)
     }
 }
 

@@ -1,6 +1,9 @@
 //! Arguments of Python as values of the library.
 
-use pyo3::{exceptions::PyTypeError, prelude::*};
+use pyo3::{
+    exceptions::{PyTypeError, PyValueError},
+    prelude::*,
+};
 use tem00_decorrelation::{DMat3, DVec2, DVec3};
 use tem00_numerics::Grid;
 
@@ -27,11 +30,17 @@ pub(crate) fn object<'a, 'py, T: pyo3::PyClass>(
     given.cast().map_err(|error| kind(name, PyErr::from(error)))
 }
 
-/// Names the argument in a `TypeError`, as PyO3 does.
+/// Names the argument in the `TypeError` or `ValueError` of something that is read without a name.
 pub(crate) fn kind(name: &str, error: PyErr) -> PyErr {
-    Python::attach(|py| match error.is_instance_of::<PyTypeError>(py) {
-        true => PyTypeError::new_err(format!("argument '{name}': {}", error.value(py))),
-        false => error,
+    Python::attach(|py| {
+        let message = format!("argument '{name}': {}", error.value(py));
+        if error.is_instance_of::<PyTypeError>(py) {
+            PyTypeError::new_err(message)
+        } else if error.get_type(py).is(py.get_type::<PyValueError>()) {
+            refused(name, message)
+        } else {
+            error
+        }
     })
 }
 
@@ -60,6 +69,12 @@ impl<'py> Take<'py> for f64 {
         }
         let message = format!("{name} must be from 10 nm to 1 mm, in metres, got {value:?} m");
         Err(refused(name, message))
+    }
+}
+
+impl<'py> Take<'py> for Numbers<'py> {
+    fn take(given: &Bound<'py, PyAny>, name: &'static str) -> PyResult<Self> {
+        extracted(given, name)
     }
 }
 

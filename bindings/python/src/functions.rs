@@ -38,8 +38,9 @@ macro_rules! functions {
         #[pyo3::pyfunction]
         pub(super) fn $name<'py>(
             py: pyo3::Python<'py>,
-            $($argument: $crate::arrays::Numbers<'py>),+
+            $($argument: pyo3::Bound<'py, pyo3::PyAny>),+
         ) -> pyo3::PyResult<$crate::arrays::Values<'py>> {
+            take!($($argument: $crate::arrays::Numbers<'_>),+);
             $($($argument.$check(stringify!($argument))?;)?)+
             let arguments = columns!($crate::arrays::LIMIT; $($argument),+);
             $crate::arrays::map_inner(py, arguments, &[], |[$($argument),+]| [$value])
@@ -51,8 +52,9 @@ macro_rules! functions {
         #[pyo3::pyfunction]
         pub(super) fn $name<'py>(
             py: pyo3::Python<'py>,
-            $argument: $crate::arrays::Numbers<'py>,
+            $argument: pyo3::Bound<'py, pyo3::PyAny>,
         ) -> pyo3::PyResult<$crate::arrays::Values<'py>> {
+            take!($argument: $crate::arrays::Numbers<'_>);
             $crate::arrays::try_map(py, (stringify!($argument), &$argument), physics::$name)
         }
         functions! { $($items)* }

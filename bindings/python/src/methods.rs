@@ -80,8 +80,9 @@ macro_rules! methods {
             fn $name<'py>(
                 &self,
                 py: pyo3::Python<'py>,
-                $($argument: $crate::arrays::Numbers<'py>),+
+                $($argument: pyo3::Bound<'py, pyo3::PyAny>),+
             ) -> pyo3::PyResult<$crate::arrays::Values<'py>> {
+                take!($($argument: $crate::arrays::Numbers<'_>),+);
                 $($($argument.$check(stringify!($argument))?;)?)+
                 let $this = self;
                 let arguments = columns!(LIMIT; $($argument),+);
@@ -111,8 +112,9 @@ macro_rules! methods {
             fn $name<'py>(
                 &self,
                 py: pyo3::Python<'py>,
-                $($argument: $crate::arrays::Numbers<'py>),+
+                $($argument: pyo3::Bound<'py, pyo3::PyAny>),+
             ) -> pyo3::PyResult<$crate::arrays::Values<'py>> {
+                take!($($argument: $crate::arrays::Numbers<'_>),+);
                 let $this = self;
                 let arguments = columns!(LIMIT; $($argument $(: $size)?),+);
                 $crate::arrays::map_inner(py, arguments, &[$($count)?], $value)
@@ -130,8 +132,9 @@ macro_rules! methods {
             fn $name<'py>(
                 &self,
                 py: pyo3::Python<'py>,
-                $argument: $crate::arrays::Numbers<'py>,
+                $argument: pyo3::Bound<'py, pyo3::PyAny>,
             ) -> pyo3::PyResult<$crate::arrays::Values<'py>> {
+                take!($argument: $crate::arrays::Numbers<'_>);
                 let $this = self;
                 $crate::arrays::try_map(
                     py,

@@ -9,10 +9,12 @@ from numpy.lib.stride_tricks import as_strided
 from tem00 import beam
 from tem00 import decorrelation as dc
 from tem00 import statistics as st
+from tem00.speckle import Pupil, PupilField, SpecklePattern
 
 PAIR = st.JointIntensity(0.5)
 LEVELS = st.GreyLevels.from_values([0.0, 1.0, 2.0, 1.0] * 20)
 assert LEVELS is not None
+BEAM = beam.GaussianBeam.from_waist(650e-9, 1e-4)
 CAMERA = dc.ImagingGeometry.from_lens(650e-9, 25e-3, 8.0, 0.3, 3.45e-6)
 
 
@@ -106,6 +108,41 @@ def test_one_bad_element_refuses_an_array() -> None:
     with pytest.raises(tem00.ParameterError, match=r"pixel_size must be 0 or more, got -0.25"):
         st.pixel_contrast(sizes)
     np.testing.assert_allclose(st.pixel_contrast(np.zeros(2)), 1.0, atol=1e-12)
+
+
+MASKED = np.ma.masked_greater([[0.25, 0.5], [0.75, 1e20]], 1.0)
+
+
+# One door for each way in which arrays are read.
+@pytest.mark.parametrize(
+    ("parameter", "function"),
+    [
+        ("samples", st.Contrast.from_samples),
+        ("pixel_size", st.pixel_contrast),
+        ("image", lambda image: st.autocovariance(image, "finite")),
+        ("image", lambda image: st.autocovariance(image.astype(np.float32), "finite")),
+        ("amplitude", Pupil.sampled),
+    ],
+)
+def test_masked_elements_are_refused(parameter: str, function: Callable[[object], object]) -> None:
+    with pytest.raises(tem00.ParameterError, match="some elements are masked") as caught:
+        function(MASKED)
+    assert caught.value.parameter == parameter
+    function(MASKED.filled(0.5))
+    function(np.ma.array(MASKED.filled(0.5)))
+
+
+def test_errors_of_what_numpy_cannot_read_name_the_argument() -> None:
+    with pytest.raises(TypeError, match="argument 'z': expected numbers, got <U1"):
+        BEAM.radius_at("a")  # type: ignore[arg-type]
+    with pytest.raises(tem00.ParameterError, match="argument 'z': .*inhomogeneous") as caught:
+        BEAM.radius_at([[1.0], [1.0, 2.0]])
+    assert caught.value.parameter == "z"
+    field = PupilField(64, 32, 1)
+    with pytest.raises(TypeError, match="argument 'patterns'"):
+        SpecklePattern.weighted_mean([1.0], [field])  # type: ignore[list-item]
+    with pytest.raises(tem00.ParameterError, match="size must be a whole number of 0 or more"):
+        PupilField(-4, 16, 1)
 
 
 def test_arrays_too_large_to_copy_are_a_memory_error() -> None:

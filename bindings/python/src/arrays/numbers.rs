@@ -148,18 +148,26 @@ pub(crate) fn length(name: &'static str, value: f64) -> PyResult<f64> {
 
 /// Returns an array of `T` that is aligned and lies in memory row by row: the argument itself where
 /// it is one, else a copy. `kinds` are NumPy's letters for the kinds of numbers that are allowed.
+/// Masked elements are a `ValueError`: the memory behind them holds anything.
 pub(super) fn row_by_row<'py, T: Element>(
     argument: &Bound<'py, PyAny>,
     kinds: &[u8],
 ) -> PyResult<PyReadonlyArrayDyn<'py, T>> {
+    let py = argument.py();
+    let numpy = py.import("numpy")?;
+    if !argument.is_exact_instance_of::<PyUntypedArray>() && argument.hasattr("mask")? {
+        let masks = numpy.getattr("ma")?;
+        if masks.call_method1("is_masked", (argument,))?.is_truthy()? {
+            let message = "some elements are masked: pass its `compressed()` or `filled(…)`";
+            return Err(PyValueError::new_err(message));
+        }
+    }
     if let Ok(array) = argument.cast::<PyArrayDyn<T>>()
         && array.is_c_contiguous()
         && array.is_aligned()
     {
         return Ok(array.try_readonly()?);
     }
-    let py = argument.py();
-    let numpy = py.import("numpy")?;
     let any = numpy.call_method1("asarray", (argument,))?;
     let dtype = any.cast::<PyUntypedArray>()?.dtype();
     if !kinds.contains(&dtype.kind()) {

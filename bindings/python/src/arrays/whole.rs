@@ -21,7 +21,11 @@ impl<'py> FromPyObject<'_, 'py> for Whole<'py> {
 impl<'py> Whole<'py> {
     /// Returns a count or a seed.
     pub(crate) fn unsigned<T: FromPyObjectOwned<'py>>(&self, name: &str) -> PyResult<T> {
-        self.extract_as(name, &format!("from 0 to 2**{} - 1", 8 * size_of::<T>()))
+        let allowed = match self.0.lt(0)? {
+            true => "of 0 or more".to_owned(),
+            false => format!("below 2**{}", 8 * size_of::<T>()),
+        };
+        self.extract_as(name, &allowed)
     }
 
     /// Returns a number of either sign.

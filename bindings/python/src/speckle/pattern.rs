@@ -3,7 +3,7 @@ use pyo3::prelude::*;
 use tem00_speckle as physics;
 
 use super::images::{View, array, view};
-use crate::error::OrRaise;
+use crate::{arguments::Take, error::OrRaise};
 
 class! {
     /// A speckle pattern: intensity with mean 1, periodic in both axes.
@@ -46,7 +46,7 @@ methods! {
         take!(weights: Vec<f64>);
         let mut failed = None;
         let patterns = patterns.try_iter()?.map_while(|pattern| {
-            let pattern = pattern.and_then(|p| Ok(p.cast::<Self>()?.get().0.clone()));
+            let pattern = pattern.and_then(|one| Take::take(&one, "patterns"));
             pattern.map_err(|error| failed = Some(error)).ok()
         });
         let mean = physics::SpecklePattern::weighted_mean(&weights, patterns);

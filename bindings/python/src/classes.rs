@@ -1,5 +1,33 @@
 //! Declarations of classes.
 
+/// Declares what objects that never change have in common: a copy is the object itself, and equal
+/// objects have equal hashes, of the text `$text`.
+macro_rules! immutable {
+    ($class:ident) => {
+        immutable!($class, this => pyo3::types::PyAnyMethods::repr(this.as_any())?.to_string());
+    };
+    ($class:ident, $this:ident => $text:expr) => {
+        #[pyo3::pymethods]
+        impl $class {
+            fn __copy__(slf: pyo3::Bound<'_, Self>) -> pyo3::Bound<'_, Self> {
+                slf
+            }
+
+            fn __deepcopy__<'py>(
+                slf: pyo3::Bound<'py, Self>,
+                _memo: &pyo3::Bound<'py, pyo3::PyAny>,
+            ) -> pyo3::Bound<'py, Self> {
+                slf
+            }
+
+            fn __hash__($this: &pyo3::Bound<'_, Self>) -> pyo3::PyResult<u64> {
+                let text: String = $text;
+                Ok($crate::pickling::hash(&text))
+            }
+        }
+    };
+}
+
 /// Declares a class that holds an object of the library: frozen, compared by value, made from the
 /// library's object by [`From`], and taken as an argument where the library's object is declared.
 macro_rules! class {
@@ -8,6 +36,8 @@ macro_rules! class {
         #[pyo3::pyclass(frozen, eq, module = $module)]
         #[derive(Clone, Debug, PartialEq $(, $derive)?)]
         pub(crate) struct $class(pub(crate) $inner);
+
+        immutable!($class);
 
         impl From<$inner> for $class {
             fn from(inner: $inner) -> Self {
@@ -37,6 +67,9 @@ macro_rules! kept_class {
             inner: $inner,
             made: $crate::pickling::Made,
         }
+
+        // What makes two equal objects may differ.
+        immutable!($class, this => format!("{:?}", this.get().inner));
 
         impl PartialEq for $class {
             fn eq(&self, other: &Self) -> bool {

@@ -1,5 +1,7 @@
 //! Representation and pickling of objects.
 
+use std::hash::{DefaultHasher, Hash, Hasher};
+
 use numpy::Complex32;
 use pyo3::{
     PyTypeInfo,
@@ -65,6 +67,13 @@ pub(crate) fn call(object: &Bound<'_, PyAny>, name: &str, arguments: &[&str]) ->
         "new" => format!("{class}({arguments})"),
         _ => format!("{class}.{name}({arguments})"),
     })
+}
+
+/// Hashes what an object shows, which is equal for equal objects but for the sign of zeros.
+pub(crate) fn hash(text: &str) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    text.replace('-', "").hash(&mut hasher);
+    hasher.finish()
 }
 
 /// An argument that makes an object again.

@@ -5,12 +5,15 @@ import importlib
 import pickle
 import threading
 import tracemalloc
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 import tem00
+from tem00 import decorrelation as dc
 from tem00 import statistics as st
 from tem00.beam import AstigmaticBeam
+from tem00.speckle import PupilField
 
 
 def test_every_module_can_be_imported_by_its_name() -> None:
@@ -174,3 +177,35 @@ def test_laws_survive_pickling_and_their_repr_makes_them(law: object) -> None:
 
 def test_functions_survive_pickling() -> None:
     assert pickle.loads(pickle.dumps(st.pixel_contrast)) is st.pixel_contrast
+def thick_lens(**focus: float) -> dc.ImagingGeometry:
+    return dc.ImagingGeometry.from_thick_lens(650e-9, 25e-3, 8.0, 1.0, 3.45e-6, **focus)
+
+
+# One of each way in which classes are declared, made twice.
+EQUALS: list[Callable[[], tuple[object, object]]] = [
+    lambda: (tem00.Camera(position=(0.0, 0.1, 0.3)), tem00.Camera(position=(-0.0, 0.1, 0.3))),
+    lambda: (tem00.Pose.along((-0.0, 0.0, 1.0)), tem00.Pose.along((0.0, 0.0, 1.0))),
+    lambda: (thick_lens(magnification=1.0), thick_lens(surface_to_principal_plane=50e-3)),
+    lambda: (st.IncoherentSum([2.0, 1.0]), st.IncoherentSum([2.0, 1.0])),
+    lambda: (PupilField(64, 16, 7).pattern(), PupilField(64, 16, 7).pattern()),
+]
+
+
+@pytest.mark.parametrize("make", EQUALS)
+def test_equal_objects_have_equal_hashes(make: Callable[[], tuple[object, object]]) -> None:
+    first, second = make()
+    assert first == second
+    assert {first: 1}[second] == 1
+
+
+def test_hashes_tell_objects_apart() -> None:
+    assert len({hash(tem00.Pose.along((0.0, 0.0, z))) for z in (1.0, 2.0, 3.0)}) == 3
+
+
+@pytest.mark.parametrize("make", EQUALS)
+def test_a_copy_is_the_object_itself(make: Callable[[], tuple[object, object]]) -> None:
+    thing, _ = make()
+    assert copy.copy(thing) is thing
+    assert copy.deepcopy([thing])[0] is thing
+
+

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import ClassVar, SupportsIndex, final
+from typing import SupportsIndex, final
 import numpy as np
 from numpy.typing import NDArray
 from tem00._results import SpeckleShift as SpeckleShift
@@ -49,7 +49,7 @@ class Camera:
     def f_number(self) -> float: ...
     def __eq__(self, value: object, /) -> bool: ...
     def __ne__(self, value: object, /) -> bool: ...
-    __hash__: ClassVar[None]  # type: ignore[assignment]
+    def __hash__(self) -> int: ...
 
 @final
 class Laser:
@@ -90,7 +90,7 @@ class Laser:
     def power(self) -> float: ...
     def __eq__(self, value: object, /) -> bool: ...
     def __ne__(self, value: object, /) -> bool: ...
-    __hash__: ClassVar[None]  # type: ignore[assignment]
+    def __hash__(self) -> int: ...
 
 @final
 class Speckle:

@@ -21,6 +21,8 @@ pub(crate) struct SpeckleFrame {
     pub(super) motion: Motion,
 }
 
+immutable!(SpeckleFrame);
+
 methods! {
     impl SpeckleFrame as this: this.frame;
 

@@ -47,6 +47,8 @@ pub(crate) struct Speckle(physics::PreparedSpeckle);
 
 #[pymethods]
 impl Speckle {
+immutable!(Speckle);
+
     fn __str__(&self) -> String {
         self.0.to_string()
     }

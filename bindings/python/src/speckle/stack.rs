@@ -24,6 +24,8 @@ use crate::{
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SpeckleStack(physics::SpeckleStack, physics::PupilField);
 
+immutable!(SpeckleStack);
+
 /// Options with a limit of the memory.
 pub(super) fn within(memory_limit: Option<u64>) -> StackOptions {
     StackOptions {

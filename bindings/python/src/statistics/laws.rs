@@ -144,6 +144,8 @@ law! {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct IncoherentSum(physics::IncoherentSum, Vec<f64>);
 
+immutable!(IncoherentSum);
+
 methods! {
     impl IncoherentSum as this: this.0;
 

@@ -22,6 +22,10 @@ def test_every_module_can_be_imported_by_its_name() -> None:
         assert module.__name__ == f"tem00.{name}"
 
 
+def test_names_of_the_package_are_those_it_offers() -> None:
+    assert dir(tem00) == sorted(tem00.__all__)
+
+
 def test_numbers_give_a_float_and_arrays_an_array_of_their_shape() -> None:
     assert type(st.exponential_density(1.0)) is float
     assert type(st.exponential_density(np.float64(1.0))) is float
@@ -175,8 +179,6 @@ def test_laws_survive_pickling_and_their_repr_makes_them(law: object) -> None:
     assert eval(repr(law), vars(st)) == law
 
 
-def test_functions_survive_pickling() -> None:
-    assert pickle.loads(pickle.dumps(st.pixel_contrast)) is st.pixel_contrast
 def thick_lens(**focus: float) -> dc.ImagingGeometry:
     return dc.ImagingGeometry.from_thick_lens(650e-9, 25e-3, 8.0, 1.0, 3.45e-6, **focus)
 
@@ -209,3 +211,5 @@ def test_a_copy_is_the_object_itself(make: Callable[[], tuple[object, object]]) 
     assert copy.deepcopy([thing])[0] is thing
 
 
+def test_functions_survive_pickling() -> None:
+    assert pickle.loads(pickle.dumps(st.pixel_contrast)) is st.pixel_contrast

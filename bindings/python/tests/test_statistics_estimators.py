@@ -37,6 +37,7 @@ def test_the_contrast_is_that_of_scipy() -> None:
     factor = math.exp(scipy_stats.norm.ppf(0.95) * contrast.standard_error / contrast.value)
     assert math.isclose(high, contrast.value * factor, rel_tol=1e-9)
     assert math.isclose(low, contrast.value / factor, rel_tol=1e-9)
+    assert str(contrast) == f"{contrast.value:.3f} ± {contrast.standard_error:.3f}"
     assert contrast.with_speckle_size(3.0).standard_error > 2 * contrast.standard_error
     image = pattern(3, size=48, pupil=16)
     fluctuation = image - image.mean(dtype=float)

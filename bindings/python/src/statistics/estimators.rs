@@ -1,6 +1,7 @@
 use super::physics::{self, Boundary};
 use numpy::Complex32;
-use tem00_numerics::Grid;
+use pyo3::prelude::*;
+use tem00_numerics::{Grid, cast::to_usize};
 
 use super::laws::GammaIntensity;
 use crate::{arguments::Samples, arrays::named_tuple, error::OrRaise};
@@ -46,6 +47,16 @@ methods! {
     get standard_error -> f64;
 
     shown value, standard_error;
+}
+
+#[pymethods]
+impl Contrast {
+    /// Both numbers, to two digits of the error.
+    fn __str__(&self) -> String {
+        let (value, error) = (self.0.value(), self.0.standard_error());
+        let digits = to_usize((1.0 - error.log10().floor()).clamp(0.0, 17.0));
+        format!("{value:.digits$} ± {error:.digits$}")
+    }
 }
 
 class! {

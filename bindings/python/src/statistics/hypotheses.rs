@@ -100,7 +100,10 @@ class! {
 impl GoodnessOfFit {
     fn __repr__(&self) -> String {
         match self.0.kolmogorov_smirnov() {
-            Ok(test) => format!("<GoodnessOfFit: kolmogorov_smirnov={:?}>", test.p_value),
+            Ok(test) => format!(
+                "<GoodnessOfFit: kolmogorov_smirnov p_value={:?}>",
+                test.p_value
+            ),
             Err(_) => "<GoodnessOfFit: too few samples>".to_owned(),
         }
     }

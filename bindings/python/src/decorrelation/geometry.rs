@@ -24,14 +24,16 @@ methods! {
     ///
     /// Parameters
     /// ----------
-    /// wavelength, focal_length, f_number : float
-    ///     Light and lens.
+    /// wavelength, focal_length : float
+    ///     Vacuum wavelength and focal length, in metres.
+    /// f_number : float
+    ///     Focal length by diameter of the entrance pupil.
     /// pupil_magnification : float
     ///     Diameter of the exit pupil over that of the entrance pupil.
     /// pixel_pitch : float
-    ///     Pixel pitch of the sensor.
+    ///     Pixel pitch of the sensor, in metres.
     /// magnification, surface_to_principal_plane, surface_to_pupil : float, optional
-    ///     The focus, by one of these.
+    ///     The focus, by one of these; distances in metres.
     #[staticmethod]
     #[pyo3(signature = (
         wavelength, focal_length, f_number, pupil_magnification, pixel_pitch, *,
@@ -135,12 +137,14 @@ methods! {
     ///
     /// Parameters
     /// ----------
-    /// wavelength, focal_length, f_number : float
-    ///     Light and lens.
+    /// wavelength, focal_length : float
+    ///     Vacuum wavelength and focal length, in metres.
+    /// f_number : float
+    ///     Focal length by diameter of the pupil.
     /// surface_to_pupil : float
-    ///     Distance of the surface from the lens.
+    ///     Distance of the surface from the lens, in metres.
     /// pixel_pitch : float
-    ///     Pixel pitch of the sensor.
+    ///     Pixel pitch of the sensor, in metres.
     keep from_lens(wavelength, focal_length, f_number, surface_to_pupil, pixel_pitch) =
         physics::ImagingGeometry::from_lens(physics::LensData {
             wavelength, focal_length, f_number, surface_to_pupil, pixel_pitch,
@@ -151,13 +155,14 @@ methods! {
     /// Parameters
     /// ----------
     /// wavelength : float
-    ///     Vacuum wavelength.
+    ///     Vacuum wavelength, in metres.
     /// surface_to_pupil, pupil_to_image : float
-    ///     Distances from the entrance pupil to the surface and from the exit pupil to the sensor.
+    ///     Distances from the entrance pupil to the surface and from the exit pupil to the sensor,
+    ///     in metres.
     /// pupil_diameter : float
-    ///     Diameter of the entrance pupil.
+    ///     Diameter of the entrance pupil, in metres.
     /// pixel_pitch : float
-    ///     Pixel pitch of the sensor.
+    ///     Pixel pitch of the sensor, in metres.
     keep from_distances(wavelength, surface_to_pupil, pupil_to_image, pupil_diameter, pixel_pitch) =
         physics::ImagingGeometry::from_distances(physics::PupilDistances {
             wavelength, surface_to_pupil, pupil_to_image, pupil_diameter, pixel_pitch,

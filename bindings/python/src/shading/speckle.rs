@@ -31,7 +31,9 @@ use crate::{
 ///     of the speckle is looked for. Without them it is where the light of the laser crosses the
 ///     plane in focus. A laser with a linewidth or an extent needs them.
 /// memory : int, optional
-///     Bytes that the patterns may take; 256 MiB if left out.
+///     Bytes that the patterns may take; 256 MiB if left out. With poses there are 32, 16, 8
+///     or 4 slices per pupil diameter, the most that fit: look-ups between them exceed the
+///     correlation law by up to 0.04, 0.08, 0.14 or 0.23.
 /// looks : int, optional
 ///     Number of equal independent patterns that add up, which lowers the contrast to 1/√looks; 1
 ///     if left out.
@@ -45,10 +47,10 @@ use crate::{
 #[derive(Clone, Debug)]
 pub(crate) struct Speckle(physics::PreparedSpeckle);
 
-#[pymethods]
-impl Speckle {
 immutable!(Speckle);
 
+#[pymethods]
+impl Speckle {
     fn __str__(&self) -> String {
         self.0.to_string()
     }

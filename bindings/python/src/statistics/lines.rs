@@ -14,6 +14,11 @@ functions! {
 
     /// Return the standard deviation of the centroid of a wide laser line under speckle.
     ///
+    /// It is √(radius · ``speckle_length(row_height)`` / (8 √π)) of one polarised pattern, to first
+    /// order in the fluctuations: within 1 % from a radius of one speckle on for a line that a lens
+    /// images on a rough surface, and within 5 % from 4.2 speckles on for a pattern times the
+    /// irradiance, as in renderers, which scatters less.
+    ///
     /// Parameters
     /// ----------
     /// radius, row_height : float or array_like

@@ -59,10 +59,7 @@ impl Case {
         })?
         .with_source_extent(SourceExtent::disc(self.half_angle)?);
         let line = Spectrum::new(self.wavelength, self.linewidth, PeakShape::Gaussian)?;
-        let speckle = PolychromaticSpeckle {
-            spectrum: &line,
-            cell: &cell,
-        };
+        let speckle = PolychromaticSpeckle::new(&line, &cell)?;
         Ok(Left {
             contrast: speckle.contrast(),
             noise: speckle.line_noise_ratio(Rows::Thin),

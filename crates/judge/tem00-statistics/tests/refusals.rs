@@ -181,7 +181,7 @@ fn messages_say_what_is_allowed_and_what_was_given() {
         ),
         (
             pearson_correlation(&image, &Grid::filled(4, 5, 1.0)).err(),
-            "second must be 4 wide and 4 high as the first grid, got [4, 5]",
+            "second must be 4 wide and 4 high, like the first grid, got [4, 5]",
         ),
         (
             kolmogorov_smirnov(&[1.0], |_| 2.0).err(),

@@ -251,7 +251,7 @@ pub fn pearson_correlation(first: &Grid<f32>, second: &Grid<f32>) -> Result<f64,
     if size(first) != size(second) {
         let (width, height) = size(first);
         let got = <[usize; 2]>::from(size(second)).map(|side| side as f64);
-        let allowed = format!("{width} wide and {height} high as the first grid");
+        let allowed = format!("{width} wide and {height} high, like the first grid");
         return Err(StatisticsError::refused("second", got, allowed));
     }
     let a = Scaled::new(first.values())?;

@@ -156,29 +156,26 @@ impl Answer {
 
     /// Returns the fractions of the variance to quote that the terms contribute, each alone.
     fn parts(&self) -> Vec<(MeasurementInput, f64)> {
-        let squares = self.squares();
-        let sum: f64 = squares.iter().map(|(_, square)| square).sum();
+        let trials = self.quoted_trials();
+        let square = |term: &BudgetTerm| {
+            let by_trials = trials.and_then(|trials| trials.term(term.source));
+            by_trials
+                .map_or(term.contribution(), |found| found.uncertainty)
+                .powi(2)
+        };
+        let terms = self.budget.terms();
+        let sum: f64 = terms.iter().map(square).sum();
         // By trials, one alone may have more than all by chance.
         let variance = self.quoted()[0].powi(2).max(sum);
-        let part = |(source, square)| (MeasurementInput::Term(source), square / variance);
-        squares.into_iter().map(part).collect()
+        let part =
+            |term: &BudgetTerm| (MeasurementInput::Term(term.source), square(term) / variance);
+        terms.iter().map(part).collect()
     }
 
     /// Returns the fraction of the variance that is quoted by trials and that no source has alone.
     pub(super) fn joint_part(&self) -> Option<f64> {
         self.quoted_trials()?;
         Some(1.0 - self.parts().iter().map(|(_, part)| part).sum::<f64>())
-    }
-
-    /// Returns the variance of a height by each source alone, by the method to quote.
-    fn squares(&self) -> Vec<(UncertaintySource, f64)> {
-        let trials = self.quoted_trials();
-        let square = |term: &BudgetTerm| {
-            let by_trials = trials.and_then(|trials| trials.term(term.source));
-            let alone = by_trials.map_or(term.contribution(), |found| found.uncertainty);
-            (term.source, alone.powi(2))
-        };
-        self.budget.terms().iter().map(square).collect()
     }
 }
 

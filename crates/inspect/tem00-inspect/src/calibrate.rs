@@ -17,7 +17,7 @@ use tem00_report::{
     image::{RawFormat, RawImage, read_raw},
     interrupt,
     progress::Progress,
-    report::Report,
+    report::{Report, units::MILLIMETRES},
 };
 use tem00_triangulation::TriangulationError;
 
@@ -64,7 +64,17 @@ pub(crate) fn run(args: &CalibrateArgs, out: &mut impl Write) -> Result<(), Fail
         )
     })?;
     write_calibration(&target, &calibration)?;
-    report(&calibration, &found).print(false, &[target], out)
+    let mut report = report(&calibration, &found);
+    let distance = calibration.camera().image_distance();
+    if let Some(focal_length) = args.focal_length.filter(|length| *length >= distance) {
+        report.warning(format!(
+            "--focal-length {} is not below the image distance of {}, as in a camera that is in \
+             focus: the boards are taken to be in focus instead",
+            MILLIMETRES.text(focal_length),
+            MILLIMETRES.text(distance)
+        ));
+    }
+    report.print(false, &[target], out)
 }
 
 fn model(args: &CalibrateArgs, resolution: [usize; 2]) -> CameraModel {

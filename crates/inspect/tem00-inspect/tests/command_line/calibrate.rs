@@ -135,8 +135,10 @@ fn what_photographs_of_lines_did_not_give_is_told() {
     assert_has(&told, &parts);
 
     photograph(&path(4), &pose(4), |point| 200.0 * line(point));
-    let Said { out, told } = said(folder.path(), &command, 0);
+    let line = format!("{command} --focal-length 14mm");
+    let Said { out, told } = said(folder.path(), &line, 0);
     let parts = [
+        "--focal-length 14 mm is not below the image distance of ",
         "3 of 5 pictures of the line gave no point: line_1 (pixels are saturated: expose shorter), \
          line_2",
         "line_3 (no line was found",

@@ -5,27 +5,37 @@ use tem00_speckle as physics;
 use super::images::{View, array, view};
 use crate::{arguments::Take, error::OrRaise};
 
+/// Gives the samples of an object to Python, and to NumPy for the object itself.
+macro_rules! samples {
+    ($(#[$doc:meta])+ $class:ident: $sample:ty) => {
+        #[pymethods]
+        impl $class {
+            $(#[$doc])+
+            #[getter]
+            fn values<'py>(slf: &Bound<'py, Self>) -> PyResult<View<'py, $sample>> {
+                view(slf, |this| Some(this.0.values()))
+            }
+
+            #[pyo3(signature = (dtype = None, copy = None))]
+            fn __array__<'py>(
+                slf: &Bound<'py, Self>,
+                dtype: Option<Bound<'py, PyAny>>,
+                copy: Option<bool>,
+            ) -> PyResult<Bound<'py, PyAny>> {
+                array(slf, dtype, copy)
+            }
+        }
+    };
+}
+
 class! {
     /// A speckle pattern: intensity with mean 1, periodic in both axes.
     "tem00.speckle" SpecklePattern(physics::SpecklePattern)
 }
 
-#[pymethods]
-impl SpecklePattern {
+samples! {
     /// Intensity at every sample, float32 [row, column]: a read-only view without a copy.
-    #[getter]
-    fn values<'py>(slf: &Bound<'py, Self>) -> PyResult<View<'py, f32>> {
-        view(slf, |this| Some(this.0.values()))
-    }
-
-    #[pyo3(signature = (dtype = None, copy = None))]
-    fn __array__<'py>(
-        slf: &Bound<'py, Self>,
-        dtype: Option<Bound<'py, PyAny>>,
-        copy: Option<bool>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        array(slf, dtype, copy)
-    }
+    SpecklePattern: f32
 }
 
 methods! {
@@ -70,22 +80,9 @@ class! {
     "tem00.speckle" SpeckleField(physics::SpeckleField)
 }
 
-#[pymethods]
-impl SpeckleField {
+samples! {
     /// Amplitude at every sample, complex64 [row, column]: a read-only view without a copy.
-    #[getter]
-    fn values<'py>(slf: &Bound<'py, Self>) -> PyResult<View<'py, Complex32>> {
-        view(slf, |this| Some(this.0.values()))
-    }
-
-    #[pyo3(signature = (dtype = None, copy = None))]
-    fn __array__<'py>(
-        slf: &Bound<'py, Self>,
-        dtype: Option<Bound<'py, PyAny>>,
-        copy: Option<bool>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        array(slf, dtype, copy)
-    }
+    SpeckleField: Complex32
 }
 
 methods! {

@@ -2,7 +2,6 @@ use core::{
     f64::consts::PI,
     sync::atomic::{AtomicUsize, Ordering},
 };
-use tem00_testkit::on_threads;
 
 use super::*;
 
@@ -144,8 +143,9 @@ fn an_aperture_made_on_the_way_gives_the_same_bits() {
 fn the_result_is_the_same_bits_for_any_number_of_threads() {
     let input = aperture(61, 45);
     let transform = Fft2::with_aperture(120, 90, 61, 45).unwrap();
-    let with_threads =
-        |threads| on_threads(threads, || transform.forward(&input, |_, _, value| value));
+    let with_threads = |threads| {
+        tem00_testkit::on_threads(threads, || transform.forward(&input, |_, _, value| value))
+    };
     assert_eq!(with_threads(1), with_threads(3));
 }
 

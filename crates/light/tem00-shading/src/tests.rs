@@ -371,9 +371,8 @@ fn what_does_not_fit_is_refused_by_name() {
     let aside = speckle.clone().for_poses(&[pose]);
     let aside = aside.at_points([(DVec3::X, DVec3::Z)]).prepare();
     assert!(matches!(aside, Err(ShadingError::Missing(_))), "{aside:?}");
-    let refused = |speckle: Speckle| speckle.prepare().map_err(|error| error.to_string());
-    let none = refused(speckle.clone().looks(0));
-    assert_eq!(none.unwrap_err(), "looks must be at least 1, got 0");
+    let none = speckle.clone().looks(0).prepare().unwrap_err();
+    assert_eq!(none.to_string(), "looks must be at least 1, got 0");
     assert!(speckle.polarisation(1.5).prepare().is_err(), "polarisation");
 }
 

@@ -55,8 +55,8 @@ fn first_order(report: &mut Report, method: LineMethod) {
         _ => return,
     };
     report.verdict(format!(
-        "U is first order in the noise, and too large for this detector, up to twice: {why}. The \
-         trials of `tem00-inspect budget` find its noise."
+        "U is first order in the noise, and one and a half to two times too large for this \
+         detector: {why}. The trials of `tem00-inspect budget` find its noise."
     ));
 }
 
